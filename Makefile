@@ -1,0 +1,45 @@
+.DEFAULT_GOAL := help
+.PHONY: help setup run test test-fast lint format bench clean
+export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
+cpp = $(shell find include src bindings tests bench -name '*.hpp' -o -name '*.cpp')
+
+help: ## this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+setup: ## install what is missing: Debian packages, .venv, garrison
+	@tools/setup.sh
+
+run: setup ## the main job: Irish wind with hijacked stations, report in out/wind
+	@.venv/bin/garrison run examples/wind/hijacked.toml -o out/wind --force
+
+test: test-fast ## all tests: C++, Python, and C++ again under the sanitizers
+	@tools/stage.sh "configure asan" cmake --preset asan
+	@tools/stage.sh "build asan" cmake --build --preset asan
+	@ctest --preset asan
+
+test-fast: setup ## C++ and Python tests without the sanitizers
+	@tools/stage.sh "configure release" cmake --preset release
+	@tools/stage.sh "build release" cmake --build --preset release
+	@ctest --preset release
+	@.venv/bin/pytest -q
+
+lint: setup ## ruff, mypy, clang-format, type stubs
+	@.venv/bin/ruff check --quiet
+	@.venv/bin/ruff format --check --quiet
+	@.venv/bin/mypy --no-error-summary
+	@.venv/bin/clang-format --dry-run --Werror --ferror-limit=1 $(cpp)
+	@tools/stubs.sh --check
+	@echo "lint: no complaint"
+
+format: setup ## format C++ and Python, write the type stubs anew
+	@.venv/bin/ruff check --fix --quiet
+	@.venv/bin/ruff format --quiet
+	@.venv/bin/clang-format -i $(cpp)
+	@tools/stubs.sh
+
+bench: ## measure against the peers; results in bench/results
+	@tools/setup.sh bench
+	@.venv/bin/python bench/run.py
+
+clean: ## remove everything that was built or installed here
+	@rm -rf build out dist .venv

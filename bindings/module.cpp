@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bindings.hpp"
+
+PYBIND11_MODULE(_core, m) {
+  m.doc() = "Compiled core of garrison. Use it through the garrison package.";
+  m.attr("__version__") = GARRISON_VERSION;
+  // Order: a class must be bound before a function that shows it in its signature.
+  bind_core(m);
+  bind_filters(m);
+  bind_attacks(m);
+  bind_runtime(m);
+  bind_analysis(m);
+  bind_fit(m);
+}

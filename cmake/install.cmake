@@ -1,0 +1,20 @@
+# What `cmake --install` lays down: library, headers, CMake package, pkg-config file.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/garrison)
+
+install(TARGETS garrison headers EXPORT garrison)
+install(DIRECTORY include/garrison DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
+
+install(EXPORT garrison NAMESPACE garrison:: FILE garrisonTargets.cmake DESTINATION ${package_dir})
+configure_package_config_file(cmake/garrisonConfig.cmake.in garrisonConfig.cmake INSTALL_DESTINATION ${package_dir})
+# Before 1.0 a minor release may break its users.
+write_basic_package_version_file(garrisonConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/garrisonConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/garrisonConfigVersion.cmake
+        DESTINATION ${package_dir})
+
+# The path from the .pc file to the prefix, so that the installed tree can be moved.
+file(RELATIVE_PATH GARRISON_PC_TO_PREFIX
+     ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(cmake/garrison.pc.in garrison.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/garrison.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Observability when some sensors are taken away (definition 1 of the saturation paper).
+#pragma once
+
+#include "garrison/core/error.hpp"
+#include "garrison/core/types.hpp"
+
+namespace garrison {
+
+/// rank [C; CA; ...; CA^(n-1)] = n, singular values below max(size) * 2.2e-16 * largest counted as zero.
+/// A: n x n. C: m x n, m >= 0. @throws InvalidInput on shapes that do not fit
+GARRISON_EXPORT bool observable(const MatrixRef& A, const MatrixRef& C);
+
+/// Removals that s_sparse_observable tries at most before it refuses.
+inline constexpr double kMostRemovals = 2e6;
+
+/// (A, kept rows) is observable for every choice of N - s kept rows of C (N x n). Equal rows are interchangeable.
+/// @throws InvalidInput when s is outside 0..N or more than kMostRemovals choices would have to be tried
+GARRISON_EXPORT bool s_sparse_observable(const MatrixRef& A, const MatrixRef& C, int s);
+
+/// lambda_0(s) > 1e-9: every N - s rows span the state in one step.
+GARRISON_EXPORT bool one_step_sparse_observable(const MatrixRef& C, int s);
+
+}  // namespace garrison

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the state dimension at run time to the one at compile time.
+#pragma once
+
+#include "garrison/core/types.hpp"
+
+namespace garrison {
+
+/// Calls `action.operator()<n>()` with n = states for 1..8, Dynamic beyond.
+template <class Action>
+auto dispatch(int states, const Action& action) {
+  switch (states) {
+    case 1: return action.template operator()<1>();
+    case 2: return action.template operator()<2>();
+    case 3: return action.template operator()<3>();
+    case 4: return action.template operator()<4>();
+    case 5: return action.template operator()<5>();
+    case 6: return action.template operator()<6>();
+    case 7: return action.template operator()<7>();
+    case 8: return action.template operator()<8>();
+    default: return action.template operator()<Dynamic>();
+  }
+}
+
+}  // namespace garrison

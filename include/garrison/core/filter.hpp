@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// The contract that every filter family fulfils.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "garrison/core/agent_set.hpp"
+#include "garrison/core/inbox.hpp"
+#include "garrison/core/types.hpp"
+
+namespace garrison {
+
+/// What one agent is told of itself. Plain pointers, so that agents share one plant.
+struct Local {
+  int id;            ///< public id, 0..agents-1
+  int agents;        ///< N
+  int states;        ///< n at run time
+  int outputs;       ///< rows of C_i; 0 for a relay
+  int degree;        ///< neighbours that this agent hears
+  const double* A;   ///< n x n, column by column
+  const double* C;   ///< outputs x n, row by row
+};
+
+/// What the network says of one agent's sensor.
+enum class Verdict : std::uint8_t {
+  cleared,    ///< its measurement was used as it is
+  suspected,  ///< its measurement was limited, but nothing is proved
+  attacked,   ///< proved to be under attack and isolated
+  silent,     ///< no measurement at this step (relay, or lost)
+};
+
+/// Numbers that every family reports of one agent after a step; NaN = does not exist.
+struct Report {
+  double bound = kNaN;      ///< certified: ||estimate - state|| <= bound, under the family's assumptions
+  double statistic = kNaN;  ///< what is tested, e.g. |innovation|
+  double threshold = kNaN;  ///< what it is tested against
+  Verdict verdict = Verdict::cleared;
+};
+
+/// The compile-time dimension where there is one, else the run-time one.
+template <int n>
+constexpr int dimension(const Local& local) {
+  return n == Dynamic ? local.states : n;
+}
+
+/// A filter family F for state dimension n (1..8, or Dynamic).
+///
+/// One sample t of agent i is `sense` with its measurement, then `rounds` times: send the message, receive
+/// the neighbours' messages, `fuse`. Then `report`. All of it is a pure state machine: no clock, socket,
+/// random number, truth or exception, and no allocation after `init`. The same state and input always
+/// give the same output; this is why the engine, the replay and a node agree bit for bit.
+///
+/// - `init(local, gains, x0, state, message)` sizes every buffer of state and message (may allocate).
+/// - `y` has local.outputs entries; NaN = missing. Infinite and huge entries are allowed.
+/// - The inbox holds finite messages of the right size only; a missing neighbour is simply not in it.
+/// - `expected` writes the measurement that the agent predicts for the next step (local.outputs entries),
+///   `alarm_level` the deviation from it that the agent tolerates there: what an informed attacker knows.
+template <class F, int n>
+concept Filter = requires(const Local& local, const typename F::Gains& gains, typename F::template State<n>& state,
+                          const typename F::template State<n>& view, typename F::template Message<n>& message,
+                          const Inbox<typename F::template Message<n>>& inbox, const double* y, double* out,
+                          const Vec<n>& x0, std::int64_t t, int round) {
+  { F::name } -> std::convertible_to<std::string_view>;
+  { F::rounds(gains) } -> std::same_as<int>;
+  F::template init<n>(local, gains, x0, state, message);
+  { F::template sense<n>(local, gains, state, y, t, message) } noexcept;
+  { F::template fuse<n>(local, gains, state, inbox, round, message) } noexcept;
+  { F::template report<n>(local, gains, view) } noexcept -> std::same_as<Report>;
+  { F::template estimate<n>(view) } noexcept -> std::convertible_to<const Vec<n>&>;
+  { F::template accused<n>(view) } noexcept -> std::same_as<const AgentSet*>;
+  { F::template expected<n>(local, gains, view, out) } noexcept;
+  { F::template alarm_level<n>(local, gains, view) } noexcept -> std::same_as<double>;
+  { F::template signals<n>(local, gains, view, out) } noexcept;
+  { message.values() } -> std::same_as<std::span<double>>;
+};
+
+}  // namespace garrison

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several Monte Carlo trials side by side in one step.
+#pragma once
+
+#include <cstdint>
+
+#include "garrison/core/types.hpp"
+
+namespace garrison {
+
+/// Trials per step.
+inline constexpr int kLanes = 8;
+
+/// Steps kLanes independent trials of a whole network at once. Every operation acts lane by lane, so each
+/// trial has the bits it would have alone. Arrays are [agent][component][lane].
+class GARRISON_EXPORT LaneRunner {
+ public:
+  virtual ~LaneRunner() = default;
+  /// x0: one n x N matrix per lane.
+  virtual void reset(const Matrix* x0) = 0;
+  /// y: total_outputs x kLanes numbers, [measurement][lane]; NaN = missing.
+  virtual void step(const double* y) = 0;
+  /// Estimates after the step, [agent][component][lane], agents in order of public id.
+  virtual const double* estimates() const = 0;
+};
+
+}  // namespace garrison

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plant and what each agent sees of it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "garrison/core/error.hpp"
+#include "garrison/core/types.hpp"
+
+namespace garrison {
+
+/// What is known of the noise. Everything is optional: a filter that needs an entry says so.
+struct GARRISON_EXPORT Noise {
+  /// ||w(t)|| <= process_bound for all t; same unit as the state, >= 0; NaN = not known.
+  double process_bound = kNaN;
+  /// |v_i(t)| <= measurement_bound[i] for every output of agent i; length N; empty = not known.
+  Vector measurement_bound;
+  /// Covariance of w, n x n, symmetric positive semidefinite; empty = not known.
+  Matrix process_covariance;
+  /// Covariance of v_i, m_i x m_i, one per agent; empty = not known.
+  std::vector<Matrix> measurement_covariance;
+};
+
+/// x(t+1) = A x(t) + w(t),  y_i(t) = C_i x(t) + v_i(t) for agents i = 0..N-1.
+///
+/// Immutable once built. C_i may have any number of rows; an agent without sensors (a relay) has none.
+/// Measurements of the whole network are kept flat, agent by agent: agent i owns the entries
+/// offset(i) .. offset(i+1)-1.
+class GARRISON_EXPORT Model {
+ public:
+  /// `A`: n x n, finite. `C`: one m_i x n matrix per agent, finite (m_i = 0 allowed), at least one agent.
+  /// @throws InvalidInput on a wrong shape, a number that is not finite or an impossible noise.
+  Model(Matrix A, std::vector<Matrix> C, Noise noise = {});
+
+  int states() const { return static_cast<int>(A_.rows()); }
+  int agents() const { return static_cast<int>(C_.size()); }
+  const Matrix& A() const { return A_; }
+  const Matrix& C(int agent) const { return C_[static_cast<std::size_t>(agent)]; }
+  int outputs(int agent) const { return static_cast<int>(C(agent).rows()); }
+  int offset(int agent) const { return offsets_[static_cast<std::size_t>(agent)]; }
+  /// Number of scalar measurements of the whole network at one time.
+  int total_outputs() const { return offsets_.back(); }
+  const Noise& noise() const { return noise_; }
+  /// Largest entry of noise().measurement_bound, the common b_v of the papers; NaN when not known.
+  double measurement_bound() const;
+  /// All C_i on top of each other, total_outputs() x n.
+  Matrix stacked() const;
+
+ private:
+  Matrix A_;
+  std::vector<Matrix> C_;
+  Noise noise_;
+  std::vector<int> offsets_;
+};
+
+}  // namespace garrison

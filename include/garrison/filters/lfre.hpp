@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// Local-filtering-based resilient estimation (Mitra and Sundaram, Automatica 2019), a baseline.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "garrison/core/conditions.hpp"
+#include "garrison/core/filter.hpp"
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+#include "garrison/core/params.hpp"
+
+namespace garrison {
+
+/// The saturation paper only cites this filter; our definition (notes, item 20): all modes form one group.
+/// An agent that can observe the whole state alone is a source and runs a Luenberger observer,
+///   xhat_i(t) = A xhat_i(t-1) + H_i (y_i(t-1) - C_i xhat_i(t-1)),  xhat_i(1) = A xhat_i(0).
+/// Every other one averages, entry by entry, its parents' xhat(t-1) without the f largest and f smallest, and
+/// predicts: xhat_i(t) = A mean. Parents are the neighbours closer to a source, or all neighbours when fewer than
+/// 2f + 1 are. Missing neighbours are left out; with none left the agent predicts from its own estimate.
+struct GARRISON_EXPORT Lfre {
+  static constexpr std::string_view name = "lfre";
+  static constexpr std::string_view title = "Local-filtering-based resilient estimation";
+  static constexpr std::string_view source = "Mitra, Sundaram, Automatica 2019; baseline of the saturation paper";
+
+  struct Params {
+    int faulty = 1;
+    std::vector<double> poles;
+
+    static auto fields() {
+      return std::make_tuple(
+          field(&Params::faulty, {.name = "faulty", .symbol = "f", .unit = "agents",
+                                  .doc = "values trimmed from each end of the parents' estimates", .least = 0}),
+          field(&Params::poles, {.name = "poles", .symbol = "", .unit = "1",
+                                 .doc = "real poles of the sources' observers, one per state; left out: equally "
+                                        "spaced from 0.3 to 0.4",
+                                 .least = -1.0, .most = 1.0}));
+    }
+  };
+
+  struct Gains {
+    int faulty = 1;
+    std::vector<Vector> observer;           ///< H_i per agent; empty = not a source
+    std::vector<std::vector<int>> parents;  ///< sorted ids; of a source: all neighbours, unused
+  };
+
+  template <int n>
+  struct State {
+    Vec<n> x;
+    Vec<n> mean;
+    double y_before = kNaN;  // y(t-1), what the observer uses at t
+    double y_now = kNaN;
+    std::vector<double> column;
+    AgentSet nobody;
+  };
+  template <int n>
+  struct Message {
+    int sender = 0;
+    Vec<n> x;
+    std::span<double> values() { return {x.data(), static_cast<std::size_t>(x.size())}; }
+  };
+
+  /// @throws InvalidInput when poles do not match the state, or when no agent is a source
+  static Gains design(const Params& params, const Model& model, const Network& network);
+  static Check check(const Params& params, const Model& model, const Network& network);
+  static int rounds(const Gains&) { return 1; }
+
+  template <int n>
+  static void init(const Local& l, const Gains&, const Vec<n>& x0, State<n>& s, Message<n>& m) {
+    State<n> fresh;
+    fresh.x = fresh.mean = m.x = x0;
+    fresh.column.resize(static_cast<std::size_t>(l.degree));
+    s = std::move(fresh);
+    m.sender = l.id;
+  }
+
+  template <int n>
+  static void sense(const Local& l, const Gains&, State<n>& s, const double* y, std::int64_t, Message<n>& m) noexcept {
+    s.y_before = s.y_now;
+    s.y_now = l.outputs > 0 && std::abs(y[0]) < kHuge ? y[0] : kNaN;
+    m.x = s.x;
+  }
+
+  template <int n>
+  static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
+                   Message<n>& m) noexcept {
+    const int nn = dimension<n>(l);
+    const Vector& H = g.observer[static_cast<std::size_t>(l.id)];
+    double innovation = 0.0;
+    if (H.size() != 0) {
+      s.mean = s.x;
+      if (!std::isnan(s.y_before)) {
+        innovation = s.y_before;
+        for (int k = 0; k < nn; ++k) innovation -= l.C[k] * s.x[k];
+      }
+    } else {
+      trimmed_mean(g.parents[static_cast<std::size_t>(l.id)], g.faulty, inbox, nn, s);
+    }
+    for (int i = 0; i < nn; ++i) {
+      double next = 0.0;
+      for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.mean[k];
+      s.x[i] = H.size() != 0 ? next + H[i] * innovation : next;
+    }
+    m.x = s.x;
+  }
+
+  template <int n>
+  static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept {
+    const bool listens = g.observer[static_cast<std::size_t>(l.id)].size() == 0;
+    Report r;
+    r.verdict = listens || std::isnan(s.y_now) ? Verdict::silent : Verdict::cleared;
+    return r;
+  }
+  template <int n>
+  static const Vec<n>& estimate(const State<n>& s) noexcept {
+    return s.x;
+  }
+  template <int n>
+  static const AgentSet* accused(const State<n>& s) noexcept {
+    return &s.nobody;
+  }
+  template <int n>
+  static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
+    const int nn = dimension<n>(l);
+    for (int r = 0; r < l.outputs; ++r) {
+      out[r] = 0.0;
+      for (int k = 0; k < nn; ++k) out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + k] * s.x[k];
+    }
+  }
+  template <int n>
+  static double alarm_level(const Local&, const Gains&, const State<n>&) noexcept {
+    return kInfinity;
+  }
+  static constexpr std::size_t signal_count = 1;
+  static std::vector<std::string> signal_names() { return {"source"}; }
+  template <int n>
+  static void signals(const Local& l, const Gains& g, const State<n>&, double* out) noexcept {
+    out[0] = g.observer[static_cast<std::size_t>(l.id)].size() != 0 ? 1.0 : 0.0;
+  }
+
+ private:
+  template <int n>
+  static void trimmed_mean(const std::vector<int>& parents, int faulty, const Inbox<Message<n>>& inbox, int nn,
+                           State<n>& s) noexcept {
+    for (int k = 0; k < nn; ++k) {
+      std::size_t m = 0;
+      for (std::size_t j = 0; j < inbox.size(); ++j)
+        if (std::binary_search(parents.begin(), parents.end(), inbox[j].sender)) s.column[m++] = inbox[j].x[k];
+      s.mean[k] = s.x[k];
+      if (m == 0) continue;
+      const auto begin = s.column.begin();
+      std::sort(begin, begin + static_cast<std::ptrdiff_t>(m));
+      const std::size_t trim = std::min(static_cast<std::size_t>(faulty), (m - 1) / 2);
+      double sum = 0.0;
+      for (std::size_t j = trim; j < m - trim; ++j) sum += s.column[j];
+      s.mean[k] = sum / static_cast<double>(m - 2 * trim);
+    }
+  }
+};
+
+}  // namespace garrison

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: Apache-2.0
+// Saturated consensus filter and its detector (He, Ren, Sandberg, Johansson, IEEE TAC 2022).
+//
+// Steps, for every agent i and time t (numbers are the paper's equations):
+//   predict   A xhat_i(t-1)
+//   innovate  h = y_i(t) - C_i A xhat_i(t-1), one per row of C_i
+//   test      |h| > phi_i(t) proves an attack (15); a proved sensor never updates again      [Algorithm 2]
+//   saturate  xtilde_i = prediction + sum over rows of C_i' clip(h, -beta, beta)             (3), (4)
+//   average   L rounds of xhat_i <- xhat_i - alpha sum_j (xhat_i - xhat_j)                   (5)
+//   flood     the same rounds unite the sets of proved sensors
+// Letters: beta saturation level, L rounds, alpha step, s most sensors attacked, I_i set of proved sensors,
+// d_i its size, rhobar_i the bound on the mean error (14), p(t) the bound on the disagreement (10).
+//
+// Where we leave the print (our notes on the paper): the test has a rounding guard; "= s" in line 6 reads
+// ">= s"; a bound is reported only by an agent that still tests, because (16) is false for the others; an
+// agent that missed a message, or heard from one that did, reports no bound.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "garrison/core/average.hpp"
+#include "garrison/core/conditions.hpp"
+#include "garrison/core/filter.hpp"
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+#include "garrison/core/params.hpp"
+#include "garrison/filters/saturation/adaptive.hpp"
+#include "garrison/filters/saturation/detector.hpp"
+#include "garrison/core/lanes.hpp"
+
+namespace garrison {
+
+struct GARRISON_EXPORT Saturation {
+  static constexpr std::string_view name = "saturation";
+  static constexpr std::string_view title = "Saturated consensus filter, with attack detector";
+  static constexpr std::string_view source = "He, Ren, Sandberg, Johansson, IEEE TAC 2022, Algorithms 1 and 2";
+
+  struct Params {
+    double threshold = kNaN;
+    int rounds = 3;
+    double step = kNaN;
+    int attacked = 0;
+    double initial_error = kNaN;
+    bool detector = false;
+    std::string detector_index = "t";
+    bool adaptive = false;
+    bool chebyshev = false;
+    bool accuse_missing = false;
+
+    static auto fields() {
+      return std::make_tuple(
+          field(&Params::threshold, {.name = "threshold", .symbol = "beta", .unit = "measurement",
+                                     .doc = "largest innovation that is used in full; inf = never saturate. "
+                                            "May be left out with adaptive = true",
+                                     .least = 0.0, .open = true}),
+          field(&Params::rounds, {.name = "rounds", .symbol = "L", .unit = "1",
+                                  .doc = "consensus rounds per sample", .least = 0, .most = 1e6}),
+          field(&Params::step, {.name = "step", .symbol = "alpha", .unit = "1",
+                                .doc = "consensus step; left out: 2/(lambda_2 + lambda_max)", .least = 0.0}),
+          field(&Params::attacked, {.name = "attacked", .symbol = "s", .unit = "agents",
+                                    .doc = "most sensors attacked (or missing) at a time; enters bound and detector",
+                                    .least = 0}),
+          field(&Params::initial_error, {.name = "initial_error", .symbol = "eta0", .unit = "state",
+                                         .doc = "bound on the distance of the common initial estimate from the "
+                                                "state; giving it asks for run-time error bounds",
+                                         .least = 0.0, .open = true}),
+          field(&Params::detector, {.name = "detector", .symbol = "", .unit = "",
+                                    .doc = "Algorithm 2: prove and isolate attacked sensors (their set must not "
+                                           "change over time)"}),
+          field(&Params::detector_index, {.name = "detector_index", .symbol = "d_i", .unit = "",
+                                          .doc = "which count of proved sensors enters rhobar(t): \"t\" = d_i(t-1) "
+                                                 "as printed, \"t+1\" = d_i(t), sharper and as sound",
+                                          .choices = {"t", "t+1"}}),
+          field(&Params::adaptive, {.name = "adaptive", .symbol = "", .unit = "",
+                                    .doc = "let the threshold follow the known bound on honest innovations "
+                                           "(our notes; needs initial_error)"}),
+          field(&Params::chebyshev, {.name = "chebyshev", .symbol = "", .unit = "",
+                                     .doc = "Chebyshev-filtered rounds: stronger contraction from the same messages"}),
+          field(&Params::accuse_missing, {.name = "accuse_missing", .symbol = "", .unit = "",
+                                          .doc = "detector: a missing (NaN) measurement counts as proof of attack"}));
+    }
+  };
+
+  /// What design leaves for the run: shared by all agents.
+  struct Gains {
+    double alpha = 0.0;
+    std::vector<double> omega;  ///< Chebyshev weight per round; empty = plain rounds
+    int rounds = 0;
+    bool bounded = false;  ///< setting and q0 below are valid
+    bool detector = false;
+    bool sharp_index = false;
+    bool adaptive = false;
+    bool accuse_missing = false;
+    double varpi = kNaN;  ///< theorem 3; adaptive threshold only
+    double q0 = kNaN;     ///< (8)
+    double p0 = kNaN;     ///< (8)
+    double beta = kInfinity;
+    saturation::Setting setting;
+  };
+
+  template <int n>
+  struct State {
+    Vec<n> x;           // xhat_i(t)
+    Vec<n> prediction;  // A xhat_i(t-1)
+    Vec<n> previous;    // the estimate one round ago (Chebyshev)
+    double gain = 1.0;
+    double innovation = kNaN;
+    double beta = kInfinity;  // saturation level in force at t
+    double phi = kNaN;        // detection threshold in force at t
+    double rho = kNaN;        // rho or rhobar_i at t-1
+    double p = kNaN;          // p at t-1
+    int d = 0;                // |I_i(t-1)|
+    std::int64_t t = 0;
+    bool intact = true;  // no message is missing behind this estimate
+    Verdict verdict = Verdict::cleared;
+    AgentSet proved;  // I_i
+  };
+
+  template <int n>
+  struct Message {
+    Vec<n> x;
+    bool intact = true;
+    AgentSet proved;
+    std::span<double> values() { return {x.data(), static_cast<std::size_t>(x.size())}; }
+  };
+
+  /// Step and weights of the rounds, for drivers that average the whole network at once.
+  struct Averaging {
+    double alpha;
+    std::span<const double> omega;
+  };
+
+  /// Conditions and bounds of theorems 1-5 and propositions 2-4, with what is missing named.
+  static Check check(const Params& params, const Model& model, const Network& network);
+  /// Validates and prepares; @throws InvalidInput (see the doc of each parameter).
+  static Gains design(const Params& params, const Model& model, const Network& network);
+  /// Bounds and detector need one initial estimate for all (our notes); @throws InvalidInput.
+  static void check_start(const Gains& gains, const Matrix& x0);
+  /// Eight trials at once; null when the detector makes trials take different branches.
+  static std::unique_ptr<LaneRunner> lanes(std::shared_ptr<const Gains> gains, const Model& model,
+                                           const Network& network);
+  static int rounds(const Gains& g) { return g.rounds; }
+  static Averaging averaging(const Gains& g) { return {g.alpha, g.omega}; }
+
+  template <int n>
+  static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
+    State<n> fresh;
+    fresh.x = fresh.prediction = fresh.previous = m.x = x0;
+    fresh.rho = g.bounded ? g.setting.eta0 : kNaN;
+    fresh.p = 0.0;
+    m.intact = true;
+    const int tracked = g.detector ? l.agents : 0;
+    fresh.proved.resize(tracked);
+    m.proved.resize(tracked);
+    s = std::move(fresh);
+  }
+
+  template <int n>
+  static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
+                    Message<n>& m) noexcept {
+    advance_bounds(g, s, t);
+    const int nn = dimension<n>(l);
+    predict(l.A, s.x.data(), s.prediction.data(), nn);
+    s.x = s.prediction;
+    const bool proved = g.detector && s.proved.contains(l.id);
+    const bool informed = g.detector && s.d >= g.setting.attacked;
+    int used = 0;
+    int limited = 0;
+    bool accused = false;
+    s.gain = 1.0;
+    s.innovation = kNaN;
+    for (int r = 0; r < l.outputs; ++r) {
+      const double* c = l.C + static_cast<std::ptrdiff_t>(r) * nn;
+      double expected_y = 0.0;
+      for (int k = 0; k < nn; ++k) expected_y += c[k] * s.prediction[k];
+      const double h = y[r] - expected_y;
+      if (!(std::abs(s.innovation) >= std::abs(h))) s.innovation = h;
+      double injected = 0.0;
+      if (proved) {
+        s.gain = 0.0;  // (a) isolated
+      } else if (std::isnan(h) || (!(std::abs(h) < kHuge) && (informed || s.beta == kInfinity))) {
+        s.gain = 0.0;  // missing; or so large that using it in full would destroy the estimate
+        accused = accused || (g.detector && g.accuse_missing && !informed);
+      } else if (informed) {
+        injected = h;  // (b) all attackers are known, no test
+        ++used;
+      } else if (g.detector && exceeds(std::abs(h), s.phi, std::abs(y[r]), std::abs(expected_y))) {
+        s.gain = 0.0;  // (c) proof (15)
+        accused = true;
+      } else {
+        injected = std::clamp(h, -s.beta, s.beta);  // (d) = k h with k of (4), without 0/0
+        if (std::abs(h) > s.beta) {
+          s.gain = std::min(s.gain, s.beta / std::abs(h));
+          ++limited;
+        }
+        ++used;
+      }
+      for (int k = 0; k < nn; ++k) s.x[k] += injected * c[k];
+    }
+    if (accused) {
+      // Nothing of an accused sensor is used, even if some of its outputs look harmless.
+      s.x = s.prediction;
+      s.gain = 0.0;
+      s.proved.insert(l.id);
+    }
+    s.verdict = proved || accused ? Verdict::attacked
+                : used == 0       ? Verdict::silent
+                : limited > 0     ? Verdict::suspected
+                                  : Verdict::cleared;
+    send(s, m);
+  }
+
+  template <int n>
+  static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int round,
+                   Message<n>& m) noexcept {
+    const int nn = dimension<n>(l);
+    const double omega = g.omega.empty() ? 1.0 : g.omega[static_cast<std::size_t>(round)];
+    average_round<n>(nn, g.alpha, omega, s.x.data(), s.previous.data(), inbox.size(),
+                     [&](std::size_t k) { return inbox[k].x.data(); });
+    // Estimates and sets travel in one message: the proof of "no false accusation" rests on it.
+    if (inbox.size() < static_cast<std::size_t>(l.degree)) s.intact = false;
+    for (std::size_t k = 0; k < inbox.size(); ++k) {
+      s.intact = s.intact && inbox[k].intact;
+      if (g.detector) s.proved.unite(inbox[k].proved);
+    }
+    send(s, m);
+  }
+
+  /// The rounds would change nothing but the average if both agents carry the same side information.
+  template <int n>
+  static bool same_side_information(const State<n>& a, const State<n>& b) noexcept {
+    return a.intact && b.intact && a.proved == b.proved;
+  }
+
+  /// Where a driver that averages at once reads and writes the estimate.
+  template <int n>
+  static double* averaged(State<n>& s) noexcept {
+    return s.x.data();
+  }
+
+  template <int n>
+  static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept {
+    Report r;
+    r.verdict = l.outputs == 0 ? Verdict::silent : s.verdict;
+    r.statistic = std::abs(s.innovation);
+    r.threshold = g.detector ? s.phi : s.beta;
+    if (g.bounded && s.intact && !(g.detector && s.proved.size() >= g.setting.attacked))
+      r.bound = rho_now(g, s) + p_now(g, s);
+    return r;
+  }
+
+  template <int n>
+  static const Vec<n>& estimate(const State<n>& s) noexcept {
+    return s.x;
+  }
+  template <int n>
+  static const AgentSet* accused(const State<n>& s) noexcept {
+    return &s.proved;
+  }
+  template <int n>
+  static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
+    const int nn = dimension<n>(l);
+    for (int r = 0; r < l.outputs; ++r) {
+      out[r] = 0.0;
+      for (int i = 0; i < nn; ++i) {
+        double predicted = 0.0;
+        for (int k = 0; k < nn; ++k) predicted += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.x[k];
+        out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + i] * predicted;
+      }
+    }
+  }
+  template <int n>
+  static double alarm_level(const Local&, const Gains& g, const State<n>& s) noexcept {
+    if (g.detector) return saturation::detection_threshold(g.setting, rho_now(g, s), p_now(g, s));
+    if (g.adaptive) return saturation::adaptive_threshold(g.setting, rho_now(g, s), p_now(g, s));
+    return g.beta;
+  }
+
+  static constexpr std::size_t signal_count = 7;
+  static std::vector<std::string> signal_names() { return {"gain", "innovation", "level", "phi", "rho", "p", "detected"}; }
+  /// Values of signal_names() after a step: k_i, h_i, beta, phi_i, rho or rhobar_i at t, p(t), d_i(t).
+  template <int n>
+  static void signals(const Local&, const Gains& g, const State<n>& s, double* out) noexcept {
+    const double all[] = {s.gain,        s.innovation,  s.beta, s.phi, rho_now(g, s),
+                          p_now(g, s), static_cast<double>(s.proved.size())};
+    std::copy(std::begin(all), std::end(all), out);
+  }
+
+  /// Moves rho and p to t-1 and sets the levels in force at t; data-free without the detector.
+  template <int n>
+  static void advance_bounds(const Gains& g, State<n>& s, std::int64_t t) noexcept {
+    const double rho = rho_now(g, s);
+    s.p = p_now(g, s);
+    s.rho = rho;
+    s.t = t;
+    s.beta = g.adaptive ? saturation::adaptive_threshold(g.setting, s.rho, s.p) : g.beta;
+    if (!g.detector) return;
+    s.d = s.proved.size();
+    s.phi = saturation::detection_threshold(g.setting, s.rho, s.p);
+  }
+ private:
+  /// A x, column by column: every entry sums in the order k = 0..n-1 whatever the vector width.
+  static void predict(const double* A, const double* x, double* out, int nn) noexcept {
+    for (int i = 0; i < nn; ++i) out[i] = A[i] * x[0];
+    for (int k = 1; k < nn; ++k)
+      for (int i = 0; i < nn; ++i) out[i] += A[static_cast<std::ptrdiff_t>(k) * nn + i] * x[k];
+  }
+
+  /// h > phi (15) beyond rounding: for n = 1 the bound (16) is attained, a bare ">" accuses honest sensors.
+  static bool exceeds(double h, double phi, double y, double expected_y) noexcept {
+    return std::isinf(h) || h > phi + 1e-12 * (phi + y + expected_y);
+  }
+
+  template <int n>
+  static void send(const State<n>& s, Message<n>& m) noexcept {
+    m.x = s.x;
+    m.intact = s.intact;
+    m.proved = s.proved;
+  }
+
+  /// rho(t) of (7), rhobar_i(t) of (14) or rho_t of the adaptive threshold, from the values at t-1.
+  template <int n>
+  static double rho_now(const Gains& g, const State<n>& s) noexcept {
+    if (!g.bounded || s.t == 0) return s.rho;
+    if (g.adaptive) return saturation::adaptive_next(g.setting, g.varpi, s.rho, s.p).rho;
+    if (!g.detector) return saturation::rho_bar_next(g.setting, g.q0, s.rho, g.p0, 0);  // (7): p0 instead of p(t-1)
+    return saturation::rho_bar_next(g.setting, g.q0, s.rho, s.p, g.sharp_index ? s.proved.size() : s.d);
+  }
+  /// p(t) of (10), or of the adaptive threshold.
+  template <int n>
+  static double p_now(const Gains& g, const State<n>& s) noexcept {
+    if (!g.bounded || s.t == 0) return s.p;
+    return saturation::disagreement_next(g.setting, s.p, s.beta);
+  }
+};
+
+}  // namespace garrison

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Consensus rounds of a whole network at once.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "garrison/core/error.hpp"
+#include "garrison/runtime/workers.hpp"
+
+namespace garrison {
+
+/// L rounds of x_i <- x_i - alpha sum over j in N_i of (x_i - x_j) for all agents, with the same bits as
+/// `average_round` agent by agent.
+class GARRISON_EXPORT ConsensusPlan {
+ public:
+  /// Lists of a network in public ids, each sorted: `offsets` N+1 numbers into `lists`.
+  ConsensusPlan(std::span<const int> offsets, std::span<const int> lists);
+
+  /// Position -> public id: the order in which `run` expects the rows.
+  std::span<const int> order() const { return order_; }
+
+  /// In place on x, N x width row by row in `order()`; scratch has the same size. `omega`: Chebyshev weight
+  /// per round, empty = plain. width >= 1. Does not allocate. With `workers` each round is split over threads,
+  /// otherwise several rounds are fused where the rows do not fit into the cache; the bits are the same.
+  void run(double* x, double* scratch, int width, double alpha, std::span<const double> omega, int rounds,
+           Workers* workers = nullptr) const;
+
+ private:
+  int rounds_in_flight(int width) const;
+
+  std::vector<int> order_;
+  std::int32_t bandwidth_ = 0;
+  std::vector<std::int32_t> first_;
+  std::vector<std::int32_t> neighbour_;  // positions, each row in order of public ids
+};
+
+}  // namespace garrison

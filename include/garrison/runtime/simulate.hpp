@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drivers: a simulated plant, or a recorded log.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "garrison/attacks/measurement.hpp"
+#include "garrison/runtime/family.hpp"
+#include "garrison/runtime/record.hpp"
+
+namespace garrison {
+
+/// What to keep of a run. Errors are always kept when the truth is known.
+struct GARRISON_EXPORT Keep {
+  bool estimate = true;
+  bool report = true;        ///< bound, statistic, threshold, verdict, accusations
+  bool signals = false;      ///< the family's own signals
+  bool measurements = true;
+};
+
+/// Settings that simulation and replay share.
+struct GARRISON_EXPORT RunOptions {
+  int trials = 1;
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< 0 = all cores; the result does not depend on it
+  Matrix start;     ///< initial estimates, n x N, or n x 1 for all agents alike; empty = zeros
+  std::vector<Attack> attacks;  ///< applied in this order
+  std::vector<std::shared_ptr<const MessageAttack>> message_attacks;
+  LinkFaults link;
+  Keep keep;
+  /// Called now and then with the number of finished samples and their total; false stops the run.
+  std::function<bool(std::int64_t, std::int64_t)> progress;
+};
+
+/// How the simulated plant starts and is disturbed.
+struct GARRISON_EXPORT PlantOptions {
+  int steps = 0;
+  Vector x0;                 ///< true initial state; empty = zeros
+  double start_error = 0.0;  ///< the common initial estimate is moved by a random vector of at most this length
+  /// "uniform" within the model's bounds, "extreme" at them, "normal" with the model's covariances, "none",
+  /// or "auto": uniform where bounds are known, else normal where covariances are, else none.
+  std::string noise = "auto";
+};
+
+/// x(t+1) = A x(t) + w(t), y = C x + v, attacked, filtered. Trials differ in noise, attack chance and link
+/// faults; each depends on (seed, trial) only.
+/// @throws InvalidInput when something does not fit; run-time trouble is counted in the record.
+GARRISON_EXPORT Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
+                                const PlantOptions& plant, const RunOptions& options);
+
+/// Feeds recorded measurements, steps x total_outputs, row r belonging to time r+1; NaN = missing.
+/// `truth`: empty, or (steps+1) x n. Attacks apply on top of the log (trials differ in their chance).
+GARRISON_EXPORT Record replay(const Model& model, const Network& network, const AnyFilter& filter,
+                              const MatrixRef& measurements, const MatrixRef& truth, const RunOptions& options);
+
+}  // namespace garrison

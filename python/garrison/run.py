@@ -1,0 +1,188 @@
+"""Drivers and their results."""
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from garrison import _core
+
+Array = NDArray[np.float64]
+Progress = Callable[[int, int], None]
+
+VERDICTS = ("cleared", "suspected", "attacked", "silent")
+
+
+class Run:
+    """Arrays of a finished run, indexed [trial, time, agent, ...]; time 0 is the start, nan = does not exist.
+
+    truth (trial, time, n); estimate (trial, time, agent, n); error, bound, statistic, threshold (trial, time,
+    agent); verdict (trial, time, agent): index into garrison.run.VERDICTS; measurements (trial, time 1.., output),
+    as the filter received them; signals: name -> (trial, time, agent). An array that was not kept, or that cannot
+    exist (errors without truth), is None.
+    """
+
+    def __init__(self, data: dict[str, Any], model: _core.Model, network: _core.Network, filter: _core.Filter) -> None:
+        self.model = model
+        self.network = network
+        self.filter = filter
+        self.truth: Array | None = data.get("truth")
+        self.measurements: Array | None = data.get("measurements")
+        self.estimate: Array | None = data.get("estimate")
+        self.error: Array | None = data.get("error")
+        self.bound: Array | None = data.get("bound")
+        self.statistic: Array | None = data.get("statistic")
+        self.threshold: Array | None = data.get("threshold")
+        self.verdict: NDArray[np.uint8] | None = data.get("verdict")
+        signals = data.get("signals")
+        self.signals: dict[str, Array] = (
+            {} if signals is None else {name: signals[:, :, k] for k, name in enumerate(data["signal_names"])}
+        )
+        #: (trial, time, sets): what each agent believes to be attacked, whenever one of the sets changed
+        self.accusations: list[tuple[int, int, list[list[int]]]] = data["accusations"]
+        #: lost, late, forged and refused messages, missing and non-finite measurements, overflows
+        self.counters: dict[str, int] = data["counters"]
+
+    def first_accused(self, trial: int = 0) -> dict[int, int]:
+        """Agent -> first time at which some agent believed it to be attacked."""
+        first: dict[int, int] = {}
+        for k, time, sets in self.accusations:
+            if k == trial:
+                for agent in {a for s in sets for a in s}:
+                    first.setdefault(agent, time)
+        return first
+
+    def save(self, path: str | Path) -> None:
+        """Write all arrays to a NumPy .npz file (created, or replaced)."""
+        arrays = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        arrays |= {f"signal_{name}": value for name, value in self.signals.items()}
+        with Path(path).open("wb") as file:
+            np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
+
+    def plot(self, trial: int = 0) -> Any:
+        """Errors with their bounds, and statistics against thresholds, as a matplotlib figure (extra: plot)."""
+        from garrison.plots import run_figure
+
+        return run_figure(self, trial)
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset of all arrays, with named dimensions (extra: xarray)."""
+        import xarray as xr
+
+        dims = {
+            "truth": ("trial", "time", "state"),
+            "estimate": ("trial", "time", "agent", "state"),
+            "measurements": ("trial", "sample", "output"),
+        }
+        names = ("truth", "measurements", "estimate", "error", "bound", "statistic", "threshold", "verdict")
+        found = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        return xr.Dataset({k: (dims.get(k, ("trial", "time", "agent")), v) for k, v in found.items()})
+
+    def __repr__(self) -> str:
+        shape = next(a.shape for a in (self.error, self.estimate, self.bound) if a is not None)
+        return f"Run({self.filter.name}: {shape[0]} trial(s), {shape[1] - 1} samples, {shape[2]} agents)"
+
+
+def _start(start: ArrayLike | None, states: int) -> Array | None:
+    if start is None:
+        return None
+    rows = np.atleast_1d(np.asarray(start, dtype=float))
+    return rows.reshape(1, -1) if rows.ndim == 1 else rows
+
+
+def simulate(
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    *,
+    steps: int,
+    attack: _core.Attack | Iterable[_core.Attack] = (),
+    trials: int = 1,
+    seed: int = 0,
+    x0: ArrayLike | None = None,
+    start: ArrayLike | None = None,
+    start_error: float = 0.0,
+    noise: str = "auto",
+    link: Mapping[str, float] | None = None,
+    keep: Iterable[str] = ("estimate", "report", "measurements"),
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> Run:
+    """Simulate the plant, attack it, filter it.
+
+    steps: samples >= 1. attack: one or more, applied in order. x0: (n,) true initial state, default 0. start: (n,)
+    common initial estimate, or (N, n) one per agent, default 0; start_error moves it by a random vector of at most
+    that length per trial. noise: "uniform" within the model's bounds, "extreme" at them, "normal", "none", "auto".
+    link: drop and delay (probabilities), delay_rounds. keep: of "estimate", "report", "signals", "measurements".
+    threads: 0 = all cores; the result does not depend on it. progress(done, total) is called now and then.
+    Same arguments, same bits. Raises InvalidInput when something does not fit.
+    """
+    data = _core.simulate(
+        model,
+        network,
+        filter,
+        steps=steps,
+        x0=np.zeros(model.states) if x0 is None else np.asarray(x0, dtype=float),
+        start_error=start_error,
+        noise=noise,
+        trials=trials,
+        seed=seed,
+        threads=threads,
+        start=_start(start, model.states),
+        attacks=[attack] if isinstance(attack, _core.Attack) else list(attack),
+        link=dict(link or {}),
+        keep=list(keep),
+        progress=progress,
+    )
+    return Run(data, model, network, filter)
+
+
+def replay(
+    filter: _core.Filter,
+    model: _core.Model,
+    network: _core.Network,
+    *,
+    measurements: ArrayLike,
+    truth: ArrayLike | None = None,
+    start: ArrayLike | None = None,
+    attack: _core.Attack | Iterable[_core.Attack] = (),
+    trials: int = 1,
+    seed: int = 0,
+    link: Mapping[str, float] | None = None,
+    keep: Iterable[str] = ("estimate", "report", "measurements"),
+    threads: int = 0,
+    progress: Progress | None = None,
+) -> Run:
+    """Feed recorded measurements, (samples, outputs), nan = missing; row r belongs to time r + 1.
+
+    truth: (samples + 1, n), from time 0, or None. Attacks come on top of the log. The rest as in simulate.
+    """
+    data = _core.replay(
+        model,
+        network,
+        filter,
+        measurements=np.asarray(measurements, dtype=float),
+        truth=np.empty((0, 0)) if truth is None else np.asarray(truth, dtype=float),
+        trials=trials,
+        seed=seed,
+        threads=threads,
+        start=_start(start, model.states),
+        attacks=[attack] if isinstance(attack, _core.Attack) else list(attack),
+        link=dict(link or {}),
+        keep=list(keep),
+        progress=progress,
+    )
+    return Run(data, model, network, filter)
+
+
+def central_kalman(
+    model: _core.Model, measurements: ArrayLike, *, start: ArrayLike | None = None, start_variance: float = 1.0
+) -> Array:
+    """Estimates (samples + 1, n) of a central Kalman filter that sees all measurements (samples, outputs).
+
+    The unprotected ideal that distributed filters are compared with. Needs the model's covariances; nan = missing.
+    """
+    x0 = np.zeros(model.states) if start is None else np.asarray(start, dtype=float)
+    return _core.central_kalman(model, np.asarray(measurements, dtype=float), x0, start_variance)

@@ -1,0 +1,86 @@
+"""Replay of reference cases: does this build compute what it should?
+
+A case file is a JSON object with `inputs` and `expected`; a file with `must` instead of `expected` holds bad input
+that has to be refused or survived. Files are read by content, whatever their names.
+"""
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from garrison._core import IoError
+from garrison.verify import saturation
+from garrison.verify.bad import judge
+from garrison.verify.compare import FieldResult, compare
+
+#: name of the paper in a case file -> module that recomputes its cases
+FAMILIES = {"he_secure": saturation}
+
+
+@dataclass
+class FileResult:
+    """All fields of one file."""
+
+    file: str
+    family: str
+    fields: list[FieldResult] = field(default_factory=list)
+
+    @property
+    def misses(self) -> int:
+        """Fields that deviate too much or were not understood."""
+        return sum(not f.ok for f in self.fields)
+
+
+def _family(case: dict[str, Any], path: Path) -> str:
+    """Name of the paper: said in the file, else recognised by the inputs that only this family has."""
+    if isinstance(case.get("paper"), str):
+        return str(case["paper"])
+    inputs = case.get("inputs", {})
+    for name, module in FAMILIES.items():
+        if isinstance(inputs, dict) and module.recognises(inputs):
+            return name
+    return "unknown"
+
+
+def _template(case: dict[str, Any], family: str, path: Path) -> dict[str, Any]:
+    """The case whose use of the inputs a bad one follows; empty when it is not at hand."""
+    name = f"{family}_{case.get('template')}.json"
+    for folder in (path.parent, path.parent.parent):
+        if (folder / name).is_file():
+            return dict(json.loads((folder / name).read_text()))
+    return {}
+
+
+def verify_file(path: Path, family: str | None = None) -> FileResult | None:
+    """Recompute one file; None when it belongs to another family than the one asked for."""
+    try:
+        case = json.loads(path.read_text())
+    except (OSError, ValueError) as error:
+        return FileResult(path.name, "unknown", [FieldResult.failure("file", f"cannot be read: {error}")])
+    paper = _family(case, path) if isinstance(case, dict) else "unknown"
+    if family is not None and family not in (paper, getattr(FAMILIES.get(paper), "NAME", None)):
+        return None
+    module = FAMILIES.get(paper)
+    if module is None:
+        return FileResult(path.name, paper, [FieldResult.failure("family", f"{paper} is not understood")])
+    result = FileResult(path.name, module.NAME)
+    try:
+        if "must" in case:
+            result.fields = judge(module, case, _template(case, paper, path))
+        elif "inputs" in case and "expected" in case:
+            result.fields = compare(module.evaluate(case["inputs"], case["expected"]), case["expected"], module.TOLERANCES)
+        else:
+            result.fields = [FieldResult.failure("file", "has neither expected nor must")]
+    except Exception as error:  # a case must never stop the replay of the others
+        result.fields.append(FieldResult.failure("file", f"{type(error).__name__}: {error}"))
+    return result
+
+
+def verify(folder: str | Path, family: str | None = None) -> list[FileResult]:
+    """Recompute every case file (*.json) in `folder` and its subfolders, or only those of one family."""
+    root = Path(folder)
+    if not root.is_dir():
+        raise IoError(f"{root}: got no such folder, expected a folder with case files (*.json)")
+    results = [verify_file(path, family) for path in sorted(root.rglob("*.json"))]
+    return [result for result in results if result is not None]

@@ -1,0 +1,106 @@
+"""Comparison of computed and expected fields, by the rules of the cases' README."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+RELATIVE = 1e-9
+ABSOLUTE = 1e-12
+
+#: what an evaluator returns for an expected key that it does not know
+NOT_UNDERSTOOD = object()
+
+
+@dataclass
+class FieldResult:
+    """One field: deviation relative to its largest entry, and whether it is within tolerance."""
+
+    name: str
+    deviation: float
+    ok: bool
+    note: str = ""
+
+    @staticmethod
+    def failure(name: str, note: str) -> "FieldResult":
+        """A miss that has no number."""
+        return FieldResult(name, float("inf"), False, note)
+
+
+def number(value: Any) -> Any:
+    """Numbers as written in case files: infinities and not-a-number are texts."""
+    return float(value) if value in ("inf", "-inf", "nan") else value
+
+
+def array(value: Any) -> Any:
+    """Nested lists of such numbers as an array; anything else unchanged."""
+    if isinstance(value, list):
+        try:
+            return np.array(_numbers(value), dtype=float)
+        except (ValueError, TypeError):
+            return value
+    return number(value)
+
+
+def _numbers(value: Any) -> Any:
+    return [_numbers(v) for v in value] if isinstance(value, list) else number(value)
+
+
+def _whole(value: Any) -> bool:
+    """Nested lists of whole numbers only: index lists, which must agree exactly."""
+    if isinstance(value, list):
+        return all(_whole(v) for v in value)
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _numeric(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
+    e = np.asarray(expected, dtype=float)
+    g = np.asarray(got, dtype=float)
+    if g.shape != e.shape:
+        return FieldResult.failure(name, f"got shape {g.shape}, expected {e.shape}")
+    finite = np.isfinite(e)
+    special_agree = np.array_equal(g[~finite], e[~finite], equal_nan=True) and bool(np.isfinite(g[finite]).all())
+    if not special_agree:
+        return FieldResult.failure(name, "entries that are not finite differ")
+    scale = float(np.abs(e[finite]).max(initial=0.0))
+    worst = float(np.abs(g[finite] - e[finite]).max(initial=0.0))
+    deviation = worst / scale if scale > 0 else worst
+    return FieldResult(name, deviation, worst <= relative * scale + ABSOLUTE)
+
+
+def _leaf(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
+    if got is NOT_UNDERSTOOD:
+        return FieldResult.failure(name, "not understood")
+    if isinstance(expected, bool) or expected is None or (isinstance(expected, str) and isinstance(array(expected), str)):
+        same = got == expected and isinstance(got, bool) == isinstance(expected, bool)
+        return FieldResult(name, 0.0 if same else 1.0, same, "" if same else f"got {got!r}, expected {expected!r}")
+    if got is None or isinstance(got, bool):
+        return FieldResult.failure(name, f"got {got!r}, expected a number")
+    numbers = array(expected)
+    if isinstance(numbers, list):  # ragged: lists of index lists
+        same = got == expected
+        return FieldResult(name, 0.0 if same else 1.0, same, "" if same else "lists differ")
+    if _whole(expected) and _whole(got):
+        same = got == expected
+        return FieldResult(name, 0.0 if same else 1.0, same, "" if same else f"got {got!r}, expected {expected!r}")
+    return _numeric(name, got, numbers, relative)
+
+
+def compare(got: Any, expected: Any, tolerances: dict[str, float], name: str = "") -> list[FieldResult]:
+    """Field by field; `tolerances` maps the end of a field's name to its own relative tolerance."""
+    if isinstance(expected, dict):
+        results = []
+        for key, value in expected.items():
+            inner = got.get(key, NOT_UNDERSTOOD) if isinstance(got, dict) else NOT_UNDERSTOOD
+            results += compare(inner, value, tolerances, f"{name}/{key}" if name else key)
+        return results
+    if isinstance(expected, list) and expected and all(isinstance(v, dict) for v in expected):
+        if not isinstance(got, list) or len(got) != len(expected):
+            count = len(got) if isinstance(got, list) else "no"
+            return [FieldResult.failure(name, f"got {count} entries, expected {len(expected)}")]
+        results = []
+        for k, (g, e) in enumerate(zip(got, expected, strict=True)):
+            results += compare(g, e, tolerances, f"{name}[{k}]")
+        return results
+    own = [tolerance for end, tolerance in tolerances.items() if name.endswith(end)]
+    return [_leaf(name, got, expected, own[0] if own else RELATIVE)]

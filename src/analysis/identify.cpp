@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/analysis/identify.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace garrison {
+namespace {
+
+std::string shape(const MatrixRef& m) { return std::to_string(m.rows()) + " x " + std::to_string(m.cols()); }
+
+void require_options(const MatrixRef& raw, const FitOptions& o) {
+  if (o.factors < 1 || o.factors > raw.cols())
+    refuse("fit.factors", std::to_string(o.factors), "a number in 1.." + std::to_string(raw.cols()),
+           "at most one factor per station");
+  if (o.harmonics < 0) refuse("fit.harmonics", std::to_string(o.harmonics), "a number >= 0");
+  if (!(o.period > 0.0)) refuse("fit.period", text(o.period), "a number of samples > 0");
+  if (!(o.factor > 0.0) || !std::isfinite(o.factor)) refuse("fit.factor", text(o.factor), "a finite number > 0");
+}
+
+/// Records after unit conversion and square root.
+Matrix transformed(const MatrixRef& raw, const FitOptions& o) {
+  Matrix z = raw * o.factor;
+  for (Eigen::Index j = 0; j < z.cols(); ++j)
+    for (Eigen::Index i = 0; i < z.rows(); ++i) {
+      if (std::isinf(z(i, j)))
+        refuse("records[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(z(i, j)), "a finite number or nan");
+      if (o.root && z(i, j) < 0.0)
+        refuse("records[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(raw(i, j)),
+               "a number >= 0 with the square root", "drop it, or fit without the root");
+    }
+  if (o.root) z = z.cwiseSqrt();
+  return z;
+}
+
+Matrix seasonal_design(Eigen::Index rows, std::int64_t first, const FitOptions& o) {
+  Matrix X(rows, 1 + 2 * o.harmonics);
+  for (Eigen::Index r = 0; r < rows; ++r) {
+    const double phase = 2.0 * std::numbers::pi * static_cast<double>(first + r) / o.period;
+    X(r, 0) = 1.0;
+    for (int h = 1; h <= o.harmonics; ++h) {
+      X(r, 2 * h - 1) = std::cos(h * phase);
+      X(r, 2 * h) = std::sin(h * phase);
+    }
+  }
+  return X;
+}
+
+/// Seasonal coefficients of one station from the samples that are present.
+Vector season_of(const Matrix& X, const Vector& z, Eigen::Index station) {
+  const auto present = (z.array() == z.array());
+  const Eigen::Index count = present.count();
+  const std::string which = "station " + std::to_string(station);
+  if (count < 10 * X.cols())
+    refuse(which, std::to_string(count) + " records", "at least " + std::to_string(10 * X.cols()), "use more years");
+  Matrix rows(count, X.cols());
+  Vector values(count);
+  for (Eigen::Index r = 0, k = 0; r < z.size(); ++r)
+    if (present(r)) {
+      rows.row(k) = X.row(r);
+      values(k++) = z(r);
+    }
+  const Vector coefficients = rows.colPivHouseholderQr().solve(values);
+  const double spread = (values - rows * coefficients).norm() / std::sqrt(static_cast<double>(count));
+  if (!(spread > 1e-9 * (1.0 + values.cwiseAbs().maxCoeff())))
+    refuse(which, "records without variation", "records that vary around their season", "leave it out");
+  return coefficients;
+}
+
+/// Covariance over the samples at which both stations are present.
+Matrix pairwise_covariance(const Matrix& a) {
+  Matrix S(a.cols(), a.cols());
+  for (Eigen::Index i = 0; i < a.cols(); ++i)
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      double sum = 0.0;
+      double count = 0.0;
+      for (Eigen::Index r = 0; r < a.rows(); ++r) {
+        const double product = a(r, i) * a(r, j);
+        if (std::isnan(product)) continue;
+        sum += product;
+        count += 1.0;
+      }
+      S(i, j) = S(j, i) = count > 0.0 ? sum / count : 0.0;
+    }
+  return S;
+}
+
+bool present(const Matrix& x, Eigen::Index row) { return x.row(row).allFinite(); }
+
+void fit_dynamics(const Matrix& x, Identified& m) {
+  const auto n = x.cols();
+  Matrix now = Matrix::Zero(n, n);
+  Matrix next = Matrix::Zero(n, n);
+  Eigen::Index pairs = 0;
+  for (Eigen::Index r = 0; r + 1 < x.rows(); ++r) {
+    if (!present(x, r) || !present(x, r + 1)) continue;
+    now += x.row(r).transpose() * x.row(r);
+    next += x.row(r + 1).transpose() * x.row(r);
+    ++pairs;
+  }
+  if (pairs < 10 * n)
+    refuse("records", std::to_string(pairs) + " complete successive rows", "at least " + std::to_string(10 * n),
+           "use more years or fewer factors");
+  m.A = now.ldlt().solve(next.transpose()).transpose();
+  m.process_covariance = Matrix::Zero(n, n);
+  m.process_bound = 0.0;
+  for (Eigen::Index r = 0; r + 1 < x.rows(); ++r) {
+    if (!present(x, r) || !present(x, r + 1)) continue;
+    const Vector w = x.row(r + 1).transpose() - m.A * x.row(r).transpose();
+    m.process_covariance += w * w.transpose() / static_cast<double>(pairs);
+    m.process_bound = std::max(m.process_bound, w.norm());
+  }
+}
+
+void fit_measurement_noise(const Matrix& x, const Matrix& y, Identified& m) {
+  m.measurement_variance = Vector::Zero(y.cols());
+  m.measurement_bound = Vector::Zero(y.cols());
+  for (Eigen::Index i = 0; i < y.cols(); ++i) {
+    double count = 0.0;
+    for (Eigen::Index r = 0; r < y.rows(); ++r) {
+      const double v = y(r, i) - m.C.row(i).dot(x.row(r));
+      if (std::isnan(v)) continue;
+      m.measurement_variance(i) += v * v;
+      m.measurement_bound(i) = std::max(m.measurement_bound(i), std::abs(v));
+      count += 1.0;
+    }
+    m.measurement_variance(i) /= std::max(count, 1.0);
+  }
+}
+
+}  // namespace
+
+Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& options) {
+  if (raw.rows() < 2 || raw.cols() < 1) refuse("records", shape(raw), "samples x stations");
+  require_options(raw, options);
+  Identified m;
+  m.options = options;
+  const Matrix z = transformed(raw, options);
+  const Matrix X = seasonal_design(z.rows(), first, options);
+  m.season.resize(X.cols(), z.cols());
+  for (Eigen::Index i = 0; i < z.cols(); ++i) m.season.col(i) = season_of(X, z.col(i), i);
+  const Matrix anomalies = z - X * m.season;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(pairwise_covariance(anomalies));
+  const auto N = z.cols();
+  const auto n = options.factors;
+  m.share = eigen.eigenvalues().reverse().head(n) / eigen.eigenvalues().sum();
+  Matrix loadings = eigen.eigenvectors().rowwise().reverse().leftCols(n) * std::sqrt(static_cast<double>(N));
+  for (int k = 0; k < n; ++k)  // a sign that does not depend on the eigenvalue solver
+    if (loadings.col(k).sum() < 0.0) loadings.col(k) *= -1.0;
+  m.scale = loadings.rowwise().norm();
+  for (Eigen::Index i = 0; i < N; ++i)
+    if (!(m.scale(i) > 1e-9))
+      refuse("station " + std::to_string(i), "no share in the factors", "a station that varies with the others",
+             "leave it out or use more factors");
+  m.C = m.scale.cwiseInverse().asDiagonal() * loadings;
+  const Matrix y = measurements(m, raw, first);
+  const Matrix x = reference_states(m, y);
+  fit_dynamics(x, m);
+  fit_measurement_noise(x, y, m);
+  return m;
+}
+
+Matrix measurements(const Identified& model, const MatrixRef& raw, std::int64_t first) {
+  if (raw.cols() != model.C.rows())
+    refuse("records", shape(raw), "samples x " + std::to_string(model.C.rows()), "the stations the model was fitted to");
+  const Matrix anomalies =
+      transformed(raw, model.options) - seasonal_design(raw.rows(), first, model.options) * model.season;
+  return anomalies * model.scale.cwiseInverse().asDiagonal();
+}
+
+Matrix reference_states(const Identified& model, const MatrixRef& measured) {
+  const auto n = model.C.cols();
+  Matrix x = Matrix::Constant(measured.rows(), n, kNaN);
+  for (Eigen::Index r = 0; r < measured.rows(); ++r) {
+    // Weighted by scale^2: least squares of the anomalies themselves, the projection that defined the factors.
+    Matrix normal = Matrix::Zero(n, n);
+    Vector right = Vector::Zero(n);
+    for (Eigen::Index i = 0; i < measured.cols(); ++i) {
+      if (std::isnan(measured(r, i))) continue;
+      const double weight = model.scale(i) * model.scale(i);
+      normal += weight * model.C.row(i).transpose() * model.C.row(i);
+      right += weight * measured(r, i) * model.C.row(i).transpose();
+    }
+    const Eigen::LDLT<Matrix> factor(normal);
+    if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 1e-9) x.row(r) = factor.solve(right);
+  }
+  return x;
+}
+
+}  // namespace garrison

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/core/model.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <utility>
+
+namespace garrison {
+namespace {
+
+std::string shape(const Matrix& m) { return std::to_string(m.rows()) + " x " + std::to_string(m.cols()); }
+
+void require_finite(const std::string& which, const Matrix& m) {
+  for (Eigen::Index j = 0; j < m.cols(); ++j)
+    for (Eigen::Index i = 0; i < m.rows(); ++i)
+      if (!std::isfinite(m(i, j)))
+        refuse(which + "[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(m(i, j)), "a finite number",
+               "replace or remove it");
+}
+
+void require_covariance(const std::string& which, const Matrix& m, Eigen::Index size) {
+  if (m.rows() != size || m.cols() != size)
+    refuse(which, shape(m), std::to_string(size) + " x " + std::to_string(size));
+  require_finite(which, m);
+  if (size == 0) return;
+  const double scale = m.cwiseAbs().maxCoeff();
+  if (!m.isApprox(m.transpose(), 1e-12))
+    refuse(which, "a matrix that is not symmetric", "a symmetric one", "use (M + M') / 2");
+  const double least = Eigen::SelfAdjointEigenSolver<Matrix>(m, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  if (least < -1e-12 * scale)
+    refuse(which, "least eigenvalue " + text(least), "a positive semidefinite matrix", "check its sign");
+}
+
+void require_bound(const std::string& which, double value) {
+  if (!(value >= 0.0) || !std::isfinite(value))
+    refuse(which, text(value), "a finite number >= 0", "leave it out when it is not known");
+}
+
+}  // namespace
+
+Model::Model(Matrix A, std::vector<Matrix> C, Noise noise)
+    : A_(std::move(A)), C_(std::move(C)), noise_(std::move(noise)) {
+  const auto n = A_.rows();
+  if (n < 1 || A_.cols() != n) refuse("A", shape(A_), "a square matrix with at least one row");
+  require_finite("A", A_);
+  if (C_.empty()) refuse("C", "no agent", "one matrix of observation rows per agent");
+  offsets_.assign(1, 0);
+  for (std::size_t i = 0; i < C_.size(); ++i) {
+    if (C_[i].rows() == 0) C_[i].resize(0, n);
+    const std::string which = "C[" + std::to_string(i) + "]";
+    if (C_[i].cols() != n)
+      refuse(which, shape(C_[i]), std::to_string(n) + " columns, because A is " + shape(A_));
+    require_finite(which, C_[i]);
+    offsets_.push_back(offsets_.back() + static_cast<int>(C_[i].rows()));
+  }
+  if (!std::isnan(noise_.process_bound)) require_bound("process_bound", noise_.process_bound);
+  if (noise_.measurement_bound.size() != 0 && noise_.measurement_bound.size() != agents())
+    refuse("measurement_bound", std::to_string(noise_.measurement_bound.size()) + " numbers",
+           "one per agent (" + std::to_string(agents()) + ")");
+  for (Eigen::Index i = 0; i < noise_.measurement_bound.size(); ++i)
+    require_bound("measurement_bound[" + std::to_string(i) + "]", noise_.measurement_bound(i));
+  if (noise_.process_covariance.size() != 0) require_covariance("process_covariance", noise_.process_covariance, n);
+  const auto& Sv = noise_.measurement_covariance;
+  if (!Sv.empty() && Sv.size() != C_.size())
+    refuse("measurement_covariance", std::to_string(Sv.size()) + " matrices",
+           "one per agent (" + std::to_string(agents()) + ")");
+  for (std::size_t i = 0; i < Sv.size(); ++i)
+    require_covariance("measurement_covariance[" + std::to_string(i) + "]", Sv[i], C_[i].rows());
+}
+
+double Model::measurement_bound() const {
+  return noise_.measurement_bound.size() == 0 ? kNaN : noise_.measurement_bound.maxCoeff();
+}
+
+Matrix Model::stacked() const {
+  Matrix all(total_outputs(), states());
+  for (int i = 0; i < agents(); ++i) all.middleRows(offset(i), outputs(i)) = C(i);
+  return all;
+}
+
+}  // namespace garrison

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// lambda_2 and lambda_max of the Laplacian: dense for small networks, Lanczos for large ones.
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "garrison/core/network.hpp"
+
+namespace garrison {
+namespace {
+
+constexpr int kDenseLimit = 400;
+constexpr int kLanczosSteps = 300;
+constexpr double kLanczosAccuracy = 1e-13;
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// Largest eigenvalue of a symmetric operator on the space orthogonal to the all-ones vector, by Lanczos
+/// with full reorthogonalisation; stops when the Ritz value has settled to kLanczosAccuracy.
+double largest_eigenvalue(Eigen::Index size, const std::function<Vector(const Vector&)>& apply) {
+  const auto deflate = [](Vector& v) { v.array() -= v.mean(); };
+  Vector q(size);
+  for (Eigen::Index i = 0; i < size; ++i) q(i) = std::sin(1.0 + 12.9898 * static_cast<double>(i));
+  deflate(q);
+  q.normalize();
+  const int most = static_cast<int>(std::min<Eigen::Index>(kLanczosSteps, size - 1));
+  Matrix basis(size, most);
+  Vector alpha = Vector::Zero(most);
+  Vector beta = Vector::Zero(most);
+  double value = 0.0;
+  for (int k = 0; k < most; ++k) {
+    basis.col(k) = q;
+    Vector r = apply(q);
+    alpha(k) = q.dot(r);
+    deflate(r);
+    for (int pass = 0; pass < 2; ++pass) r -= basis.leftCols(k + 1) * (basis.leftCols(k + 1).transpose() * r);
+    beta(k) = r.norm();
+    if (k % 8 == 7 || k + 1 == most || beta(k) < 1e-300) {
+      Eigen::SelfAdjointEigenSolver<Matrix> ritz;
+      ritz.computeFromTridiagonal(alpha.head(k + 1), beta.head(k), Eigen::ComputeEigenvectors);
+      value = ritz.eigenvalues()(k);
+      if (beta(k) * std::abs(ritz.eigenvectors()(k, k)) <= kLanczosAccuracy * std::abs(value)) break;
+    }
+    q = r / beta(k);
+  }
+  return value;
+}
+
+Sparse sparse_laplacian(const Network& network) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < network.agents(); ++i) {
+    entries.emplace_back(i, i, network.degree(i));
+    for (const int j : network.neighbours(i)) entries.emplace_back(i, j, -1.0);
+  }
+  Sparse lap(network.agents(), network.agents());
+  lap.setFromTriplets(entries.begin(), entries.end());
+  return lap;
+}
+
+}  // namespace
+
+LaplacianSpectrum Network::laplacian_spectrum() const {
+  if (directed_) refuse("network", "a directed one", "an undirected one", "its Laplacian must be symmetric");
+  if (agents() == 1) return {0.0, 0.0};
+  if (agents() <= kDenseLimit) {
+    const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>(laplacian(), Eigen::EigenvaluesOnly).eigenvalues();
+    return {std::max(values(1), 0.0), values(agents() - 1)};
+  }
+  if (!connected()) return {0.0, largest_eigenvalue(agents(), [lap = sparse_laplacian(*this)](const Vector& v) {
+                              return Vector(lap * v);
+                            })};
+  const Sparse lap = sparse_laplacian(*this);
+  const double lambda_max = largest_eigenvalue(agents(), [&](const Vector& v) { return Vector(lap * v); });
+  // lambda_2 = 1 / largest eigenvalue of the pseudo-inverse. Grounding agent 0 makes the Laplacian
+  // definite; on vectors orthogonal to 1 its inverse differs from the pseudo-inverse by a constant only.
+  const Sparse grounded = lap.bottomRightCorner(agents() - 1, agents() - 1);
+  const Eigen::SimplicialLDLT<Sparse> factor(grounded);
+  const double inverse = largest_eigenvalue(agents(), [&](const Vector& v) {
+    Vector x = Vector::Zero(agents());
+    x.tail(agents() - 1) = factor.solve(v.tail(agents() - 1));
+    x.array() -= x.mean();
+    return x;
+  });
+  return {1.0 / inverse, lambda_max};
+}
+
+}  // namespace garrison

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/core/params.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace garrison {
+namespace {
+
+std::string join(std::span<const std::string> names) {
+  std::string all;
+  for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t swap = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({swap, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string type_name(const ParamValue& value) {
+  constexpr const char* names[] = {"true or false", "a whole number", "a number", "a text", "a list of numbers"};
+  return names[value.index()];
+}
+
+std::string shown(const ParamValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
+  if (const auto* number = std::get_if<double>(&value)) return text(*number);
+  if (const auto* words = std::get_if<std::string>(&value)) return "\"" + *words + "\"";
+  std::string all;
+  for (const double number : std::get<std::vector<double>>(value)) all += (all.empty() ? "" : ", ") + text(number);
+  return "[" + all + "]";
+}
+
+std::string range(const ParamInfo& info) {
+  std::string words = type_name(info.initial);
+  if (std::isfinite(info.least)) words += (info.open ? " > " : " >= ") + text(info.least);
+  if (std::isfinite(info.most)) words += (std::isfinite(info.least) ? " and" : "") + (" <= " + text(info.most));
+  return words;
+}
+
+}  // namespace
+
+std::string nearest_name(const std::string& unknown, std::span<const std::string> known) {
+  std::string best;
+  std::size_t least = unknown.size() / 2 + 2;
+  for (const auto& name : known)
+    if (const auto distance = edit_distance(unknown, name); distance < least) {
+      least = distance;
+      best = name;
+    }
+  return best;
+}
+
+void refuse_unknown(const std::string& owner, const std::string& name, std::span<const std::string> known) {
+  const std::string near = nearest_name(name, known);
+  refuse(owner, "unknown name \"" + name + "\"", "one of: " + join(known),
+         near.empty() ? "see `garrison list`" : "did you mean \"" + near + "\"?");
+}
+
+void check_param(const std::string& owner, const ParamInfo& info, const ParamValue& value) {
+  const std::string which = owner + "." + info.name;
+  if (const auto* words = std::get_if<std::string>(&value)) {
+    if (!info.choices.empty() && std::find(info.choices.begin(), info.choices.end(), *words) == info.choices.end())
+      refuse(which, shown(value), "one of: " + join(info.choices), info.doc);
+    return;
+  }
+  if (std::holds_alternative<bool>(value)) return;
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) {
+    for (const double number : *list)
+      if (!(number >= info.least && number <= info.most)) refuse(which, shown(value), range(info), info.doc);
+    return;
+  }
+  const double number = std::holds_alternative<double>(value) ? std::get<double>(value)
+                                                              : static_cast<double>(std::get<std::int64_t>(value));
+  if (std::isnan(number)) {
+    const bool may_be_absent = std::isnan(std::get<double>(info.initial)) && !info.required;
+    if (!may_be_absent) refuse(which, info.required ? "nothing" : "nan", range(info), info.doc);
+    return;
+  }
+  const bool low = info.open ? number <= info.least : number < info.least;
+  if (low || number > info.most) refuse(which, shown(value), range(info), info.doc);
+}
+
+ParamValue convert_param(const std::string& owner, const ParamInfo& info, const ParamValue& value) {
+  if (value.index() == info.initial.index()) return value;
+  if (std::holds_alternative<double>(info.initial) && std::holds_alternative<std::int64_t>(value))
+    return static_cast<double>(std::get<std::int64_t>(value));
+  if (std::holds_alternative<std::int64_t>(info.initial) && std::holds_alternative<double>(value)) {
+    const double number = std::get<double>(value);
+    if (std::abs(number) < 1e15 && number == std::floor(number)) return static_cast<std::int64_t>(number);
+  }
+  refuse(owner + "." + info.name, shown(value), range(info), info.doc);
+}
+
+}  // namespace garrison

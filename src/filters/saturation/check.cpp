@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// `garrison check` for the saturation filter: each condition with its value, and the bounds that follow.
+#include <cmath>
+
+#include "facts.hpp"
+#include "garrison/analysis/observability.hpp"
+#include "garrison/core/chebyshev.hpp"
+#include "garrison/filters/saturation/feasibility.hpp"
+#include "garrison/filters/saturation/filter.hpp"
+#include "garrison/filters/saturation/theorems.hpp"
+
+namespace garrison {
+namespace {
+
+using namespace saturation;
+
+std::string above(double value) { return "> " + text(value); }
+
+bool scalar_unit_rows(const Model& model) {
+  for (int i = 0; i < model.agents(); ++i)
+    if (model.outputs(i) > 1 || (model.outputs(i) == 1 && std::abs(model.C(i).norm() - 1.0) > 1e-9)) return false;
+  return true;
+}
+
+void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_value) {
+  const auto k = constants(s);
+  const auto points = fixed_points(s);
+  const auto bounds = theorem_bounds(s, varpi_value, 1);
+  const auto g = theorem5(s, tau0_value, varpi_value);
+  c.conditions.push_back({"eta0 (1 - F(eta0)) >= q0 (9)", k.cond9_margin, ">= 0", k.cond9,
+                          "the error stays bounded by theorem 1"});
+  c.conditions.push_back({"(beta - b_w - b_v)/a > rho_1 + p0 (12)", bounds.cond12_margin, "> 0", bounds.cond12,
+                          "honest measurements are never saturated from t = 2 on (theorem 3)"});
+  c.conditions.push_back({"spectral radius of G < 1 (theorem 5)", g.spectral_radius, "< 1", g.spectral_radius < 1.0,
+                          "without noise the errors vanish once all attackers are proved"});
+  c.quantities.push_back({"p0", k.p0, "limit of the disagreement bound (8)"});
+  c.quantities.push_back({"q0", k.q0, "what noise, disagreement and attack add per step (8)"});
+  c.quantities.push_back({"rho_lo", points.lo, "limit of the mean error bound (7)"});
+  c.quantities.push_back({"rho_hi", points.hi, "largest initial error from which (7) does not grow"});
+  c.quantities.push_back({"uniform bound", bounds.thm1_item2, "||error|| for all t >= 1, theorem 1 item 2"});
+  c.quantities.push_back({"asymptotic bound", bounds.thm1_item3, "limsup ||error||, theorem 1 item 3"});
+  c.quantities.push_back({"unsaturated bound", bounds.thm3_item3, "limsup ||error||, theorem 3 item 3"});
+}
+
+}  // namespace
+
+Check Saturation::check(const Params& p, const Model& model, const Network& network) {
+  Check c;
+  c.conditions.push_back({"network connected", network.connected() ? 1.0 : 0.0, "= 1", network.connected(),
+                          "estimates of all agents can agree"});
+  if (network.directed() || !network.connected()) return c;
+  const double s = p.attacked;
+  const auto rates = saturation::detail::rates(network, p.step, p.rounds, p.chebyshev);
+  c.quantities.push_back({"lambda_2", rates.lambda2, "algebraic connectivity of the network"});
+  c.quantities.push_back({"lambda_max", rates.lambda_max, "largest eigenvalue of its Laplacian"});
+  c.quantities.push_back({"alpha", rates.alpha, "consensus step"});
+  c.quantities.push_back({"gamma", rates.gamma, "contraction of one plain round (8)"});
+  c.quantities.push_back({"contraction", rates.contraction, "of the disagreement by all rounds of a sample"});
+  const bool unit = scalar_unit_rows(model);
+  c.conditions.push_back({"one output of unit length per agent", unit ? 1.0 : 0.0, "= 1", unit,
+                          "assumption of all bounds; see normalise_rows and split_outputs"});
+  if (!unit || p.attacked > model.agents()) return c;
+  const auto facts = saturation::detail::facts(model, p.attacked, true);
+  const Matrix C = saturation::detail::sensor_rows(model);
+  c.quantities.push_back({"||A||", facts.a, "largest growth of an error per step"});
+  c.quantities.push_back({"lambda_0", facts.lambda0.lower,
+                          facts.lambda0.exact ? "worst information of N - s sensors (6), exact"
+                                              : "certified lower bound of (6); the exact search was stopped"});
+  c.quantities.push_back({"varpi", facts.varpi, "largest mean error growth, all honest unsaturated (theorem 3)"});
+  Setting setting = saturation::detail::setting(p, model, facts, rates);
+  const double growth = facts.a * rates.contraction;
+  c.conditions.push_back({"lambda_0 > s (11)", facts.lambda0.lower, above(s), condition11(setting),
+                          "some threshold and rounds work for ||A|| near 1 (theorem 2)"});
+  const double a_max = normA_max_exact(setting);
+  c.conditions.push_back({"||A|| < N/(N - lambda_0 + s)", facts.a, "< " + text(a_max), facts.a < a_max,
+                          "some threshold, initial error and rounds satisfy (9) (our notes, exact)"});
+  c.conditions.push_back({"||A|| gamma^L < 1", growth, "< 1", growth < 1.0, "the disagreement stays bounded"});
+  const auto least = minimal_rounds(setting, p.chebyshev ? std::function<double(int)>([&](int L) {
+                                      return chebyshev_contraction(rates.gamma, L);
+                                    })
+                                                         : [&](int L) { return std::pow(rates.gamma, L); });
+  c.quantities.push_back({"minimal rounds", least ? static_cast<double>(*least) : kNaN,
+                          least ? "fewest rounds for which some threshold satisfies (9)" : "no number of rounds is enough"});
+  const bool noise_known = !std::isnan(setting.b_w) && !std::isnan(setting.b_v);
+  if (std::isnan(p.initial_error) || !noise_known) {
+    c.quantities.push_back({"asymptotic bound", kNaN, "needs initial_error and both noise bounds"});
+    return c;
+  }
+  const auto interval = beta_interval(setting);
+  c.quantities.push_back({"threshold from", interval.lo, "least threshold with (9) for this initial error"});
+  c.quantities.push_back({"threshold to", interval.hi, "largest one"});
+  if (!(growth < 1.0)) return c;
+  if (p.adaptive || !std::isfinite(p.threshold)) return c;
+  const auto tau = tau0(C, model.A(), p.attacked);
+  add_bounds(c, setting, facts.varpi, tau.upper);
+  return c;
+}
+
+}  // namespace garrison

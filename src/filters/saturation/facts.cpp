@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "facts.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "garrison/core/chebyshev.hpp"
+
+namespace garrison::saturation::detail {
+namespace {
+constexpr double kCleanGamma = 1e-14;  // complete graphs: rounding leaves 1e-17 where gamma is 0
+}
+
+Rates rates(const Network& network, double step, int rounds, bool chebyshev) {
+  Rates r;
+  const auto [lambda2, lambda_max] = network.laplacian_spectrum();
+  r.lambda2 = lambda2;
+  r.lambda_max = lambda_max;
+  r.gamma = 0.0;
+  if (network.agents() > 1) {
+    r.alpha = std::isnan(step) ? 2.0 / (lambda2 + lambda_max) : step;
+    // The paper's gamma in the form that has no cancellation; any other step has its own.
+    r.gamma = std::isnan(step) ? (lambda_max - lambda2) / (lambda_max + lambda2)
+                               : std::max(std::abs(1.0 - step * lambda2), std::abs(1.0 - step * lambda_max));
+    if (r.gamma < kCleanGamma) r.gamma = 0.0;
+    if (rounds > 0 && r.gamma >= 1.0)
+      refuse("saturation.step", text(r.alpha), "a number in (0, " + text(2.0 / lambda_max) + ")",
+             "other steps make the consensus rounds diverge; leave it out for the best one");
+  }
+  r.contraction = chebyshev ? chebyshev_contraction(r.gamma, rounds) : std::pow(r.gamma, rounds);
+  if (chebyshev) r.omega = chebyshev_weights(r.gamma, rounds);
+  return r;
+}
+
+Matrix sensor_rows(const Model& model) {
+  Matrix C = Matrix::Zero(model.agents(), model.states());
+  for (int i = 0; i < model.agents(); ++i)
+    if (model.outputs(i) == 1) C.row(i) = model.C(i);
+  return C;
+}
+
+Facts facts(const Model& model, int attacked, bool with_varpi) {
+  Facts f;
+  const Matrix C = sensor_rows(model);
+  f.a = Eigen::JacobiSVD<Matrix>(model.A()).singularValues()(0);
+  f.lambda0 = lambda0(C, attacked);
+  if (with_varpi)
+    f.varpi = std::min(varpi(C, model.A(), attacked).upper, f.a * (1.0 - f.lambda0.lower / model.agents()));
+  return f;
+}
+
+Setting setting(const Saturation::Params& p, const Model& model, const Facts& facts, const Rates& rates) {
+  Setting s;
+  s.agents = model.agents();
+  s.a = facts.a;
+  s.lambda0 = facts.lambda0.lower;
+  s.contraction = rates.contraction;
+  s.attacked = p.attacked;
+  s.beta = p.adaptive ? kNaN : p.threshold;
+  s.eta0 = p.initial_error;
+  s.b_w = model.noise().process_bound;
+  s.b_v = model.measurement_bound();
+  return s;
+}
+
+}  // namespace garrison::saturation::detail

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Design: from parameters, model and network to what the agents need.
+#include "garrison/filters/saturation/filter.hpp"
+
+#include <Eigen/SVD>
+
+#include "facts.hpp"
+#include "garrison/filters/saturation/constants.hpp"
+
+namespace garrison {
+namespace {
+
+using saturation::detail::Facts;
+
+void require_parameters(const Saturation::Params& p, const Model& model) {
+  if (std::isnan(p.threshold) && !p.adaptive)
+    refuse("saturation.threshold", "nothing", "a number > 0 (inf = never saturate)", "or set adaptive = true");
+  if (!std::isnan(p.threshold) && p.adaptive)
+    refuse("saturation.threshold", text(p.threshold), "nothing together with adaptive = true",
+           "the adaptive threshold follows from the noise bounds and initial_error");
+  if (p.adaptive && p.detector)
+    refuse("saturation.detector", "true", "false together with adaptive = true",
+           "with the adaptive threshold, an innovation above it already proves an attack");
+  if (p.attacked > model.agents())
+    refuse("saturation.attacked", std::to_string(p.attacked),
+           "at most the number of agents, " + std::to_string(model.agents()));
+  if ((p.detector || p.adaptive) && std::isnan(p.initial_error))
+    refuse("saturation.initial_error", "nothing", "a number > 0",
+           std::string(p.detector ? "the detector" : "the adaptive threshold") + " needs error bounds");
+}
+
+/// What every run-time bound rests on; the first thing that is missing is named.
+void require_bound_assumptions(const Model& model) {
+  const Noise& noise = model.noise();
+  if (std::isnan(noise.process_bound) || noise.measurement_bound.size() == 0)
+    refuse("model", "no process_bound or no measurement_bound", "both",
+           "an error bound needs bounded noise; leave initial_error out to run without");
+  for (int i = 0; i < model.agents(); ++i) {
+    if (model.outputs(i) > 1)
+      refuse("C[" + std::to_string(i) + "]", std::to_string(model.outputs(i)) + " rows", "at most one row per agent",
+             "an error bound needs scalar sensors: split_outputs gives each row an agent of its own");
+    if (model.outputs(i) == 0) continue;
+    const double length = model.C(i).norm();
+    if (std::abs(length - 1.0) > 1e-9)
+      refuse("C[" + std::to_string(i) + "]", "a row of length " + text(length), "a row of unit length",
+             "normalise it together with y and the noise bound: normalise_rows");
+  }
+}
+
+}  // namespace
+
+Saturation::Gains Saturation::design(const Params& p, const Model& model, const Network& network) {
+  require_parameters(p, model);
+  if (network.directed())
+    refuse("network", "a directed one", "an undirected one", "averaging keeps the mean only on undirected graphs");
+  network.require_connected();
+  Gains g;
+  g.rounds = p.rounds;
+  g.detector = p.detector;
+  g.sharp_index = p.detector_index == "t+1";
+  g.adaptive = p.adaptive;
+  g.accuse_missing = p.accuse_missing;
+  g.beta = p.adaptive ? kInfinity : p.threshold;
+  g.bounded = !std::isnan(p.initial_error) && (p.adaptive || std::isfinite(p.threshold));
+  const bool spectrum_needed = std::isnan(p.step) || p.chebyshev || g.bounded;
+  const auto rates = spectrum_needed ? saturation::detail::rates(network, p.step, p.rounds, p.chebyshev)
+                                     : saturation::detail::Rates{.alpha = p.step, .omega = {}};
+  g.alpha = rates.alpha;
+  g.omega = rates.omega;
+  if (g.detector && !g.bounded)
+    refuse("saturation.threshold", text(p.threshold), "a finite number with the detector", "thresholds build on it");
+  if (!g.bounded) return g;
+  require_bound_assumptions(model);
+  const Facts facts = saturation::detail::facts(model, p.attacked, p.adaptive);
+  g.setting = saturation::detail::setting(p, model, facts, rates);
+  if (p.adaptive) {
+    g.varpi = facts.varpi;
+    return g;
+  }
+  const auto constants = saturation::constants(g.setting);
+  g.p0 = constants.p0;
+  g.q0 = constants.q0;
+  return g;
+}
+
+void Saturation::check_start(const Gains& g, const Matrix& x0) {
+  if (!g.bounded) return;
+  for (Eigen::Index i = 1; i < x0.cols(); ++i)
+    if (x0.col(i) != x0.col(0))
+      refuse("start", "different initial estimates for agents 0 and " + std::to_string(i),
+             "the same one for all agents",
+             "the error bound and the detector of Algorithm 2 rest on it; leave initial_error out to run without");
+}
+
+}  // namespace garrison

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eight trials of Algorithm 1 side by side: the same operations as `Saturation::sense`, lane by lane.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../../runtime/clones.hpp"
+#include "garrison/filters/saturation/filter.hpp"
+#include "garrison/runtime/consensus.hpp"
+
+namespace garrison {
+namespace {
+
+constexpr std::ptrdiff_t kL = kLanes;
+
+/// Predict and saturate for all agents; arrays [agent][component][lane].
+struct SenseJob {
+  const double* A;         // n x n, column by column
+  const double* C;         // all rows, in the order of agents
+  const int* outputs;      // per agent
+  const int* first_output; // per agent: index into y
+  const double* y;         // [measurement][lane]
+  double* x;
+  int agents;
+  double beta;
+};
+
+template <int n>
+GARRISON_INLINE void sense_all(const SenseJob& job) {
+  const double* c = job.C;
+  for (int i = 0; i < job.agents; ++i) {
+    double* x = job.x + static_cast<std::ptrdiff_t>(i) * n * kL;
+    double prediction[n][kL];
+    for (int r = 0; r < n; ++r)
+      for (int l = 0; l < kL; ++l) prediction[r][l] = job.A[r] * x[l];
+    for (int k = 1; k < n; ++k)
+      for (int r = 0; r < n; ++r)
+        for (int l = 0; l < kL; ++l) prediction[r][l] += job.A[k * n + r] * x[k * kL + l];
+    for (int r = 0; r < n; ++r)
+      for (int l = 0; l < kL; ++l) x[r * kL + l] = prediction[r][l];
+    for (int o = 0; o < job.outputs[i]; ++o, c += n) {
+      const double* y = job.y + (job.first_output[i] + o) * kL;
+      double h[kL] = {};
+      for (int k = 0; k < n; ++k)
+        for (int l = 0; l < kL; ++l) h[l] += c[k] * prediction[k][l];
+      for (int l = 0; l < kL; ++l) {
+        const double innovation = y[l] - h[l];
+        const double low = innovation < -job.beta ? -job.beta : innovation;
+        const double clipped = low > job.beta ? job.beta : low;
+        // Missing, or used in full and so large that it would destroy the estimate: no update.
+        const bool lost = !(std::abs(innovation) <= kInfinity) || !(std::abs(clipped) < kHuge);
+        h[l] = lost ? 0.0 : clipped;
+      }
+      for (int k = 0; k < n; ++k)
+        for (int l = 0; l < kL; ++l) x[k * kL + l] += h[l] * c[k];
+    }
+  }
+}
+
+GARRISON_CLONES void sense_lanes(const SenseJob& job, int n) {
+  switch (n) {
+    case 1: return sense_all<1>(job);
+    case 2: return sense_all<2>(job);
+    case 3: return sense_all<3>(job);
+    case 4: return sense_all<4>(job);
+    case 5: return sense_all<5>(job);
+    case 6: return sense_all<6>(job);
+    case 7: return sense_all<7>(job);
+    default: return sense_all<8>(job);
+  }
+}
+
+class SaturationLanes final : public LaneRunner {
+ public:
+  SaturationLanes(std::shared_ptr<const Saturation::Gains> gains, const Model& model, const Network& network)
+      : gains_(std::move(gains)), model_(model), plan_(network.offsets(), network.lists()) {
+    for (const int i : plan_.order()) {
+      outputs_.push_back(model_.outputs(i));
+      first_output_.push_back(model_.offset(i));
+      for (Eigen::Index r = 0; r < model_.C(i).rows(); ++r)
+        for (int k = 0; k < model_.states(); ++k) rows_.push_back(model_.C(i)(r, k));
+    }
+    x_.resize(static_cast<std::size_t>(model_.agents() * model_.states()) * kLanes);
+    scratch_.resize(x_.size());
+    public_.resize(x_.size());
+  }
+
+  void reset(const Matrix* x0) override {
+    clock_.t = 0;
+    clock_.rho = gains_->bounded ? gains_->setting.eta0 : kNaN;
+    clock_.p = 0.0;
+    for (int l = 0; l < kLanes; ++l)
+      for (int k = 0; k < model_.agents(); ++k)
+        for (int r = 0; r < model_.states(); ++r) at(k, r, l) = x0[l](r, plan_.order()[static_cast<std::size_t>(k)]);
+    publish();
+  }
+
+  void step(const double* y) override {
+    Saturation::advance_bounds(*gains_, clock_, clock_.t + 1);
+    sense_lanes({model_.A().data(), rows_.data(), outputs_.data(), first_output_.data(), y, x_.data(),
+                 model_.agents(), clock_.beta},
+                model_.states());
+    plan_.run(x_.data(), scratch_.data(), model_.states() * kLanes, gains_->alpha, gains_->omega, gains_->rounds);
+    publish();
+  }
+  const double* estimates() const override { return public_.data(); }
+
+ private:
+  double& at(int k, int r, int lane) {
+    return x_[static_cast<std::size_t>((k * model_.states() + r) * kLanes + lane)];
+  }
+  void publish() {
+    const auto record = static_cast<std::size_t>(model_.states() * kLanes);
+    for (std::size_t k = 0; k < outputs_.size(); ++k)
+      std::copy_n(x_.data() + k * record, record,
+                  public_.data() + static_cast<std::size_t>(plan_.order()[k]) * record);
+  }
+
+  std::shared_ptr<const Saturation::Gains> gains_;
+  Model model_;
+  ConsensusPlan plan_;
+  Saturation::State<1> clock_;  // carries the threshold over time, which is the same for all agents and trials
+  std::vector<int> outputs_;
+  std::vector<int> first_output_;
+  std::vector<double> rows_;
+  std::vector<double> x_;
+  std::vector<double> scratch_;
+  std::vector<double> public_;
+};
+
+}  // namespace
+
+std::unique_ptr<LaneRunner> Saturation::lanes(std::shared_ptr<const Gains> gains, const Model& model,
+                                              const Network& network) {
+  if (gains->detector || model.states() > 8) return nullptr;
+  return std::make_unique<SaturationLanes>(std::move(gains), model, network);
+}
+
+}  // namespace garrison

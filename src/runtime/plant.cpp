@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plant.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace garrison::detail {
+namespace {
+
+/// Symmetric square root, which exists for singular covariances too.
+Matrix root(const Matrix& covariance) {
+  if (covariance.rows() == 0) return covariance;
+  return Eigen::SelfAdjointEigenSolver<Matrix>(covariance).operatorSqrt();
+}
+
+class Simulated final : public Source {
+ public:
+  Simulated(const Model& model, const NoiseLaw& law, const PlantOptions& plant, std::uint64_t seed, std::uint32_t trial)
+      : model_(model),
+        law_(law),
+        start_(seed, trial, Purpose::start),
+        process_(seed, trial, Purpose::process),
+        measurement_(seed, trial, Purpose::measurement),
+        start_error_(plant.start_error),
+        C_(model.stacked()),
+        x_(plant.x0.size() == 0 ? Vector::Zero(model.states()) : plant.x0),
+        w_(Vector::Zero(model.states())),
+        next_(model.states()) {}
+
+  Vector start_shift() const override {
+    Vector shift(model_.states());
+    ball(start_, 0, 0, start_error_, false, shift);
+    return shift;
+  }
+  const double* truth() const override { return x_.data(); }
+  void next(std::int64_t t, std::span<double> y) override {
+    law_.process(process_, t - 1, w_);
+    next_.noalias() = model_.A() * x_;
+    x_ = next_ + w_;
+    Eigen::Map<Vector>(y.data(), static_cast<Eigen::Index>(y.size())).noalias() = C_ * x_;
+    law_.measurement(measurement_, t, y);
+  }
+
+ private:
+  const Model& model_;
+  const NoiseLaw& law_;
+  Random start_;
+  Random process_;
+  Random measurement_;
+  double start_error_;
+  Matrix C_;
+  Vector x_;
+  Vector w_;
+  Vector next_;
+};
+
+class Recorded final : public Source {
+ public:
+  Recorded(const Model& model, const MatrixRef& measurements, const MatrixRef& truth)
+      : measurements_(measurements), truth_(truth), states_(model.states()), x_(model.states()) {
+    if (truth_.size() != 0) x_ = truth_.row(0).transpose();
+  }
+  Vector start_shift() const override { return Vector::Zero(states_); }
+  const double* truth() const override { return truth_.size() == 0 ? nullptr : x_.data(); }
+  void next(std::int64_t t, std::span<double> y) override {
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] = measurements_(t - 1, static_cast<Eigen::Index>(k));
+    if (truth_.size() != 0) x_ = truth_.row(t).transpose();
+  }
+
+ private:
+  const MatrixRef& measurements_;
+  const MatrixRef& truth_;
+  int states_;
+  Vector x_;
+};
+
+}  // namespace
+
+void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radius, bool on_sphere, Vector& out) {
+  for (Eigen::Index k = 0; k < out.size(); ++k) out(k) = random.normal(t, agent, static_cast<std::uint32_t>(k));
+  const double length = out.norm();
+  const double u = random.uniform(t, agent, static_cast<std::uint32_t>(out.size()));
+  const double share = on_sphere ? 1.0 : std::pow(u, 1.0 / static_cast<double>(out.size()));
+  // A hair below the bound, so that rounding cannot break the assumption that the bound states.
+  out *= length > 0.0 ? radius * share * (1.0 - 1e-12) / length : 0.0;
+}
+
+NoiseLaw::NoiseLaw(const std::string& law, const Model& model) : model_(model) {
+  const Noise& noise = model.noise();
+  const bool bounds_w = !std::isnan(noise.process_bound);
+  const bool bounds_v = noise.measurement_bound.size() != 0;
+  const bool covariance_w = noise.process_covariance.size() != 0;
+  const bool covariance_v = !noise.measurement_covariance.empty();
+  if (law == "auto") {
+    process_ = bounds_w ? Kind::uniform : covariance_w ? Kind::normal : Kind::none;
+    measurement_ = bounds_v ? Kind::uniform : covariance_v ? Kind::normal : Kind::none;
+  } else if (law == "uniform" || law == "extreme") {
+    if (!bounds_w || !bounds_v)
+      refuse("noise", "\"" + law + "\"", "a model with process_bound and measurement_bound", "give both bounds");
+    process_ = measurement_ = law == "uniform" ? Kind::uniform : Kind::extreme;
+  } else if (law == "normal") {
+    if (!covariance_w || !covariance_v)
+      refuse("noise", "\"normal\"", "a model with both covariances", "give process and measurement covariance");
+    process_ = measurement_ = Kind::normal;
+  } else if (law != "none") {
+    refuse("noise", "\"" + law + "\"", "one of: auto, uniform, extreme, normal, none");
+  }
+  if (process_ == Kind::normal) process_root_ = root(noise.process_covariance);
+  if (measurement_ == Kind::normal)
+    for (const Matrix& covariance : noise.measurement_covariance) measurement_roots_.push_back(root(covariance));
+}
+
+void NoiseLaw::process(const Random& random, std::int64_t t, Vector& w) const {
+  if (process_ == Kind::none) return w.setZero(), void();
+  if (process_ != Kind::normal)
+    return ball(random, t, 0, model_.noise().process_bound, process_ == Kind::extreme, w);
+  Vector z(w.size());
+  for (Eigen::Index k = 0; k < z.size(); ++k) z(k) = random.normal(t, 0, static_cast<std::uint32_t>(k));
+  w.noalias() = process_root_ * z;
+}
+
+void NoiseLaw::measurement(const Random& random, std::int64_t t, std::span<double> y) const {
+  if (measurement_ == Kind::none) return;
+  for (int i = 0; i < model_.agents(); ++i) {
+    const auto agent = static_cast<std::uint32_t>(i);
+    const int rows = model_.outputs(i);
+    double* own = y.data() + model_.offset(i);
+    if (measurement_ == Kind::normal) {
+      const Matrix& S = measurement_roots_[static_cast<std::size_t>(i)];
+      for (int c = 0; c < rows; ++c) {
+        const double z = random.normal(t, agent, static_cast<std::uint32_t>(c));
+        for (int r = 0; r < rows; ++r) own[r] += S(r, c) * z;
+      }
+      continue;
+    }
+    const double b = model_.noise().measurement_bound(i) * (1.0 - 1e-12);
+    for (int r = 0; r < rows; ++r) {
+      const double u = 2.0 * random.uniform(t, agent, static_cast<std::uint32_t>(r)) - 1.0;
+      own[r] += measurement_ == Kind::extreme ? std::copysign(b, u) : b * u;
+    }
+  }
+}
+
+std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law, const PlantOptions& plant,
+                                         std::uint64_t seed, std::uint32_t trial) {
+  return std::make_unique<Simulated>(model, law, plant, seed, trial);
+}
+
+std::unique_ptr<Source> recorded_source(const Model& model, const MatrixRef& measurements, const MatrixRef& truth) {
+  return std::make_unique<Recorded>(model, measurements, truth);
+}
+
+}  // namespace garrison::detail

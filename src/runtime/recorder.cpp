@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace garrison::detail {
+
+Recorder::Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known,
+                   const RunOptions& options)
+    : keep_(options.keep), outputs_(static_cast<std::size_t>(model.total_outputs())) {
+  Record& r = record_;
+  r.trials = options.trials;
+  r.steps = steps;
+  r.agents = model.agents();
+  r.states = model.states();
+  const auto trials = static_cast<std::size_t>(r.trials);
+  const auto rows = trials * static_cast<std::size_t>(steps + 1);
+  const auto N = static_cast<std::size_t>(r.agents);
+  const auto n = static_cast<std::size_t>(r.states);
+  if (truth_known) {
+    r.truth.resize(rows * n);
+    r.error.resize(rows * N);
+  }
+  if (keep_.measurements) r.measurements.resize(trials * static_cast<std::size_t>(steps) * outputs_);
+  if (keep_.estimate)
+    r.estimate.resize(rows * N * n);
+  else
+    estimates_.assign(trials, std::vector<double>(N * n));
+  if (keep_.report) {
+    r.bound.resize(rows * N);
+    r.statistic.resize(rows * N);
+    r.threshold.resize(rows * N);
+    r.verdict.resize(rows * N);
+  }
+  if (keep_.signals) {
+    r.signal_names = filter.signal_names();
+    r.signals.resize(rows * N * r.signal_names.size());
+  }
+  last_.resize(trials);
+}
+
+std::size_t Recorder::row(int trial, int t) const {
+  return static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps + 1) + static_cast<std::size_t>(t);
+}
+
+void Recorder::errors(std::size_t row, const double* estimate, const double* truth) {
+  const auto n = static_cast<std::size_t>(record_.states);
+  const auto N = static_cast<std::size_t>(record_.agents);
+  std::copy_n(truth, n, record_.truth.data() + row * n);
+  for (std::size_t i = 0; i < N; ++i) {
+    double square = 0.0;
+    for (std::size_t k = 0; k < n; ++k) square += (estimate[i * n + k] - truth[k]) * (estimate[i * n + k] - truth[k]);
+    record_.error[row * N + i] = std::sqrt(square);
+  }
+}
+
+void Recorder::count(int trial, int t, std::span<const double> y) {
+  std::int64_t missing = 0;
+  std::int64_t nonfinite = 0;
+  for (const double v : y) {
+    missing += std::isnan(v) ? 1 : 0;
+    nonfinite += std::abs(v) >= kHuge ? 1 : 0;
+  }
+  if (missing + nonfinite > 0) {
+    const std::lock_guard lock(mutex_);
+    record_.missing += missing;
+    record_.nonfinite += nonfinite;
+  }
+  if (!keep_.measurements) return;
+  const auto at = static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps) + static_cast<std::size_t>(t - 1);
+  std::copy(y.begin(), y.end(), record_.measurements.begin() + static_cast<std::ptrdiff_t>(at * outputs_));
+}
+
+void Recorder::take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y) {
+  const std::size_t at = row(trial, t);
+  const auto N = static_cast<std::size_t>(record_.agents);
+  const auto n = static_cast<std::size_t>(record_.states);
+  Frame frame;
+  frame.estimate = keep_.estimate ? record_.estimate.data() + at * N * n
+                                  : estimates_[static_cast<std::size_t>(trial)].data();
+  if (keep_.report) {
+    frame.bound = record_.bound.data() + at * N;
+    frame.statistic = record_.statistic.data() + at * N;
+    frame.threshold = record_.threshold.data() + at * N;
+    frame.verdict = record_.verdict.data() + at * N;
+  }
+  if (keep_.signals) frame.signals = record_.signals.data() + at * N * record_.signal_names.size();
+  runner.read(frame);
+  if (truth != nullptr) errors(at, frame.estimate, truth);
+  if (keep_.report) accusations(trial, t, runner);
+  if (t > 0) count(trial, t, y);
+}
+
+void Recorder::take_lane(int trial, int t, const LaneRunner& runner, int lane, const double* truth,
+                         std::span<const double>) {
+  const std::size_t at = row(trial, t);
+  const auto size = static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
+  double* out = keep_.estimate ? record_.estimate.data() + at * size : estimates_[static_cast<std::size_t>(trial)].data();
+  const double* all = runner.estimates();
+  for (std::size_t k = 0; k < size; ++k) out[k] = all[k * kLanes + static_cast<std::size_t>(lane)];
+  if (truth != nullptr) errors(at, out, truth);
+}
+
+void Recorder::accusations(int trial, int t, const Runner& runner) {
+  if (runner.accused(0).empty()) return;
+  auto& last = last_[static_cast<std::size_t>(trial)];
+  const auto N = static_cast<std::size_t>(record_.agents);
+  bool changed = last.empty();
+  last.resize(N);
+  for (std::size_t i = 0; i < N; ++i) {
+    const AgentSet& now = runner.accused(static_cast<int>(i));
+    if (!(last[i] == now)) {
+      last[i] = now;
+      changed = true;
+    }
+  }
+  if (!changed) return;
+  Record::Accusation entry{trial, t, {}};
+  for (const AgentSet& set : last) {
+    auto& ids = entry.sets.emplace_back();
+    for (int id = 0; id < record_.agents; ++id)
+      if (set.contains(id)) ids.push_back(id);
+  }
+  const std::lock_guard lock(mutex_);
+  record_.accusations.push_back(std::move(entry));
+}
+
+void Recorder::finish(const LinkCounters& link, std::int64_t overflows) {
+  const std::lock_guard lock(mutex_);
+  record_.link += link;
+  record_.overflows += overflows;
+}
+
+Record Recorder::release() {
+  // Threads finish trials in any order; the record must not depend on it.
+  std::sort(record_.accusations.begin(), record_.accusations.end(),
+            [](const auto& a, const auto& b) { return std::tie(a.trial, a.time) < std::tie(b.trial, b.time); });
+  return std::move(record_);
+}
+
+}  // namespace garrison::detail

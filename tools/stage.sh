@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# tools/stage.sh NAME COMMAND...: runs the command, prints one line; on failure shows the end of its log.
+set -uo pipefail
+name=$1
+shift
+cd "$(dirname "$0")/.."
+mkdir -p build/log
+log=build/log/${name//[^[:alnum:]]/-}.log
+printf '== %s ... ' "$name"
+start=$SECONDS
+if "$@" >"$log" 2>&1; then
+  echo "done ($((SECONDS - start)) s)"
+else
+  code=$?
+  echo "FAILED"
+  tail -n 60 "$log"
+  echo "The whole log: $log" >&2
+  exit "$code"
+fi
