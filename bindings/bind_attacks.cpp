@@ -10,6 +10,9 @@ void bind_attacks(py::module_& m) {
       .def_property_readonly("agents", [](const AnyAttack& a) {
         return (a.message ? a.message->schedule() : a.measurement->schedule()).everyone();
       }, "Every agent that is attacked at some time.")
+      .def_property_readonly("start", [](const AnyAttack& a) {
+        return (a.message ? a.message->schedule() : a.measurement->schedule()).first();
+      }, "First sample that may be attacked.")
       .def("__repr__", [](const AnyAttack& a) { return "Attack(" + a.name + ")"; });
 
   m.def("make_attack", [](const std::string& name, const std::vector<std::pair<std::int64_t, std::vector<int>>>& schedule,

@@ -3,6 +3,7 @@
 #include "bindings.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
+#include "garrison/core/split_outputs.hpp"
 
 using namespace garrison;
 
@@ -207,6 +208,11 @@ void bind_core(py::module_& m) {
         return "Network(agents=" + std::to_string(net.agents()) + ", edges=" + std::to_string(net.edges().size()) +
                (net.directed() ? ", directed)" : ")");
       });
+  m.def("split_outputs", [](const Model& model, const Network& network) {
+    auto split = split_outputs(model, network);
+    return py::make_tuple(std::move(split.model), std::move(split.network), std::move(split.owner));
+  }, py::arg("model"), py::arg("network"),
+        "(model, network, owner) with an agent per output: m agents that hear each other for one with m outputs.");
   m.def("nearest_name", [](const std::string& unknown, const std::vector<std::string>& known) {
     return nearest_name(unknown, known);
   }, py::arg("unknown"), py::arg("known"), "The known name closest to `unknown`, or an empty text.");

@@ -89,7 +89,8 @@ void bind_filters(py::module_& m) {
     py::list conditions;
     for (const auto& c : check.conditions)
       conditions.append(py::dict(py::arg("name") = c.name, py::arg("value") = c.value, py::arg("needed") = c.needed,
-                                 py::arg("holds") = c.holds, py::arg("meaning") = c.meaning));
+                                 py::arg("holds") = c.holds, py::arg("meaning") = c.meaning,
+                                 py::arg("required") = c.required));
     py::list quantities;
     for (const auto& q : check.quantities)
       quantities.append(py::dict(py::arg("name") = q.name, py::arg("value") = q.value, py::arg("meaning") = q.meaning));

@@ -81,7 +81,7 @@ if ! fresh "$stamp" "$wanted"; then
 fi
 
 sources=$(find CMakeLists.txt VERSION pyproject.toml README.md cmake include src bindings python -type f \
-  ! -name '*.pyc' -print0 | LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
+  ! -name '*.pyc' ! -name '*.so' -print0 | LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
 stamp=.venv/stamp-garrison
 if ! fresh "$stamp" "$sources"; then
   tools/stage.sh "build and install garrison" "${pip[@]}" --no-build-isolation --no-deps \

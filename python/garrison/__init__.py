@@ -21,6 +21,7 @@ from garrison._core import (
     one_step_sparse_observable,
     s_sparse_observable,
     saturation,
+    split_outputs,
 )
 from garrison.checks import Check, check
 from garrison.fitting import Fit, fit
@@ -52,4 +53,5 @@ __all__ = [
     "s_sparse_observable",
     "saturation",
     "simulate",
+    "split_outputs",
 ]

@@ -10,7 +10,8 @@ from garrison import _core
 class Check:
     """What `check` found. A condition that fails is data, not an error.
 
-    conditions: dicts with name, value, needed, holds, meaning. quantities: dicts with name, value (nan = does
+    conditions: dicts with name, value, needed, holds, meaning, required (False: it only
+    sharpens the result). quantities: dicts with name, value (nan = does
     not exist), meaning.
     """
 
@@ -19,8 +20,8 @@ class Check:
 
     @property
     def holds(self) -> bool:
-        """All conditions hold."""
-        return all(c["holds"] for c in self.conditions)
+        """All required conditions hold."""
+        return all(c["holds"] for c in self.conditions if c["required"])
 
     def __getitem__(self, name: str) -> float:
         """Value of the condition or quantity `name`."""
@@ -33,11 +34,16 @@ class Check:
     def __str__(self) -> str:
         width = max(len(e["name"]) for e in [*self.conditions, *self.quantities])
         lines = [
-            f"{'holds' if c['holds'] else 'FAILS':5}  {c['name']:{width}}  {c['value']:<12.6g} needs {c['needed']}"
+            f"{verdict(c):5}  {c['name']:{width}}  {c['value']:<12.6g} needs {c['needed']}"
             for c in self.conditions
         ]
         lines += [f"{'':5}  {q['name']:{width}}  {q['value']:<12.6g} {q['meaning']}" for q in self.quantities]
         return "\n".join(lines)
+
+
+def verdict(condition: dict[str, Any]) -> str:
+    """One word for people: holds, FAILS, or no (a condition that is not required)."""
+    return "holds" if condition["holds"] else "FAILS" if condition["required"] else "no"
 
 
 def check(filter: _core.Filter, model: _core.Model, network: _core.Network) -> Check:

@@ -32,6 +32,8 @@ class GARRISON_EXPORT Schedule {
   std::int64_t since(std::int64_t t) const;
   /// Chance decides for (t, agent); `random` and `salt` belong to one attack of one trial.
   bool strikes(const Random& random, std::int64_t t, int agent, std::uint32_t salt) const;
+  /// Start of the first phase.
+  std::int64_t first() const { return phases_.front().start; }
   /// Every agent that occurs in some phase, sorted.
   std::vector<int> everyone() const;
   /// Refuses an agent id that the network does not have.

@@ -16,6 +16,7 @@ struct Condition {
   std::string needed;
   bool holds;
   std::string meaning;  ///< one line for people
+  bool required = true;  ///< false: only sharpens the result, the main promise does not need it
 };
 
 /// One number that the analysis gives; NaN = does not exist here, `meaning` says why.
@@ -29,9 +30,10 @@ struct Quantity {
 struct Check {
   std::vector<Condition> conditions;
   std::vector<Quantity> quantities;  ///< constants and bounds
+  /// All required conditions hold.
   bool holds() const {
     for (const auto& c : conditions)
-      if (!c.holds) return false;
+      if (c.required && !c.holds) return false;
     return true;
   }
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `garrison check` for the saturation filter: each condition with its value, and the bounds that follow.
+#include <algorithm>
 #include <cmath>
 
 #include "facts.hpp"
@@ -30,9 +31,9 @@ void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_valu
   c.conditions.push_back({"eta0 (1 - F(eta0)) >= q0 (9)", k.cond9_margin, ">= 0", k.cond9,
                           "the error stays bounded by theorem 1"});
   c.conditions.push_back({"(beta - b_w - b_v)/a > rho_1 + p0 (12)", bounds.cond12_margin, "> 0", bounds.cond12,
-                          "honest measurements are never saturated from t = 2 on (theorem 3)"});
+                          "honest measurements are never saturated from t = 2 on (theorem 3)", false});
   c.conditions.push_back({"spectral radius of G < 1 (theorem 5)", g.spectral_radius, "< 1", g.spectral_radius < 1.0,
-                          "without noise the errors vanish once all attackers are proved"});
+                          "without noise the errors vanish once all attackers are proved", false});
   c.quantities.push_back({"p0", k.p0, "limit of the disagreement bound (8)"});
   c.quantities.push_back({"q0", k.q0, "what noise, disagreement and attack add per step (8)"});
   c.quantities.push_back({"rho_lo", points.lo, "limit of the mean error bound (7)"});
@@ -56,9 +57,10 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   c.quantities.push_back({"alpha", rates.alpha, "consensus step"});
   c.quantities.push_back({"gamma", rates.gamma, "contraction of one plain round (8)"});
   c.quantities.push_back({"contraction", rates.contraction, "of the disagreement by all rounds of a sample"});
+  const bool bound_asked = !std::isnan(p.initial_error);
   const bool unit = scalar_unit_rows(model);
   c.conditions.push_back({"one output of unit length per agent", unit ? 1.0 : 0.0, "= 1", unit,
-                          "assumption of all bounds; see normalise_rows and split_outputs"});
+                          "assumption of all bounds; see normalise_rows and split_outputs", bound_asked});
   if (!unit || p.attacked > model.agents()) return c;
   const auto facts = saturation::detail::facts(model, p.attacked, true);
   const Matrix C = saturation::detail::sensor_rows(model);
@@ -70,11 +72,12 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   Setting setting = saturation::detail::setting(p, model, facts, rates);
   const double growth = facts.a * rates.contraction;
   c.conditions.push_back({"lambda_0 > s (11)", facts.lambda0.lower, above(s), condition11(setting),
-                          "some threshold and rounds work for ||A|| near 1 (theorem 2)"});
-  const double a_max = normA_max_exact(setting);
-  c.conditions.push_back({"||A|| < N/(N - lambda_0 + s)", facts.a, "< " + text(a_max), facts.a < a_max,
-                          "some threshold, initial error and rounds satisfy (9) (our notes, exact)"});
-  c.conditions.push_back({"||A|| gamma^L < 1", growth, "< 1", growth < 1.0, "the disagreement stays bounded"});
+                          "some threshold and rounds work for ||A|| near 1 (theorem 2)", false});
+  // With lambda_0 < s a plant that contracts (a < 1) always has some small threshold with (9).
+  const double a_max = std::max(1.0, normA_max_exact(setting));
+  c.conditions.push_back({"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max), facts.a < a_max,
+                          "some threshold, initial error and rounds satisfy (9) (our notes, exact)", false});
+  c.conditions.push_back({"||A|| gamma^L < 1", growth, "< 1", growth < 1.0, "the disagreement stays bounded", bound_asked});
   const auto least = minimal_rounds(setting, p.chebyshev ? std::function<double(int)>([&](int L) {
                                       return chebyshev_contraction(rates.gamma, L);
                                     })
