@@ -24,7 +24,8 @@ std::vector<Matrix> rows_per_agent(const py::object& given, Eigen::Index n) {
       refuse(which, std::to_string(array.ndim()) + " dimensions", "one row, or rows x " + std::to_string(n));
     const auto rows = array.size() == 0 ? 0 : array.ndim() == 1 ? 1 : array.shape(0);
     const auto cols = array.size() == 0 ? n : array.shape(array.ndim() - 1);
-    C.emplace_back(Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(array.data(), rows, cols));
+    C.emplace_back(
+        Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(array.data(), rows, cols));
   }
   return C;
 }
@@ -40,8 +41,9 @@ Vector bound_per_agent(const py::object& given, std::size_t agents) {
   return Eigen::Map<const Vector>(array.data(), array.size());
 }
 
-Model make_model(const Matrix& A, const py::object& C, double process_bound, const py::object& measurement_bound,
-                 const std::optional<Matrix>& process_covariance, const std::optional<py::object>& measurement_covariance) {
+Model make_model(const Matrix& A, const py::object& C, double process_bound,
+                 const py::object& measurement_bound, const std::optional<Matrix>& process_covariance,
+                 const std::optional<py::object>& measurement_covariance) {
   std::vector<Matrix> rows = rows_per_agent(C, A.cols());
   Noise noise;
   noise.process_bound = process_bound;
@@ -54,7 +56,8 @@ Model make_model(const Matrix& A, const py::object& C, double process_bound, con
       const auto rows_of_it = array.ndim() == 2 ? array.shape(0) : array.size() == 0 ? 0 : 1;
       const auto columns = array.ndim() == 2 ? array.shape(1) : array.size() == 0 ? 0 : array.size();
       noise.measurement_covariance.emplace_back(
-          Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(array.data(), rows_of_it, columns));
+          Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(array.data(), rows_of_it,
+                                                                           columns));
     }
   }
   return {A, std::move(rows), std::move(noise)};
@@ -145,75 +148,106 @@ py::list from_infos(const std::vector<ParamInfo>& infos) {
 
 void bind_core(py::module_& m) {
   auto& error = py::register_exception<Error>(m, "Error");
-  py::register_exception<InvalidInput>(m, "InvalidInput", py::make_tuple(error, py::handle(PyExc_ValueError)));
-  py::register_exception<DesignInfeasible>(m, "DesignInfeasible", py::make_tuple(error, py::handle(PyExc_ValueError)));
+  py::register_exception<InvalidInput>(m, "InvalidInput",
+                                       py::make_tuple(error, py::handle(PyExc_ValueError)));
+  py::register_exception<DesignInfeasible>(m, "DesignInfeasible",
+                                           py::make_tuple(error, py::handle(PyExc_ValueError)));
   py::register_exception<IoError>(m, "IoError", py::make_tuple(error, py::handle(PyExc_OSError)));
 
-  py::class_<Model>(m, "Model",
-                    "The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.\n\n"
-                    "A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.\n"
-                    "process_bound: ||w|| <= it, >= 0, nan = not known. measurement_bound: |v_i| <= it, a number or\n"
-                    "one per agent. Covariances: (n, n), and one (m_i, m_i) array per agent.\n"
-                    "Raises InvalidInput when shapes do not fit or a number is not finite.")
+  py::class_<Model>(
+      m, "Model",
+      "The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.\n\n"
+      "A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.\n"
+      "process_bound: ||w|| <= it, >= 0, nan = not known. measurement_bound: |v_i| <= it, a number or\n"
+      "one per agent. Covariances: (n, n), and one (m_i, m_i) array per agent.\n"
+      "Raises InvalidInput when shapes do not fit or a number is not finite.")
       .def(py::init(&make_model), py::arg("A"), py::arg("C"), py::kw_only(), py::arg("process_bound") = kNaN,
            py::arg("measurement_bound") = py::none(), py::arg("process_covariance") = py::none(),
            py::arg("measurement_covariance") = py::none())
       .def_property_readonly("A", &Model::A, "(n, n)")
-      .def_property_readonly("C", [](const Model& model) {
-        std::vector<Matrix> all;
-        for (int i = 0; i < model.agents(); ++i) all.push_back(model.C(i));
-        return all;
-      }, "One (m_i, n) array per agent.")
+      .def_property_readonly(
+          "C",
+          [](const Model& model) {
+            std::vector<Matrix> all;
+            for (int i = 0; i < model.agents(); ++i) all.push_back(model.C(i));
+            return all;
+          },
+          "One (m_i, n) array per agent.")
       .def_property_readonly("states", &Model::states, "n")
       .def_property_readonly("agents", &Model::agents, "N")
-      .def_property_readonly("outputs", &Model::total_outputs, "Scalar measurements per sample of the whole network.")
+      .def_property_readonly("outputs", &Model::total_outputs,
+                             "Scalar measurements per sample of the whole network.")
       .def_property_readonly("process_bound", [](const Model& model) { return model.noise().process_bound; })
-      .def_property_readonly("measurement_bound", [](const Model& model) { return model.noise().measurement_bound; })
+      .def_property_readonly("measurement_bound",
+                             [](const Model& model) { return model.noise().measurement_bound; })
       .def("__repr__", [](const Model& model) {
-        return "Model(states=" + std::to_string(model.states()) + ", agents=" + std::to_string(model.agents()) +
+        return "Model(states=" + std::to_string(model.states()) +
+               ", agents=" + std::to_string(model.agents()) +
                ", outputs=" + std::to_string(model.total_outputs()) + ")";
       });
 
-  py::class_<Network>(m, "Network",
-                      "Who hears whom. Immutable.\n\nedges: (sender, receiver) pairs, a networkx graph, or a sparse\n"
-                      "matrix whose entry (i, j) says that i hears j. agents: needed when the last ones have no edge.\n"
-                      "Pairs given twice count once. Raises InvalidInput on a self-loop or an index out of range.")
-      .def(py::init(&make_network), py::arg("edges"), py::arg("agents") = py::none(), py::arg("directed") = false)
+  py::class_<Network>(
+      m, "Network",
+      "Who hears whom. Immutable.\n\nedges: (sender, receiver) pairs, a networkx graph, or a sparse\n"
+      "matrix whose entry (i, j) says that i hears j. agents: needed when the last ones have no edge.\n"
+      "Pairs given twice count once. Raises InvalidInput on a self-loop or an index out of range.")
+      .def(py::init(&make_network), py::arg("edges"), py::arg("agents") = py::none(),
+           py::arg("directed") = false)
       .def_property_readonly("agents", &Network::agents)
       .def_property_readonly("directed", &Network::directed)
       .def_property_readonly("edges", &Network::edges)
       .def_property_readonly("connected", &Network::connected)
-      .def("neighbours", [](const Network& net, int i) {
-        if (i < 0 || i >= net.agents()) refuse("agent", std::to_string(i), "0.." + std::to_string(net.agents() - 1));
-        return std::vector<int>(net.neighbours(i).begin(), net.neighbours(i).end());
-      }, py::arg("agent"), "Sorted ids of the agents that `agent` hears.")
-      .def("laplacian_spectrum", [](const Network& net) {
-        const auto spectrum = net.laplacian_spectrum();
-        return std::pair(spectrum.lambda2, spectrum.lambda_max);
-      }, "(lambda_2, lambda_max) of the Laplacian; undirected networks only.")
+      .def(
+          "neighbours",
+          [](const Network& net, int i) {
+            if (i < 0 || i >= net.agents())
+              refuse("agent", std::to_string(i), "0.." + std::to_string(net.agents() - 1));
+            return std::vector<int>(net.neighbours(i).begin(), net.neighbours(i).end());
+          },
+          py::arg("agent"), "Sorted ids of the agents that `agent` hears.")
+      .def(
+          "laplacian_spectrum",
+          [](const Network& net) {
+            const auto spectrum = net.laplacian_spectrum();
+            return std::pair(spectrum.lambda2, spectrum.lambda_max);
+          },
+          "(lambda_2, lambda_max) of the Laplacian; undirected networks only.")
       .def("laplacian", &Network::laplacian)
       .def("laplacian_weights", &Network::laplacian_weights, py::arg("step"), "I - step * Laplacian")
-      .def("metropolis_weights", &Network::metropolis_weights, "Doubly stochastic (N, N) weights; undirected only.")
+      .def("metropolis_weights", &Network::metropolis_weights,
+           "Doubly stochastic (N, N) weights; undirected only.")
       .def("max_degree_weights", &Network::max_degree_weights, "I - Laplacian / (1 + largest degree)")
       .def_static("ring", &Network::ring, py::arg("agents"))
       .def_static("path", &Network::path, py::arg("agents"))
       .def_static("star", &Network::star, py::arg("agents"))
       .def_static("complete", &Network::complete, py::arg("agents"))
       .def_static("grid", &Network::grid, py::arg("rows"), py::arg("columns"))
-      .def_static("random_geometric", [](int agents, double radius, std::uint64_t seed) {
-        return Network::random_geometric(agents, radius, seed);
-      }, py::arg("agents"), py::arg("radius"), py::arg("seed") = 0, "Points uniform in the unit square, edges below `radius`.")
-      .def_static("erdos_renyi", &Network::erdos_renyi, py::arg("agents"), py::arg("probability"), py::arg("seed") = 0)
+      .def_static(
+          "random_geometric",
+          [](int agents, double radius, std::uint64_t seed) {
+            return Network::random_geometric(agents, radius, seed);
+          },
+          py::arg("agents"), py::arg("radius"), py::arg("seed") = 0,
+          "Points uniform in the unit square, edges below `radius`.")
+      .def_static("erdos_renyi", &Network::erdos_renyi, py::arg("agents"), py::arg("probability"),
+                  py::arg("seed") = 0)
       .def("__repr__", [](const Network& net) {
-        return "Network(agents=" + std::to_string(net.agents()) + ", edges=" + std::to_string(net.edges().size()) +
-               (net.directed() ? ", directed)" : ")");
+        return "Network(agents=" + std::to_string(net.agents()) +
+               ", edges=" + std::to_string(net.edges().size()) + (net.directed() ? ", directed)" : ")");
       });
-  m.def("split_outputs", [](const Model& model, const Network& network) {
-    auto split = split_outputs(model, network);
-    return py::make_tuple(std::move(split.model), std::move(split.network), std::move(split.owner));
-  }, py::arg("model"), py::arg("network"),
-        "(model, network, owner) with an agent per output: m agents that hear each other for one with m outputs.");
-  m.def("nearest_name", [](const std::string& unknown, const std::vector<std::string>& known) {
-    return nearest_name(unknown, known);
-  }, py::arg("unknown"), py::arg("known"), "The known name closest to `unknown`, or an empty text.");
+  m.def(
+      "split_outputs",
+      [](const Model& model, const Network& network) {
+        auto split = split_outputs(model, network);
+        return py::make_tuple(std::move(split.model), std::move(split.network), std::move(split.owner));
+      },
+      py::arg("model"), py::arg("network"),
+      "(model, network, owner) with an agent per output: m agents that hear each other for one with m "
+      "outputs.");
+  m.def(
+      "nearest_name",
+      [](const std::string& unknown, const std::vector<std::string>& known) {
+        return nearest_name(unknown, known);
+      },
+      py::arg("unknown"), py::arg("known"), "The known name closest to `unknown`, or an empty text.");
 }

@@ -22,7 +22,8 @@ template <class F>
 std::string class_doc() {
   std::string doc = std::string(F::title) + ".\n\nSource: " + std::string(F::source) + "\n\n";
   for (const ParamInfo& info : describe<typename F::Params>())
-    doc += info.name + ": " + info.doc + (info.unit.empty() ? "" : " [" + info.unit + "]") + number_range(info) + "\n";
+    doc += info.name + ": " + info.doc + (info.unit.empty() ? "" : " [" + info.unit + "]") +
+           number_range(info) + "\n";
   return doc;
 }
 
@@ -42,13 +43,16 @@ void bind_filter(py::module_& m, const char* name, const std::tuple<Field<typena
              handle.filter = make_filter(std::string(F::name), values(p));
              return handle;
            }),
-           py::kw_only(), (py::arg(std::get<I>(fields).info.name.c_str()) = typename F::Params{}.*(std::get<I>(fields).member))...);
+           py::kw_only(),
+           (py::arg(std::get<I>(fields).info.name.c_str()) =
+                typename F::Params{}.*(std::get<I>(fields).member))...);
 }
 
 template <class F>
 void bind_family(py::module_& m, const char* name) {
   static const auto fields = F::Params::fields();
-  bind_filter<F>(m, name, fields, std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(fields)>>>());
+  bind_filter<F>(m, name, fields,
+                 std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(fields)>>>());
 }
 
 }  // namespace
@@ -57,8 +61,9 @@ void bind_filters(py::module_& m) {
   py::class_<FilterHandle>(m, "Filter", "A filter family with its parameters.")
       .def_property_readonly("name", [](const FilterHandle& f) { return f.filter->name(); })
       .def_property_readonly("params", [](const FilterHandle& f) { return from_params(f.filter->params()); })
-      .def_property_readonly("signal_names", [](const FilterHandle& f) { return f.filter->signal_names(); },
-                             "Names of the signals that a run can keep.")
+      .def_property_readonly(
+          "signal_names", [](const FilterHandle& f) { return f.filter->signal_names(); },
+          "Names of the signals that a run can keep.")
       .def("__repr__", [](const FilterHandle& f) {
         return f.filter->name() + py::repr(from_params(f.filter->params())).cast<std::string>();
       });
@@ -66,35 +71,49 @@ void bind_filters(py::module_& m) {
   bind_family<ScalarGain>(m, "ScalarGain");
   bind_family<Lfre>(m, "Lfre");
 
-  m.def("lfre_parents", [](const FilterHandle& f, const Model& model, const Network& network) {
-    return Lfre::design(parse_params<Lfre::Params>("lfre", f.filter->params()), model, network).parents;
-  }, py::arg("filter"), py::arg("model"), py::arg("network"), "Parents of every agent in an Lfre filter.");
-  m.def("make_filter", [](const std::string& name, const py::dict& params) {
-    return FilterHandle{make_filter(name, to_params(params))};
-  }, py::arg("name"), py::arg("params"), "The filter `name`; unknown names are refused with the nearest one.");
-  m.def("filter_infos", [] {
-    py::list all;
-    for (const FamilyInfo& family : families()) {
-      py::dict one;
-      one["name"] = family.name;
-      one["title"] = family.title;
-      one["source"] = family.source;
-      one["params"] = from_infos(family.params);
-      all.append(one);
-    }
-    return all;
-  }, "All families with the description of their parameters.");
-  m.def("check", [](const FilterHandle& f, const Model& model, const Network& network) {
-    const Check check = f.filter->check(model, network);
-    py::list conditions;
-    for (const auto& c : check.conditions)
-      conditions.append(py::dict(py::arg("name") = c.name, py::arg("value") = c.value, py::arg("needed") = c.needed,
-                                 py::arg("holds") = c.holds, py::arg("meaning") = c.meaning,
-                                 py::arg("required") = c.required));
-    py::list quantities;
-    for (const auto& q : check.quantities)
-      quantities.append(py::dict(py::arg("name") = q.name, py::arg("value") = q.value, py::arg("meaning") = q.meaning));
-    return py::make_tuple(conditions, quantities);
-  }, py::arg("filter"), py::arg("model"), py::arg("network"),
-        "Conditions and quantities of the family's theorems, as two lists of dicts.");
+  m.def(
+      "lfre_parents",
+      [](const FilterHandle& f, const Model& model, const Network& network) {
+        return Lfre::design(parse_params<Lfre::Params>("lfre", f.filter->params()), model, network).parents;
+      },
+      py::arg("filter"), py::arg("model"), py::arg("network"), "Parents of every agent in an Lfre filter.");
+  m.def(
+      "make_filter",
+      [](const std::string& name, const py::dict& params) {
+        return FilterHandle{make_filter(name, to_params(params))};
+      },
+      py::arg("name"), py::arg("params"),
+      "The filter `name`; unknown names are refused with the nearest one.");
+  m.def(
+      "filter_infos",
+      [] {
+        py::list all;
+        for (const FamilyInfo& family : families()) {
+          py::dict one;
+          one["name"] = family.name;
+          one["title"] = family.title;
+          one["source"] = family.source;
+          one["params"] = from_infos(family.params);
+          all.append(one);
+        }
+        return all;
+      },
+      "All families with the description of their parameters.");
+  m.def(
+      "check",
+      [](const FilterHandle& f, const Model& model, const Network& network) {
+        const Check check = f.filter->check(model, network);
+        py::list conditions;
+        for (const auto& c : check.conditions)
+          conditions.append(py::dict(py::arg("name") = c.name, py::arg("value") = c.value,
+                                     py::arg("needed") = c.needed, py::arg("holds") = c.holds,
+                                     py::arg("meaning") = c.meaning, py::arg("required") = c.required));
+        py::list quantities;
+        for (const auto& q : check.quantities)
+          quantities.append(
+              py::dict(py::arg("name") = q.name, py::arg("value") = q.value, py::arg("meaning") = q.meaning));
+        return py::make_tuple(conditions, quantities);
+      },
+      py::arg("filter"), py::arg("model"), py::arg("network"),
+      "Conditions and quantities of the family's theorems, as two lists of dicts.");
 }

@@ -18,18 +18,29 @@ void bind_fit(py::module_& m) {
       .def_readonly("measurement_variance", &Identified::measurement_variance, "(N,)")
       .def_readonly("process_bound", &Identified::process_bound)
       .def_readonly("measurement_bound", &Identified::measurement_bound, "(N,)")
-      .def("measurements", [](const Identified& i, const MatrixRef& raw, std::int64_t first) {
-        return measurements(i, raw, first);
-      }, py::arg("raw"), py::arg("first"), "Measurements (T, N) of other records under this model.")
-      .def("reference_states", [](const Identified& i, const MatrixRef& measured) { return reference_states(i, measured); },
-           py::arg("measured"), "Least-squares states (T, n) of clean measurements of the same time.");
-  m.def("identify", [](const MatrixRef& raw, std::int64_t first, int factors, int harmonics, double period, bool root,
-                       double factor) { return identify(raw, first, {factors, harmonics, period, root, factor}); },
-        py::arg("raw"), py::arg("first"), py::kw_only(), py::arg("factors") = standard.factors,
-        py::arg("harmonics") = standard.harmonics, py::arg("period") = standard.period, py::arg("root") = standard.root,
-        py::arg("factor") = standard.factor, "Fit a model to clean records (T, N), nan = missing.");
-  m.def("central_kalman", [](const Model& model, const MatrixRef& y, const VectorRef& x0, double start_variance) {
-    return central_kalman(model, y, x0, start_variance);
-  }, py::arg("model"), py::arg("measurements"), py::arg("x0"), py::arg("start_variance"),
-        "Estimates (T + 1, n) of a central Kalman filter.");
+      .def(
+          "measurements",
+          [](const Identified& i, const MatrixRef& raw, std::int64_t first) {
+            return measurements(i, raw, first);
+          },
+          py::arg("raw"), py::arg("first"), "Measurements (T, N) of other records under this model.")
+      .def(
+          "reference_states",
+          [](const Identified& i, const MatrixRef& measured) { return reference_states(i, measured); },
+          py::arg("measured"), "Least-squares states (T, n) of clean measurements of the same time.");
+  m.def(
+      "identify",
+      [](const MatrixRef& raw, std::int64_t first, int factors, int harmonics, double period, bool root,
+         double factor) { return identify(raw, first, {factors, harmonics, period, root, factor}); },
+      py::arg("raw"), py::arg("first"), py::kw_only(), py::arg("factors") = standard.factors,
+      py::arg("harmonics") = standard.harmonics, py::arg("period") = standard.period,
+      py::arg("root") = standard.root, py::arg("factor") = standard.factor,
+      "Fit a model to clean records (T, N), nan = missing.");
+  m.def(
+      "central_kalman",
+      [](const Model& model, const MatrixRef& y, const VectorRef& x0, double start_variance) {
+        return central_kalman(model, y, x0, start_variance);
+      },
+      py::arg("model"), py::arg("measurements"), py::arg("x0"), py::arg("start_variance"),
+      "Estimates (T + 1, n) of a central Kalman filter.");
 }

@@ -8,8 +8,8 @@ using namespace garrison;
 namespace {
 
 RunOptions run_options(int trials, std::uint64_t seed, int threads, const std::optional<Matrix>& start,
-                       const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
-                       const py::object& progress) {
+                       const std::vector<AnyAttack>& attacks, const py::dict& link,
+                       const std::vector<std::string>& keep, const py::object& progress) {
   RunOptions o;
   o.trials = trials;
   o.seed = seed;
@@ -22,19 +22,28 @@ RunOptions run_options(int trials, std::uint64_t seed, int threads, const std::o
   const std::vector<std::string> known{"drop", "delay", "delay_rounds"};
   for (const auto& [key, value] : link) {
     const auto name = key.cast<std::string>();
-    if (name == "drop") o.link.drop = value.cast<double>();
-    else if (name == "delay") o.link.delay = value.cast<double>();
-    else if (name == "delay_rounds") o.link.delay_rounds = value.cast<int>();
-    else refuse_unknown("link", name, known);
+    if (name == "drop")
+      o.link.drop = value.cast<double>();
+    else if (name == "delay")
+      o.link.delay = value.cast<double>();
+    else if (name == "delay_rounds")
+      o.link.delay_rounds = value.cast<int>();
+    else
+      refuse_unknown("link", name, known);
   }
   o.keep = {false, false, false, false};
   const std::vector<std::string> keepable{"estimate", "report", "signals", "measurements"};
   for (const std::string& name : keep) {
-    if (name == "estimate") o.keep.estimate = true;
-    else if (name == "report") o.keep.report = true;
-    else if (name == "signals") o.keep.signals = true;
-    else if (name == "measurements") o.keep.measurements = true;
-    else refuse_unknown("keep", name, keepable);
+    if (name == "estimate")
+      o.keep.estimate = true;
+    else if (name == "report")
+      o.keep.report = true;
+    else if (name == "signals")
+      o.keep.signals = true;
+    else if (name == "measurements")
+      o.keep.measurements = true;
+    else
+      refuse_unknown("keep", name, keepable);
   }
   // The callback also lets Ctrl-C through: the run stops and the interrupt is raised when it has.
   o.progress = [progress](std::int64_t done, std::int64_t total) {
@@ -77,10 +86,10 @@ py::dict from_record(Record&& r) {
   py::list accusations;
   for (const auto& a : r.accusations) accusations.append(py::make_tuple(a.trial, a.time, a.sets));
   d["accusations"] = accusations;
-  d["counters"] = py::dict(py::arg("sent") = r.link.sent, py::arg("lost") = r.link.lost, py::arg("late") = r.link.late,
-                           py::arg("forged") = r.link.forged, py::arg("refused") = r.link.refused,
-                           py::arg("missing") = r.missing, py::arg("nonfinite") = r.nonfinite,
-                           py::arg("overflows") = r.overflows);
+  d["counters"] = py::dict(py::arg("sent") = r.link.sent, py::arg("lost") = r.link.lost,
+                           py::arg("late") = r.link.late, py::arg("forged") = r.link.forged,
+                           py::arg("refused") = r.link.refused, py::arg("missing") = r.missing,
+                           py::arg("nonfinite") = r.nonfinite, py::arg("overflows") = r.overflows);
   return d;
 }
 
@@ -92,65 +101,84 @@ struct Letter {
 }  // namespace
 
 void bind_runtime(py::module_& m) {
-  m.def("simulate", [](const Model& model, const Network& network, const FilterHandle& filter, int steps, const Vector& x0,
-                       double start_error, const std::string& noise, int trials, std::uint64_t seed, int threads,
-                       const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
-                       const std::vector<std::string>& keep, const py::object& progress) {
-    const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
-    Record record;
-    {
-      const py::gil_scoped_release no_gil;
-      record = simulate(model, network, *filter.filter, {steps, x0, start_error, noise}, options);
-    }
-    return from_record(std::move(record));
-  }, py::arg("model"), py::arg("network"), py::arg("filter"), py::kw_only(), py::arg("steps"), py::arg("x0"),
-        py::arg("start_error"), py::arg("noise"), py::arg("trials"), py::arg("seed"), py::arg("threads"),
-        py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"), py::arg("progress"),
-        "Arrays of a simulated run; use garrison.simulate.");
-  m.def("replay", [](const Model& model, const Network& network, const FilterHandle& filter, const Matrix& measurements,
-                     const Matrix& truth, int trials, std::uint64_t seed, int threads, const std::optional<Matrix>& start,
-                     const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
-                     const py::object& progress) {
-    const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
-    Record record;
-    {
-      const py::gil_scoped_release no_gil;
-      record = replay(model, network, *filter.filter, measurements, truth, options);
-    }
-    return from_record(std::move(record));
-  }, py::arg("model"), py::arg("network"), py::arg("filter"), py::kw_only(), py::arg("measurements"), py::arg("truth"),
-        py::arg("trials"), py::arg("seed"), py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"),
-        py::arg("keep"), py::arg("progress"), "Arrays of a replayed run; use garrison.replay.");
+  m.def(
+      "simulate",
+      [](const Model& model, const Network& network, const FilterHandle& filter, int steps, const Vector& x0,
+         double start_error, const std::string& noise, int trials, std::uint64_t seed, int threads,
+         const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
+         const std::vector<std::string>& keep, const py::object& progress) {
+        const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
+        Record record;
+        {
+          const py::gil_scoped_release no_gil;
+          record = simulate(model, network, *filter.filter, {steps, x0, start_error, noise}, options);
+        }
+        return from_record(std::move(record));
+      },
+      py::arg("model"), py::arg("network"), py::arg("filter"), py::kw_only(), py::arg("steps"), py::arg("x0"),
+      py::arg("start_error"), py::arg("noise"), py::arg("trials"), py::arg("seed"), py::arg("threads"),
+      py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"), py::arg("progress"),
+      "Arrays of a simulated run; use garrison.simulate.");
+  m.def(
+      "replay",
+      [](const Model& model, const Network& network, const FilterHandle& filter, const Matrix& measurements,
+         const Matrix& truth, int trials, std::uint64_t seed, int threads, const std::optional<Matrix>& start,
+         const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
+         const py::object& progress) {
+        const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
+        Record record;
+        {
+          const py::gil_scoped_release no_gil;
+          record = replay(model, network, *filter.filter, measurements, truth, options);
+        }
+        return from_record(std::move(record));
+      },
+      py::arg("model"), py::arg("network"), py::arg("filter"), py::kw_only(), py::arg("measurements"),
+      py::arg("truth"), py::arg("trials"), py::arg("seed"), py::arg("threads"), py::arg("start"),
+      py::arg("attacks"), py::arg("link"), py::arg("keep"), py::arg("progress"),
+      "Arrays of a replayed run; use garrison.replay.");
 
   py::class_<Letter>(m, "Message", "A message between agents of the same filter.")
       .def_property_readonly("sender", [](const Letter& l) { return l.message->sender(); })
-      .def_property_readonly("values", [](const Letter& l) {
-        auto numbers = l.message->values();
-        const auto size = static_cast<py::ssize_t>(numbers.size());
-        return owned(std::move(numbers), {size});
-      }, "Its numbers (a copy).");
+      .def_property_readonly(
+          "values",
+          [](const Letter& l) {
+            auto numbers = l.message->values();
+            const auto size = static_cast<py::ssize_t>(numbers.size());
+            return owned(std::move(numbers), {size});
+          },
+          "Its numbers (a copy).");
 
-  py::class_<AnyAgent>(m, "Agent",
-                       "One agent on its own: `sense` once per sample, then `fuse` once per round, with the same bits as\n"
-                       "inside simulate and replay.")
+  py::class_<AnyAgent>(
+      m, "Agent",
+      "One agent on its own: `sense` once per sample, then `fuse` once per round, with the same bits as\n"
+      "inside simulate and replay.")
       .def(py::init([](const FilterHandle& filter, const Model& model, const Network& network, int id) {
              return filter.filter->prepare(model, network)->agent(id);
-           }), py::arg("filter"), py::arg("model"), py::arg("network"), py::arg("id"))
+           }),
+           py::arg("filter"), py::arg("model"), py::arg("network"), py::arg("id"))
       .def_property_readonly("id", &AnyAgent::id)
       .def_property_readonly("rounds", &AnyAgent::rounds, "Rounds per sample.")
       .def("reset", &AnyAgent::reset, py::arg("x0"), "Back to time 0 with the initial estimate x0, (n,).")
-      .def("sense", [](AnyAgent& a, const std::vector<double>& y) { return Letter{a.sense(y)}; }, py::arg("y"),
-           "One number per row of C_i, nan = missing. Returns the first message of this sample.")
-      .def("fuse", [](AnyAgent& a, const std::vector<Letter>& inbox) {
-        std::vector<std::shared_ptr<AnyMessage>> all;
-        for (const Letter& l : inbox) all.push_back(l.message);
-        return Letter{a.fuse(all)};
-      }, py::arg("inbox"), "Messages of the neighbours in any order; leave missing ones out. Returns the next message.")
+      .def(
+          "sense", [](AnyAgent& a, const std::vector<double>& y) { return Letter{a.sense(y)}; }, py::arg("y"),
+          "One number per row of C_i, nan = missing. Returns the first message of this sample.")
+      .def(
+          "fuse",
+          [](AnyAgent& a, const std::vector<Letter>& inbox) {
+            std::vector<std::shared_ptr<AnyMessage>> all;
+            for (const Letter& l : inbox) all.push_back(l.message);
+            return Letter{a.fuse(all)};
+          },
+          py::arg("inbox"),
+          "Messages of the neighbours in any order; leave missing ones out. Returns the next message.")
       .def_property_readonly("estimate", &AnyAgent::estimate, "(n,)")
       .def_property_readonly("accused", &AnyAgent::accused, "Agents that this one believes to be attacked.")
-      .def_property_readonly("dropped", &AnyAgent::dropped, "Messages dropped because a number was not finite.")
+      .def_property_readonly("dropped", &AnyAgent::dropped,
+                             "Messages dropped because a number was not finite.")
       .def_property_readonly("bound", [](const AnyAgent& a) { return a.report().bound; })
       .def_property_readonly("statistic", [](const AnyAgent& a) { return a.report().statistic; })
       .def_property_readonly("threshold", [](const AnyAgent& a) { return a.report().threshold; })
-      .def_property_readonly("verdict", [](const AnyAgent& a) { return static_cast<int>(a.report().verdict); });
+      .def_property_readonly("verdict",
+                             [](const AnyAgent& a) { return static_cast<int>(a.report().verdict); });
 }

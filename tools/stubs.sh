@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
-# tools/stubs.sh [--check]: writes python/garrison/_core.pyi from the installed module, or fails when it is out of date.
+# tools/stubs.sh [--check]: writes python/garrison/_core/*.pyi from the installed module, or fails when they are out of date.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-stub=python/garrison/_core.pyi
+stubs=python/garrison/_core
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 .venv/bin/pybind11-stubgen garrison._core --exit-code --output-dir "$work" >"$work/log" 2>&1 || {
   cat "$work/log" >&2
   exit 1
 }
-new=$work/garrison/_core.pyi
+new=$work/garrison/_core
 .venv/bin/ruff format --quiet --config pyproject.toml "$new"
 if [[ ${1:-} != --check ]]; then
-  cp "$new" "$stub"
-elif ! diff -u "$stub" "$new"; then
-  echo "stubs: $stub is out of date; write it anew with tools/stubs.sh" >&2
+  rm -rf "$stubs"
+  cp -r "$new" "$stubs"
+elif ! diff -ru "$stubs" "$new"; then
+  echo "stubs: $stubs is out of date; write it anew with tools/stubs.sh" >&2
   exit 1
 fi

@@ -34,8 +34,7 @@ class Check:
     def __str__(self) -> str:
         width = max(len(e["name"]) for e in [*self.conditions, *self.quantities])
         lines = [
-            f"{verdict(c):5}  {c['name']:{width}}  {c['value']:<12.6g} needs {c['needed']}"
-            for c in self.conditions
+            f"{verdict(c):5}  {c['name']:{width}}  {c['value']:<12.6g} needs {c['needed']}" for c in self.conditions
         ]
         lines += [f"{'':5}  {q['name']:{width}}  {q['value']:<12.6g} {q['meaning']}" for q in self.quantities]
         return "\n".join(lines)

@@ -64,7 +64,9 @@ def _output_folder(path: Path, force: bool) -> Path:
         raise _core.IoError(f"{path}: got a file, expected a folder to write to")
     if path.exists() and any(path.iterdir()):
         if not force:
-            raise _core.IoError(f"{path}: got a folder that is not empty; choose another one, or replace it with --force")
+            raise _core.IoError(
+                f"{path}: got a folder that is not empty; choose another one, or replace it with --force"
+            )
         if not (path / "summary.json").is_file():
             raise _core.IoError(f"{path}: got a folder that no run of garrison has written, and will not replace it")
         shutil.rmtree(path)
@@ -73,7 +75,12 @@ def _output_folder(path: Path, force: bool) -> Path:
 
 
 def _bar(console: Console) -> Progress:
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"), TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeRemainingColumn(),
+    )
     return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
 
 
@@ -104,10 +111,19 @@ def _write_estimates(folder: Path, scenario: Scenario, rows: list[Row], npz: boo
         columns.append(run.bound.reshape(-1, 1))
         head.append("bound")
     formats = ["%d"] * 3 + ["%.9g"] * (len(head) - 3)
-    np.savetxt(folder / "estimates.csv", np.column_stack(columns), fmt=formats, delimiter=",", header=",".join(head), comments="")
+    np.savetxt(
+        folder / "estimates.csv",
+        np.column_stack(columns),
+        fmt=formats,
+        delimiter=",",
+        header=",".join(head),
+        comments="",
+    )
 
 
 def _cmd_run(args: argparse.Namespace) -> int:
+    from garrison.job import signal_size
+    from garrison.plots import overview_figure
     from garrison.report import table_rows, write_report
 
     console = _console(stderr=args.json)
@@ -126,12 +142,15 @@ def _cmd_run(args: argparse.Namespace) -> int:
     (folder / "summary.json").write_text(json.dumps(_clean(summary), indent=1), encoding="utf-8")
     _write_estimates(folder, scenario, rows, args.npz)
     write_report(folder / "report.html", scenario, rows)
+    overview_figure(scenario, rows, signal_size(scenario)).savefig(folder / "overview.png", dpi=110)
     if args.json:
         _json(summary)
     else:
         head, cells = table_rows(scenario, rows)
         _table(scenario.title, head, cells, console)
-        console.print(f"\nwritten to {folder}: report.html (open it in a browser), summary.json, estimates")
+        console.print(
+            f"\nwritten to {folder}: report.html (open it in a browser), overview.png, summary.json, estimates"
+        )
     return OK
 
 
@@ -144,13 +163,25 @@ def _cmd_check(args: argparse.Namespace) -> int:
     assert filter is not None  # the main filter is never the central one
     found = check(filter, scenario.model, scenario.network)
     if args.json:
-        _json({"filter": label, "holds": found.holds, "conditions": found.conditions, "quantities": found.quantities})
+        _json(
+            {
+                "filter": label,
+                "holds": found.holds,
+                "conditions": found.conditions,
+                "quantities": found.quantities,
+            }
+        )
         return OK if found.holds else NO
     console = _console()
     rows = [[verdict(c), c["name"], f"{c['value']:.6g}", c["needed"], c["meaning"]] for c in found.conditions]
     _table(f"{scenario.title}: {label}", ["", "condition", "value", "needed", "meaning"], rows, console)
     console.print()
-    _table("", ["quantity", "value", "meaning"], [[q["name"], f"{q['value']:.6g}", q["meaning"]] for q in found.quantities], console)
+    _table(
+        "",
+        ["quantity", "value", "meaning"],
+        [[q["name"], f"{q['value']:.6g}", q["meaning"]] for q in found.quantities],
+        console,
+    )
     return OK if found.holds else NO
 
 
@@ -209,7 +240,13 @@ def _cmd_verify(args: argparse.Namespace) -> int:
         _json(
             {
                 "files": [
-                    {"file": r.file, "family": r.family, "misses": r.misses, "fields": [vars(f) for f in r.fields]} for r in results
+                    {
+                        "file": r.file,
+                        "family": r.family,
+                        "misses": r.misses,
+                        "fields": [vars(f) for f in r.fields],
+                    }
+                    for r in results
                 ],
                 "fields": fields,
                 "misses": misses,
@@ -222,11 +259,17 @@ def _cmd_verify(args: argparse.Namespace) -> int:
         for r in results:
             for f in r.fields:
                 if not f.ok or args.fields:
-                    console.print(f"{'ok  ' if f.ok else 'MISS'} {r.file} {f.name}: {f.deviation:.2e} {f.note}", markup=False)
+                    console.print(
+                        f"{'ok  ' if f.ok else 'MISS'} {r.file} {f.name}: {f.deviation:.2e} {f.note}",
+                        markup=False,
+                    )
     if not results:
         print(f"verify: no case files in {args.folder}", file=sys.stderr)
         return NO
-    print(f"verify: {len(results)} files, {fields} fields, {misses} missed", file=sys.stderr if args.json else sys.stdout)
+    print(
+        f"verify: {len(results)} files, {fields} fields, {misses} missed",
+        file=sys.stderr if args.json else sys.stdout,
+    )
     return OK if misses == 0 else NO
 
 
@@ -243,7 +286,14 @@ def _cmd_fit(args: argparse.Namespace) -> int:
             raise _core.InvalidInput(f"got the date {text!r}, expected YYYY-MM-DD") from None
 
     records = read_records(args.records).between(day(args.start), day(args.end))
-    found = fit(records, factors=args.factors, harmonics=args.harmonics, period=args.period, root=args.root, factor=args.factor)
+    found = fit(
+        records,
+        factors=args.factors,
+        harmonics=args.harmonics,
+        period=args.period,
+        root=args.root,
+        factor=args.factor,
+    )
     text = found.to_json()
     if args.output:
         target = Path(args.output)
@@ -255,12 +305,16 @@ def _cmd_fit(args: argparse.Namespace) -> int:
         return OK
     i = found.identified
     console = _console()
-    console.print(f"{len(records.dates)} records, {records.dates[0]} to {records.dates[-1]}, {len(records.stations)} stations")
+    console.print(
+        f"{len(records.dates)} records, {records.dates[0]} to {records.dates[-1]}, {len(records.stations)} stations"
+    )
     console.print(f"factors carry {', '.join(f'{s:.1%}' for s in i.share)} of the variance around the season")
     console.print(f"A = {np.asarray(i.A).round(4).tolist()}, ||w|| <= {i.process_bound:.4g}")
     rows = [
         [name, *(f"{v:.3f}" for v in row), f"{bound:.3f}", f"{variance**0.5:.3f}"]
-        for name, row, bound, variance in zip(records.stations, np.asarray(i.C), i.measurement_bound, i.measurement_variance, strict=True)
+        for name, row, bound, variance in zip(
+            records.stations, np.asarray(i.C), i.measurement_bound, i.measurement_variance, strict=True
+        )
     ]
     head = ["station", *(f"C{k}" for k in range(found.model.states)), "|v| <=", "std of v"]
     _table("", head, rows, console)
@@ -275,7 +329,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="garrison",
         description="A network that keeps its estimate while some of its own sensors lie.",
-        epilog="Exit codes: 0 fine, 1 the answer is no (a condition fails, a case misses), 2 bad input, 130 interrupted.",
+        epilog="Exit codes: 0 fine, 1 the answer is no (condition fails, case misses), 2 bad input, 130 interrupted.",
     )
     parser.add_argument("--version", action="version", version=f"garrison {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -287,7 +341,9 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--npz", action="store_true", help="write all arrays as estimates.npz instead of a CSV file")
     run.set_defaults(do=_cmd_run)
 
-    check_ = commands.add_parser("check", help="validate a scenario, print conditions and bounds; exit 1 if a condition fails")
+    check_ = commands.add_parser(
+        "check", help="validate a scenario, print conditions and bounds; exit 1 if a condition fails"
+    )
     check_.add_argument("scenario", help="scenario file (TOML)")
     check_.set_defaults(do=_cmd_check)
 

@@ -33,7 +33,9 @@ class Records:
         keep = [k for k, d in enumerate(self.dates) if (not start or d >= start) and (not end or d <= end)]
         if len(keep) < 2:
             span = f"{self.dates[0]}..{self.dates[-1]}"
-            raise _core.InvalidInput(f"dates {start or ''}..{end or ''}: got {len(keep)} records, expected at least 2; the file has {span}")
+            raise _core.InvalidInput(
+                f"dates {start or ''}..{end or ''}: got {len(keep)} records, expected at least 2; the file has {span}"
+            )
         return Records([self.dates[k] for k in keep], self.stations, self.values[keep])
 
 
@@ -111,10 +113,22 @@ class Fit:
         i = self.identified
         arrays: dict[str, Any] = {
             name: np.asarray(getattr(i, name)).tolist()
-            for name in ("A", "C", "process_covariance", "measurement_variance", "measurement_bound", "scale", "season", "share")
+            for name in (
+                "A",
+                "C",
+                "process_covariance",
+                "measurement_variance",
+                "measurement_bound",
+                "scale",
+                "season",
+                "share",
+            )
         }
         span = [str(self.records.dates[0]), str(self.records.dates[-1])]
-        return json.dumps({"stations": self.records.stations, "fitted": span, "process_bound": i.process_bound} | arrays, indent=1)
+        return json.dumps(
+            {"stations": self.records.stations, "fitted": span, "process_bound": i.process_bound} | arrays,
+            indent=1,
+        )
 
 
 def fit(records: Records, **options: Any) -> Fit:

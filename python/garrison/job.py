@@ -65,11 +65,19 @@ def run_scenario(scenario: Scenario, progress: Callable[[str, int, int], None] |
             if filter is None:
                 rows.append(_kalman_row(scenario, label, attacked, attacked_y))
                 continue
-            run = _run(scenario, filter, attacked, lambda d, t, name=name: progress(name, d, t) if progress else None)
+            run = _run(scenario, filter, attacked, _labelled(progress, name))
             if attacked and attacked_y is None and run.measurements is not None:
                 attacked_y = run.measurements[0]
             rows.append(Row(label, attacked, run, run.error))
     return rows
+
+
+def _labelled(progress: Callable[[str, int, int], None] | None, label: str) -> Callable[[int, int], None]:
+    def report(done: int, total: int) -> None:
+        if progress is not None:
+            progress(label, done, total)
+
+    return report
 
 
 def _run(scenario: Scenario, filter: Any, attacked: bool, progress: Callable[[int, int], None]) -> Run:

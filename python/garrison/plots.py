@@ -9,7 +9,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 
-import matplotlib.dates as mdates
+import matplotlib.dates
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from garrison.run import Run
     from garrison.scenario import Scenario
 
+_DATES: Any = matplotlib.dates  # matplotlib has no types for it
 #: per verdict: marker, colour, word
 LOOKS = {
     "cleared": ("o", "#0072B2", "cleared"),
@@ -29,7 +30,7 @@ LOOKS = {
 _LINES = [("#0072B2", "-"), ("#009E73", "--"), ("#D55E00", "-."), ("#444444", ":"), ("#CC79A7", (0, (5, 1)))]
 
 
-def _axes(figure: Figure, *place: int) -> Any:
+def _axes(figure: Any, *place: int) -> Any:
     ax = figure.add_subplot(*place)
     ax.spines[["top", "right"]].set_visible(False)
     ax.grid(True, color="#dddddd", linewidth=0.6)
@@ -55,9 +56,22 @@ def final_verdicts(scenario: Scenario, run: Run) -> list[str]:
     return ["attacked" if i in accused else word for i, word in enumerate(words)]
 
 
-def map_figure(scenario: Scenario, run: Run) -> Figure:
+def overview_figure(scenario: Scenario, rows: list[Row], signal: float | None) -> Figure:
+    """Map and errors side by side: the run in one picture."""
+    figure = Figure(figsize=(13, 5.6), layout="constrained")
+    parts: Any = figure.subfigures(1, 2, width_ratios=[1, 1.45])
+    left, right = parts
+    if rows[0].run is not None and rows[0].run.verdict is not None:
+        map_figure(scenario, rows[0].run, left)
+    if any(row.error is not None for row in rows):
+        error_figure(scenario, rows, signal, right)
+    figure.suptitle(scenario.title, fontsize=13)
+    return figure
+
+
+def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
     """The network at its places: who is attacked in truth (ring), and what the network says of everybody."""
-    figure = Figure(figsize=(6.4, 6.2), layout="constrained")
+    figure = figure or Figure(figsize=(6.4, 6.2), layout="constrained")
     ax = figure.add_subplot()
     place = scenario.positions
     if place is None:
@@ -73,10 +87,27 @@ def map_figure(scenario: Scenario, run: Run) -> Figure:
             ax.scatter(*place[group].T, s=170, marker=marker, color=colour, edgecolor="white", zorder=3, label=label)
     if hit:
         ring = sorted(hit)
-        ax.scatter(*place[ring].T, s=520, facecolor="none", edgecolor="black", linewidth=1.4, zorder=2, label="hijacked in truth")
+        ax.scatter(
+            *place[ring].T,
+            s=520,
+            facecolor="none",
+            edgecolor="black",
+            linewidth=1.4,
+            zorder=2,
+            label="hijacked in truth",
+        )
     for i, name in enumerate(scenario.names):
         full = scenario.places[i] if scenario.places else name
-        ax.annotate(full, place[i], xytext=(0, -19), textcoords="offset points", ha="center", va="top", fontsize=9, zorder=4)
+        ax.annotate(
+            full,
+            place[i],
+            xytext=(0, -19),
+            textcoords="offset points",
+            ha="center",
+            va="top",
+            fontsize=9,
+            zorder=4,
+        )
     if scenario.positions is None:
         ax.set_axis_off()
     else:
@@ -85,13 +116,13 @@ def map_figure(scenario: Scenario, run: Run) -> Figure:
         ax.spines[["top", "right"]].set_visible(False)
     ax.set_aspect("equal")
     ax.margins(0.12)
-    ax.legend(loc="upper left", bbox_to_anchor=(0, 1.13), ncols=3, frameon=False, fontsize=9)
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9)
     return figure
 
 
-def error_figure(scenario: Scenario, rows: list[Row], signal: float | None) -> Figure:
+def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figure: Any = None) -> Any:
     """Mean error of every filter over time (30-sample mean), with the certified bound of the main one."""
-    figure = Figure(figsize=(9.2, 4.6), layout="constrained")
+    figure = figure or Figure(figsize=(9.2, 4.6), layout="constrained")
     ax = _axes(figure)
     shown = [row for row in rows if row.error is not None and (row.attacked or not scenario.attacks)]
     for row, (colour, style) in zip(shown, _LINES * 3, strict=False):
@@ -100,18 +131,41 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None) -> F
         smooth = np.convolve(error, np.ones(width) / width, mode="valid")
         at = np.arange(width, len(error) + 1)
         ax.plot(_times(scenario, at), smooth, color=colour, linestyle=style, linewidth=1.6, label=row.label)
-    bounded = [row for row in shown if row.run is not None and row.run.bound is not None and np.isfinite(row.run.bound).any()]
-    for row in bounded[:2]:
+    bounded = [
+        row for row in shown if row.run is not None and row.run.bound is not None and np.isfinite(row.run.bound).any()
+    ]
+    for row in bounded[:1]:
         bound = row.run.bound[0].max(axis=1)  # type: ignore[union-attr, index]
         index = [r.label for r in shown].index(row.label)
         at = np.arange(1, len(bound))
-        ax.plot(_times(scenario, at), bound[1:], color=_LINES[index][0], linewidth=3, alpha=0.35, label=f"certified bound, {row.label}")
+        ax.plot(
+            _times(scenario, at),
+            bound[1:],
+            color=_LINES[index][0],
+            linewidth=3,
+            alpha=0.35,
+            label="certified bound of the first",
+        )
     if signal is not None:
         ax.axhline(signal, color="#999999", linewidth=1)
-        ax.annotate("size of the signal itself", (1, signal), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color="#666666")
+        ax.annotate(
+            "size of the signal itself",
+            (1, signal),
+            xycoords=("axes fraction", "data"),
+            ha="right",
+            va="bottom",
+            fontsize=8,
+            color="#666666",
+        )
     for attack in scenario.attacks:
         ax.axvline(_times(scenario, np.array([attack.start]))[0], color="black", linewidth=0.8, linestyle=(0, (2, 2)))
-        ax.annotate(" attack starts", (_times(scenario, np.array([attack.start]))[0], 1), xycoords=("data", "axes fraction"), va="top", fontsize=8)
+        ax.annotate(
+            " attack starts",
+            (_times(scenario, np.array([attack.start]))[0], 1),
+            xycoords=("data", "axes fraction"),
+            va="top",
+            fontsize=8,
+        )
     ax.set_yscale("log")
     ax.set_ylabel("||estimate - reference||, log scale")
     ax.set_xlabel("" if scenario.dates else "sample")
@@ -147,8 +201,9 @@ def innovation_figure(scenario: Scenario, run: Run, before: int = 30, after: int
         ax.set_yscale("log")
         ax.tick_params(labelsize=7)
         if scenario.dates:
-            ax.xaxis.set_major_locator(mdates.AutoDateLocator(maxticks=4))
-            ax.xaxis.set_major_formatter(mdates.ConciseDateFormatter(ax.xaxis.get_major_locator()))
+            locator = _DATES.AutoDateLocator(maxticks=4)
+            ax.xaxis.set_major_locator(locator)
+            ax.xaxis.set_major_formatter(_DATES.ConciseDateFormatter(locator))
     figure.supylabel("|innovation| (solid), threshold (dashed), X = proved attacked", fontsize=9)
     return figure
 

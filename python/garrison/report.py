@@ -25,7 +25,16 @@ svg{max-width:100%;height:auto}figure{margin:1rem 0}figcaption{color:#555;font-s
 
 def table_rows(scenario: Scenario, rows: list[Row]) -> tuple[list[str], list[list[str]]]:
     """The table of a run as text: head and cells."""
-    head = ["filter", "sensors", "mean error", "worst error", "bound exists", "inside it", "proved attacked", "false alarms"]
+    head = [
+        "filter",
+        "sensors",
+        "mean error",
+        "worst error",
+        "bound exists",
+        "inside it",
+        "proved attacked",
+        "false alarms",
+    ]
     cells = []
     for row in rows:
         s = row.summary(scenario)
@@ -71,7 +80,11 @@ def _svg(figure: Any) -> str:
 def _html_table(head: Iterable[str], cells: Iterable[Iterable[str]], words: int = 1) -> str:
     def line(tag: str, entries: Iterable[str]) -> str:
         kinds = [' class="words"' if k < words else "" for k, _ in enumerate(entries)]
-        return "<tr>" + "".join(f"<{tag}{c}>{html.escape(e)}</{tag}>" for c, e in zip(kinds, entries, strict=True)) + "</tr>"
+        return (
+            "<tr>"
+            + "".join(f"<{tag}{c}>{html.escape(e)}</{tag}>" for c, e in zip(kinds, entries, strict=True))
+            + "</tr>"
+        )
 
     body = "".join(line("td", list(row)) for row in cells)
     return f"<table><thead>{line('th', list(head))}</thead><tbody>{body}</tbody></table>"
@@ -84,8 +97,11 @@ def _lead(scenario: Scenario, rows: list[Row]) -> str:
     hit = [scenario.names[a] for a in range(scenario.model.agents) if a not in attack_facts(scenario)[0]]
     parts = []
     if hit:
+        start = when(scenario, attack_facts(scenario)[1])
         verb = "are" if len(hit) > 1 else "is"
-        parts.append(f"{len(hit)} of {scenario.model.agents} sensors ({', '.join(hit)}) {verb} attacked from {when(scenario, attack_facts(scenario)[1])} on.")
+        parts.append(
+            f"{len(hit)} of {scenario.model.agents} sensors ({', '.join(hit)}) {verb} attacked from {start} on."
+        )
     if "mean_error" in main:
         text = f"The mean error of {rows[0].label} since then is {main['mean_error']:.3f}"
         others = [r.summary(scenario) for r in rows if r.attacked == rows[0].attacked and r.label != rows[0].label]
@@ -97,9 +113,10 @@ def _lead(scenario: Scenario, rows: list[Row]) -> str:
 
 def _model_text(scenario: Scenario) -> str:
     fit = scenario.fitted
+    if fit is None and scenario.measurements is None:
+        return "The plant is simulated; errors are distances to its true state."
     if fit is None:
-        law = "simulated" if scenario.measurements is None else "replayed from a log"
-        return f"The plant is {law}; errors are against its true state." if scenario.measurements is None else f"The measurements are {law}; the true state is not known."
+        return "The measurements are replayed from a log; the true state is not known."
     first, last = fit.records.dates[0], fit.records.dates[-1]
     share = ", ".join(f"{s:.0%}" for s in fit.identified.share)
     return (
@@ -112,48 +129,48 @@ def _model_text(scenario: Scenario) -> str:
 
 def _check_table(scenario: Scenario, filter: _core.Filter) -> str:
     found = check(filter, scenario.model, scenario.network)
-    conditions = [
-        [c["name"], c["meaning"], f"{c['value']:.4g}", c["needed"], verdict(c)] for c in found.conditions
-    ]
+    conditions = [[c["name"], c["meaning"], f"{c['value']:.4g}", c["needed"], verdict(c)] for c in found.conditions]
     quantities = [[q["name"], q["meaning"], f"{q['value']:.4g}"] for q in found.quantities]
     return _html_table(["condition", "meaning", "value", "needed", "verdict"], conditions, 2) + _html_table(
         ["quantity", "meaning", "value"], quantities, 2
     )
 
 
+_TABLE_NOTE = (
+    "<p>Errors are means over agents, from the start of the attack on. Bound exists: share of agents and samples with "
+    "a certified error bound (an agent that knows all attackers no longer tests, and reports none). Inside it: how "
+    "often the error was below. Proved attacked: when the network first knew.</p>"
+)
+_MAP_NOTE = (
+    "Lines join stations that exchange estimates. The marker says what the network believes, the ring who was hijacked."
+)
+_ERROR_NOTE = (
+    "Means over the last 30 samples. The certified bound holds for the worst noise that the model allows, at every "
+    "single sample, whatever the attackers send."
+)
+
+
+def _figure(figure: Any, note: str = "") -> str:
+    return f"<figure>{_svg(figure)}<figcaption>{note}</figcaption></figure>"
+
+
 def write_report(path: Path, scenario: Scenario, rows: list[Row]) -> None:
     """Write the page. Its main filter is the first one of the scenario."""
     main = rows[0]
+    title = html.escape(scenario.title)
     head, cells = table_rows(scenario, rows)
-    sections = [
-        f"<h1>{html.escape(scenario.title)}</h1>",
-        f'<p class="lead">{html.escape(_lead(scenario, rows))}</p>',
-        "<h2>Who did how well</h2>",
-        _html_table(head, cells, 2),
-        "<p>Errors are means over agents, from the start of the attack on. Bound exists: share of agents and samples with a "
-        "certified error bound (an agent that knows all attackers no longer tests, and reports none). Inside it: how often "
-        "the error was below. Proved attacked: when the network first knew.</p>",
-    ]
+    sections = [f"<h1>{title}</h1>", f'<p class="lead">{html.escape(_lead(scenario, rows))}</p>']
+    sections += ["<h2>Who did how well</h2>", _html_table(head, cells, 2), _TABLE_NOTE]
     if main.run is not None:
-        sections += [
-            "<h2>The network at the end</h2>",
-            f"<figure>{_svg(map_figure(scenario, main.run))}<figcaption>Lines join stations that exchange estimates. The "
-            "marker says what the network believes, the ring who was hijacked.</figcaption></figure>",
-        ]
+        sections += ["<h2>The network at the end</h2>", _figure(map_figure(scenario, main.run), _MAP_NOTE)]
     if any(row.error is not None for row in rows):
-        sections += [
-            "<h2>Errors over time</h2>",
-            f"<figure>{_svg(error_figure(scenario, rows, signal_size(scenario)))}<figcaption>Means over the last 30 samples. The certified bound holds "
-            "for the worst noise that the clean records showed, at every single day, whatever the attackers send.</figcaption></figure>",
-        ]
+        figure = error_figure(scenario, rows, signal_size(scenario))
+        sections += ["<h2>Errors over time</h2>", _figure(figure, _ERROR_NOTE)]
     if main.run is not None:
-        sections += [
-            "<h2>Innovations against thresholds</h2>",
-            f"<figure>{_svg(innovation_figure(scenario, main.run))}</figure>",
-            "<h2>What theory says before the run</h2>",
-            _check_table(scenario, main.run.filter),
-        ]
+        sections += ["<h2>Innovations against thresholds</h2>", _figure(innovation_figure(scenario, main.run))]
+        sections += ["<h2>What theory says before the run</h2>", _check_table(scenario, main.run.filter)]
     sections += ["<h2>Model and reference</h2>", f"<p>{html.escape(_model_text(scenario))}</p>"]
     sections.append(f"<footer>garrison {_core.__version__}, scenario {html.escape(scenario.path.name)}</footer>")
-    page = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(scenario.title)}</title><style>{_STYLE}</style></head><body>{"".join(sections)}</body></html>'
-    path.write_text(page, encoding="utf-8")
+    meta = '<meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+    start = f'<!doctype html><html lang="en"><head>{meta}<title>{title}</title><style>{_STYLE}</style></head><body>'
+    path.write_text(start + "".join(sections) + "</body></html>", encoding="utf-8")

@@ -178,7 +178,11 @@ def replay(
 
 
 def central_kalman(
-    model: _core.Model, measurements: ArrayLike, *, start: ArrayLike | None = None, start_variance: float = 1.0
+    model: _core.Model,
+    measurements: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    start_variance: float = 1.0,
 ) -> Array:
     """Estimates (samples + 1, n) of a central Kalman filter that sees all measurements (samples, outputs).
 

@@ -116,7 +116,7 @@ def _model(table: Table, folder: Path) -> tuple[_core.Model, Fit | None]:
     _only("[model]", table, [*_MODEL_KEYS, "fit"])
     for key in ("A", "C"):
         if key not in table:
-            raise _refuse("[model]", f"got no {key}, expected A and C, or fit = \"records.csv\"")
+            raise _refuse("[model]", f'got no {key}, expected A and C, or fit = "records.csv"')
     values = {k: _array(f"[model].{k}", v, folder) for k, v in table.items()}
     rest = {k: v for k, v in values.items() if k not in ("A", "C")}
     A = np.atleast_2d(np.asarray(values["A"], dtype=float))
@@ -206,7 +206,8 @@ def _attack(number: int, table: Table, names: list[str], dates: list[dt.date]) -
             arguments[key] = _time(f"{where}.{key}", arguments[key], dates)
     if "schedule" in arguments:
         arguments["schedule"] = [
-            (_time(f"{where}.schedule", t, dates), _agents(f"{where}.schedule", a, names)) for t, a in arguments["schedule"]
+            (_time(f"{where}.schedule", t, dates), _agents(f"{where}.schedule", a, names))
+            for t, a in arguments["schedule"]
         ]
     return attacks.make(kind, **arguments)
 

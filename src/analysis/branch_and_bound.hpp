@@ -15,14 +15,19 @@
 
 namespace garrison::detail {
 
-/// Decides rows one by one. A node has the sum S of all rows not removed, r rows still to remove, and the rows
-/// that may be. With B = S - best I > 0, removing the rows V leaves lambda_min > best exactly if V'B^-1V < I; its
-/// trace, the sum of the leverages c'B^-1c, is at most that of the r largest. Below 1, the node is closed.
+/// Decides rows one by one. A node has the sum S of all rows not removed, r rows still to remove, and the
+/// rows that may be. With B = S - best I > 0, removing the rows V leaves lambda_min > best exactly if V'B^-1V
+/// < I; its trace, the sum of the leverages c'B^-1c, is at most that of the r largest. Below 1, the node is
+/// closed.
 template <int n>
 class BranchAndBound {
  public:
   BranchAndBound(const MatrixRef& C, int s, const SubsetLimits& limits)
-      : C_(C.transpose()), s_(s), limits_(limits), groups_(group_rows(C)), start_(std::chrono::steady_clock::now()) {}
+      : C_(C.transpose()),
+        s_(s),
+        limits_(limits),
+        groups_(group_rows(C)),
+        start_(std::chrono::steady_clock::now()) {}
 
   SubsetBound run() {
     Square S = C_ * C_.transpose();
@@ -71,10 +76,12 @@ class BranchAndBound {
     best_set_ = removed;
   }
 
-  /// From each start direction: remove the rows most aligned with it, turn to the weakest direction of the rest.
+  /// From each start direction: remove the rows most aligned with it, turn to the weakest direction of the
+  /// rest.
   void heuristic(const Square& S) {
     const Eigen::SelfAdjointEigenSolver<Square> eigen(S);
-    for (Eigen::Index k = 0; k < eigen.eigenvectors().cols(); ++k) improve(S, eigen.eigenvectors().col(k), {}, s_);
+    for (Eigen::Index k = 0; k < eigen.eigenvectors().cols(); ++k)
+      improve(S, eigen.eigenvectors().col(k), {}, s_);
     for (const auto& members : groups_.members) {
       const Column c = C_.col(members.front());
       if (c.norm() > 0.0) improve(S, c.normalized(), {}, s_);
@@ -117,7 +124,8 @@ class BranchAndBound {
   }
 
   /// Leverages of the candidates under S - level I; false when that is not positive definite.
-  bool leverages(const Square& S, double level, const std::vector<int>& candidates, std::vector<double>& out) const {
+  bool leverages(const Square& S, double level, const std::vector<int>& candidates,
+                 std::vector<double>& out) const {
     const Square B = S - level * Square::Identity(S.rows(), S.cols());
     const Eigen::LLT<Square> factor(B);
     if (factor.info() != Eigen::Success) return false;
@@ -131,7 +139,8 @@ class BranchAndBound {
   }
 
   static double largest_sum(std::vector<double> values, int r) {
-    const auto middle = values.begin() + std::min<std::ptrdiff_t>(r, static_cast<std::ptrdiff_t>(values.size()));
+    const auto middle =
+        values.begin() + std::min<std::ptrdiff_t>(r, static_cast<std::ptrdiff_t>(values.size()));
     std::partial_sort(values.begin(), middle, values.end(), std::greater<>());
     return std::accumulate(values.begin(), middle, 0.0);
   }
@@ -195,7 +204,8 @@ class BranchAndBound {
       last_group = groups_.group[static_cast<std::size_t>(row)];
       std::vector<int>& rest = level.rest;
       rest.clear();
-      for (std::size_t j = k + 1; j < order.size(); ++j) rest.push_back(candidates[static_cast<std::size_t>(order[j])]);
+      for (std::size_t j = k + 1; j < order.size(); ++j)
+        rest.push_back(candidates[static_cast<std::size_t>(order[j])]);
       removed_.push_back(row);
       const Square without = S - C_.col(row) * C_.col(row).transpose();
       search(without, r - 1, rest);

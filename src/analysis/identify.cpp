@@ -19,7 +19,8 @@ void require_options(const MatrixRef& raw, const FitOptions& o) {
            "at most one factor per station");
   if (o.harmonics < 0) refuse("fit.harmonics", std::to_string(o.harmonics), "a number >= 0");
   if (!(o.period > 0.0)) refuse("fit.period", text(o.period), "a number of samples > 0");
-  if (!(o.factor > 0.0) || !std::isfinite(o.factor)) refuse("fit.factor", text(o.factor), "a finite number > 0");
+  if (!(o.factor > 0.0) || !std::isfinite(o.factor))
+    refuse("fit.factor", text(o.factor), "a finite number > 0");
 }
 
 /// Records after unit conversion and square root.
@@ -28,7 +29,8 @@ Matrix transformed(const MatrixRef& raw, const FitOptions& o) {
   for (Eigen::Index j = 0; j < z.cols(); ++j)
     for (Eigen::Index i = 0; i < z.rows(); ++i) {
       if (std::isinf(z(i, j)))
-        refuse("records[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(z(i, j)), "a finite number or nan");
+        refuse("records[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(z(i, j)),
+               "a finite number or nan");
       if (o.root && z(i, j) < 0.0)
         refuse("records[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(raw(i, j)),
                "a number >= 0 with the square root", "drop it, or fit without the root");
@@ -56,7 +58,8 @@ Vector season_of(const Matrix& X, const Vector& z, Eigen::Index station) {
   const Eigen::Index count = present.count();
   const std::string which = "station " + std::to_string(station);
   if (count < 10 * X.cols())
-    refuse(which, std::to_string(count) + " records", "at least " + std::to_string(10 * X.cols()), "use more years");
+    refuse(which, std::to_string(count) + " records", "at least " + std::to_string(10 * X.cols()),
+           "use more years");
   Matrix rows(count, X.cols());
   Vector values(count);
   for (Eigen::Index r = 0, k = 0; r < z.size(); ++r)
@@ -103,8 +106,8 @@ void fit_dynamics(const Matrix& x, Identified& m) {
     ++pairs;
   }
   if (pairs < 10 * n)
-    refuse("records", std::to_string(pairs) + " complete successive rows", "at least " + std::to_string(10 * n),
-           "use more years or fewer factors");
+    refuse("records", std::to_string(pairs) + " complete successive rows",
+           "at least " + std::to_string(10 * n), "use more years or fewer factors");
   m.A = now.ldlt().solve(next.transpose()).transpose();
   m.process_covariance = Matrix::Zero(n, n);
   m.process_bound = 0.0;
@@ -154,8 +157,8 @@ Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& 
   m.scale = loadings.rowwise().norm();
   for (Eigen::Index i = 0; i < N; ++i)
     if (!(m.scale(i) > 1e-9))
-      refuse("station " + std::to_string(i), "no share in the factors", "a station that varies with the others",
-             "leave it out or use more factors");
+      refuse("station " + std::to_string(i), "no share in the factors",
+             "a station that varies with the others", "leave it out or use more factors");
   m.C = m.scale.cwiseInverse().asDiagonal() * loadings;
   const Matrix y = measurements(m, raw, first);
   const Matrix x = reference_states(m, y);
@@ -166,7 +169,8 @@ Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& 
 
 Matrix measurements(const Identified& model, const MatrixRef& raw, std::int64_t first) {
   if (raw.cols() != model.C.rows())
-    refuse("records", shape(raw), "samples x " + std::to_string(model.C.rows()), "the stations the model was fitted to");
+    refuse("records", shape(raw), "samples x " + std::to_string(model.C.rows()),
+           "the stations the model was fitted to");
   const Matrix anomalies =
       transformed(raw, model.options) - seasonal_design(raw.rows(), first, model.options) * model.season;
   return anomalies * model.scale.cwiseInverse().asDiagonal();
@@ -176,7 +180,8 @@ Matrix reference_states(const Identified& model, const MatrixRef& measured) {
   const auto n = model.C.cols();
   Matrix x = Matrix::Constant(measured.rows(), n, kNaN);
   for (Eigen::Index r = 0; r < measured.rows(); ++r) {
-    // Weighted by scale^2: least squares of the anomalies themselves, the projection that defined the factors.
+    // Weighted by scale^2: least squares of the anomalies themselves, the projection that defined the
+    // factors.
     Matrix normal = Matrix::Zero(n, n);
     Vector right = Vector::Zero(n);
     for (Eigen::Index i = 0; i < measured.cols(); ++i) {

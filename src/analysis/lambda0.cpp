@@ -14,8 +14,9 @@ namespace {
 constexpr double kOrthogonal = 1e-12;
 constexpr Eigen::Index kMostPlanarRows = 200;  // beyond, O(N^3 log N) loses against branch and bound
 
-/// Two-dimensional rows: the s rows most aligned with a direction change only where two rows are equally aligned,
-/// u perpendicular to c_i - c_j or c_i + c_j. One set per interval between these angles contains the optimum.
+/// Two-dimensional rows: the s rows most aligned with a direction change only where two rows are equally
+/// aligned, u perpendicular to c_i - c_j or c_i + c_j. One set per interval between these angles contains the
+/// optimum.
 SubsetBound planar_sweep(const MatrixRef& C, int s) {
   const auto N = C.rows();
   std::vector<double> angles{0.0};
@@ -44,8 +45,10 @@ SubsetBound planar_sweep(const MatrixRef& C, int s) {
     std::nth_element(order.begin(), order.begin() + s, order.end(),
                      [&](int a, int b) { return std::abs(C.row(a).dot(u)) > std::abs(C.row(b).dot(u)); });
     Eigen::Matrix2d S = Eigen::Matrix2d::Zero();
-    for (auto i = static_cast<std::size_t>(s); i < order.size(); ++i) S += C.row(order[i]).transpose() * C.row(order[i]);
-    const double value = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(S, Eigen::EigenvaluesOnly).eigenvalues()(0);
+    for (auto i = static_cast<std::size_t>(s); i < order.size(); ++i)
+      S += C.row(order[i]).transpose() * C.row(order[i]);
+    const double value =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(S, Eigen::EigenvaluesOnly).eigenvalues()(0);
     ++best.nodes;
     if (value >= best.upper) continue;
     best.upper = value;

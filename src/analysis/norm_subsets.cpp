@@ -84,7 +84,8 @@ double spectral_norm(const M& m) {
 void require_square(const MatrixRef& A, const MatrixRef& C) {
   if (A.rows() != C.cols() || A.cols() != C.cols() || !A.allFinite())
     refuse("A", std::to_string(A.rows()) + " x " + std::to_string(A.cols()),
-           std::to_string(C.cols()) + " x " + std::to_string(C.cols()) + " finite numbers", "C has one column per state");
+           std::to_string(C.cols()) + " x " + std::to_string(C.cols()) + " finite numbers",
+           "C has one column per state");
 }
 
 bool too_many(const detail::RowGroups& groups, int s, const SubsetLimits& limits) {
@@ -138,7 +139,8 @@ SubsetBound tau0(const MatrixRef& C, const MatrixRef& A, int s, const SubsetLimi
     b.method = "bound by all rows";
     return b;
   }
-  return dispatch(static_cast<int>(C.cols()), [&]<int n>() { return Enumeration<n>(C, weight, s, groups).run(value); });
+  return dispatch(static_cast<int>(C.cols()),
+                  [&]<int n>() { return Enumeration<n>(C, weight, s, groups).run(value); });
 }
 
 }  // namespace garrison

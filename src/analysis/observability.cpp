@@ -33,7 +33,8 @@ bool s_sparse_observable(const MatrixRef& A, const MatrixRef& C, int s) {
   const std::function<bool(std::size_t, int)> all_observable = [&](std::size_t k, int left) -> bool {
     if (k == G) {
       if (++tried > kMostRemovals)
-        refuse("s_sparse_observable", "more than " + text(kMostRemovals) + " sets to try", "a smaller s or N");
+        refuse("s_sparse_observable", "more than " + text(kMostRemovals) + " sets to try",
+               "a smaller s or N");
       Matrix kept(0, C.cols());
       for (std::size_t g = 0; g < G; ++g)
         if (!gone[g]) {

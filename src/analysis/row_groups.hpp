@@ -21,7 +21,8 @@ struct RowGroups {
 
 inline void require_subset_input(const char* who, const MatrixRef& C, int s) {
   if (C.rows() < 1 || C.cols() < 1)
-    refuse(std::string(who) + ".C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()), "at least 1 x 1");
+    refuse(std::string(who) + ".C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()),
+           "at least 1 x 1");
   if (!C.allFinite()) refuse(std::string(who) + ".C", "a number that is not finite", "finite rows");
   if (s < 0 || s > C.rows())
     refuse(std::string(who) + ".s", std::to_string(s), "a number in 0.." + std::to_string(C.rows()),
@@ -45,14 +46,16 @@ inline RowGroups group_rows(const MatrixRef& C) {
   return g;
 }
 
-/// Number of ways to remove s rows when rows of one group are interchangeable (saturates far beyond any budget).
+/// Number of ways to remove s rows when rows of one group are interchangeable (saturates far beyond any
+/// budget).
 inline double removal_choices(const RowGroups& g, int s) {
   std::vector<double> ways(static_cast<std::size_t>(s) + 1, 0.0);
   ways[0] = 1.0;
   for (const auto& members : g.members) {
     std::vector<double> next(ways.size(), 0.0);
     for (std::size_t total = 0; total < ways.size(); ++total)
-      for (std::size_t take = 0; take <= std::min(members.size(), total); ++take) next[total] += ways[total - take];
+      for (std::size_t take = 0; take <= std::min(members.size(), total); ++take)
+        next[total] += ways[total - take];
     ways = std::move(next);
   }
   return ways.back();

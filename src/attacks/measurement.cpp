@@ -76,7 +76,8 @@ double noise(const std::string& law, const Spot& at, const Random& random, std::
 
 Attack bias(Schedule schedule, double value) {
   require_finite("bias.value", value);
-  return pointwise(std::move(schedule), [=](double y, const Spot&, const Random&, std::uint32_t) { return y + value; });
+  return pointwise(std::move(schedule),
+                   [=](double y, const Spot&, const Random&, std::uint32_t) { return y + value; });
 }
 
 Attack scale(Schedule schedule, double factor) {
@@ -86,16 +87,18 @@ Attack scale(Schedule schedule, double factor) {
 }
 
 Attack constant(Schedule schedule, double value) {
-  return pointwise(std::move(schedule), [=](double, const Spot&, const Random&, std::uint32_t) { return value; });
+  return pointwise(std::move(schedule),
+                   [=](double, const Spot&, const Random&, std::uint32_t) { return value; });
 }
 
 Attack random_noise(Schedule schedule, const std::string& law, double size, bool replace) {
   if (law != "uniform" && law != "normal" && law != "laplace" && law != "cauchy")
     refuse("random.law", "\"" + law + "\"", "one of: uniform, normal, laplace, cauchy");
   if (!(size >= 0.0)) refuse("random.size", text(size), "a number >= 0");
-  return pointwise(std::move(schedule), [=](double y, const Spot& at, const Random& random, std::uint32_t salt) {
-    return (replace ? 0.0 : y) + size * noise(law, at, random, salt);
-  });
+  return pointwise(std::move(schedule),
+                   [=](double y, const Spot& at, const Random& random, std::uint32_t salt) {
+                     return (replace ? 0.0 : y) + size * noise(law, at, random, salt);
+                   });
 }
 
 Attack denial(Schedule schedule) { return constant(std::move(schedule), kNaN); }
@@ -111,7 +114,8 @@ Attack sinusoid(Schedule schedule, double amplitude, double period, double phase
   require_finite("sinusoid.amplitude", amplitude);
   if (!(period > 0.0)) refuse("sinusoid.period", text(period), "a number of samples > 0");
   return pointwise(std::move(schedule), [=](double y, const Spot& at, const Random&, std::uint32_t) {
-    return y + amplitude * std::sin(2.0 * std::numbers::pi * static_cast<double>(at.t - at.since) / period + phase);
+    return y + amplitude *
+                   std::sin(2.0 * std::numbers::pi * static_cast<double>(at.t - at.since) / period + phase);
   });
 }
 

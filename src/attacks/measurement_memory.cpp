@@ -13,7 +13,8 @@ namespace {
 template <class Settings, class Trial, bool closed>
 class Plan final : public AttackPlan {
  public:
-  Plan(Schedule schedule, Settings settings) : AttackPlan(std::move(schedule)), settings_(std::move(settings)) {}
+  Plan(Schedule schedule, Settings settings)
+      : AttackPlan(std::move(schedule)), settings_(std::move(settings)) {}
   bool closed_loop() const override { return closed; }
   std::unique_ptr<MeasurementAttack> start(const Model& model, const Random& random,
                                            std::uint32_t salt) const override {
@@ -38,7 +39,8 @@ class Stateful : public MeasurementAttack {
   void each(std::int64_t t, const Change& change) const {
     for (const int i : schedule_.agents(t))
       if (schedule_.strikes(random_, t, i, salt_))
-        for (int r = 0; r < model_.outputs(i); ++r) change(i, r, static_cast<std::size_t>(model_.offset(i) + r));
+        for (int r = 0; r < model_.outputs(i); ++r)
+          change(i, r, static_cast<std::size_t>(model_.offset(i) + r));
   }
 
   const Schedule& schedule_;
@@ -53,7 +55,8 @@ struct Delay {
 };
 class Replayed final : public Stateful<Delay> {
  public:
-  Replayed(const Schedule& schedule, const Delay& delay, const Model& model, const Random& random, std::uint32_t salt)
+  Replayed(const Schedule& schedule, const Delay& delay, const Model& model, const Random& random,
+           std::uint32_t salt)
       : Stateful(schedule, delay, model, random, salt),
         past_(static_cast<std::size_t>(delay.samples) * static_cast<std::size_t>(model.total_outputs())) {}
   void apply(const Sample& s) override {
@@ -78,14 +81,15 @@ struct Recursion {
 };
 class Autoregressive final : public Stateful<Recursion> {
  public:
-  Autoregressive(const Schedule& schedule, const Recursion& recursion, const Model& model, const Random& random,
-                 std::uint32_t salt)
+  Autoregressive(const Schedule& schedule, const Recursion& recursion, const Model& model,
+                 const Random& random, std::uint32_t salt)
       : Stateful(schedule, recursion, model, random, salt), a_(Vector::Zero(model.total_outputs())) {}
   void apply(const Sample& s) override {
     each(s.t, [&](int i, int r, std::size_t k) {
       double& a = a_(static_cast<Eigen::Index>(k));
       const auto index = salt_ * 4096U + static_cast<std::uint32_t>(r);
-      a = settings_.coefficient * a + settings_.size * random_.normal(s.t, static_cast<std::uint32_t>(i), index);
+      a = settings_.coefficient * a +
+          settings_.size * random_.normal(s.t, static_cast<std::uint32_t>(i), index);
       s.y[k] += a;
     });
   }
@@ -135,7 +139,8 @@ class Stealthy final : public Stateful<Margin> {
  public:
   Stealthy(const Schedule& schedule, const Margin& margin, const Model& model, const Random& random,
            std::uint32_t salt)
-      : Stateful(schedule, margin, model, random, salt), expected_(static_cast<std::size_t>(model.total_outputs())) {}
+      : Stateful(schedule, margin, model, random, salt),
+        expected_(static_cast<std::size_t>(model.total_outputs())) {}
   void apply(const Sample& s) override {
     each(s.t, [&](int i, int r, std::size_t k) {
       if (r == 0) s.victims.expected(i, expected_.data() + k);
@@ -158,13 +163,15 @@ Attack replayed(Schedule schedule, int delay) {
 Attack autoregressive(Schedule schedule, double coefficient, double size) {
   if (!std::isfinite(coefficient)) refuse("autoregressive.coefficient", text(coefficient), "a finite number");
   if (!(size >= 0.0)) refuse("autoregressive.size", text(size), "a number >= 0");
-  return std::make_shared<Plan<Recursion, Autoregressive, false>>(std::move(schedule), Recursion{coefficient, size});
+  return std::make_shared<Plan<Recursion, Autoregressive, false>>(std::move(schedule),
+                                                                  Recursion{coefficient, size});
 }
 
 Attack false_trajectory(Schedule schedule, Vector offset, Vector push) {
-  if (!offset.allFinite() || !push.allFinite()) refuse("false_trajectory", "a number that is not finite", "finite ones");
+  if (!offset.allFinite() || !push.allFinite())
+    refuse("false_trajectory", "a number that is not finite", "finite ones");
   return std::make_shared<Plan<Story, FalseTrajectory, false>>(std::move(schedule),
-                                                              Story{std::move(offset), std::move(push)});
+                                                               Story{std::move(offset), std::move(push)});
 }
 
 Attack stealthy(Schedule schedule, double fraction) {

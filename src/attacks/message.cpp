@@ -26,7 +26,8 @@ class Equivocate final : public MessageAttack {
   bool rewrite(const Hop& hop, const Random& random, std::span<double> values) const override {
     const auto receiver = static_cast<std::uint32_t>(hop.receiver);
     double square = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) square += std::pow(direction(hop, random, receiver, k), 2);
+    for (std::size_t k = 0; k < values.size(); ++k)
+      square += std::pow(direction(hop, random, receiver, k), 2);
     for (std::size_t k = 0; k < values.size(); ++k)
       values[k] += size_ * direction(hop, random, receiver, k) / std::sqrt(square);
     return true;
@@ -57,6 +58,8 @@ std::shared_ptr<MessageAttack> equivocate(Schedule schedule, double size) {
   return std::make_shared<Equivocate>(std::move(schedule), size);
 }
 
-std::shared_ptr<MessageAttack> silence(Schedule schedule) { return std::make_shared<Silence>(std::move(schedule)); }
+std::shared_ptr<MessageAttack> silence(Schedule schedule) {
+  return std::make_shared<Silence>(std::move(schedule));
+}
 
 }  // namespace garrison

@@ -13,22 +13,28 @@ struct NoParams {
 struct BiasParams {
   double value = kNaN;
   static auto fields() {
-    return std::make_tuple(field(
-        &BiasParams::value, {.name = "value", .unit = "measurement", .doc = "added to the measurement", .required = true}));
+    return std::make_tuple(
+        field(&BiasParams::value,
+              {.name = "value", .unit = "measurement", .doc = "added to the measurement", .required = true}));
   }
 };
 struct ScaleParams {
   double factor = 3.0;
   static auto fields() {
-    return std::make_tuple(field(&ScaleParams::factor, {.name = "factor", .unit = "1",
-                                                        .doc = "the measurement is multiplied by it (3 = the paper's attack)"}));
+    return std::make_tuple(
+        field(&ScaleParams::factor, {.name = "factor",
+                                     .unit = "1",
+                                     .doc = "the measurement is multiplied by it (3 = the paper's attack)"}));
   }
 };
 struct ConstantParams {
   std::string value = "nan";
   static auto fields() {
-    return std::make_tuple(field(&ConstantParams::value, {.name = "value", .unit = "measurement",
-                                                          .doc = "what the sensor says instead: a number as text, nan or inf included"}));
+    return std::make_tuple(
+        field(&ConstantParams::value,
+              {.name = "value",
+               .unit = "measurement",
+               .doc = "what the sensor says instead: a number as text, nan or inf included"}));
   }
 };
 struct RandomParams {
@@ -37,23 +43,32 @@ struct RandomParams {
   bool replace = false;
   static auto fields() {
     return std::make_tuple(
-        field(&RandomParams::size, {.name = "size", .unit = "measurement", .doc = "half width, or scale of the law", .least = 0.0}),
-        field(&RandomParams::law, {.name = "law", .unit = "", .doc = "distribution of the noise",
+        field(
+            &RandomParams::size,
+            {.name = "size", .unit = "measurement", .doc = "half width, or scale of the law", .least = 0.0}),
+        field(&RandomParams::law, {.name = "law",
+                                   .unit = "",
+                                   .doc = "distribution of the noise",
                                    .choices = {"uniform", "normal", "laplace", "cauchy"}}),
-        field(&RandomParams::replace, {.name = "replace", .unit = "", .doc = "drop the measurement, send noise only"}));
+        field(&RandomParams::replace,
+              {.name = "replace", .unit = "", .doc = "drop the measurement, send noise only"}));
   }
 };
 struct ReplayParams {
   int delay = 10;
   static auto fields() {
-    return std::make_tuple(field(&ReplayParams::delay, {.name = "delay", .unit = "samples",
-                                                        .doc = "age of the recorded measurement that is sent", .least = 1}));
+    return std::make_tuple(field(&ReplayParams::delay, {.name = "delay",
+                                                        .unit = "samples",
+                                                        .doc = "age of the recorded measurement that is sent",
+                                                        .least = 1}));
   }
 };
 struct RampParams {
   double slope = 0.1;
   static auto fields() {
-    return std::make_tuple(field(&RampParams::slope, {.name = "slope", .unit = "measurement/sample", .doc = "growth of the added drift"}));
+    return std::make_tuple(
+        field(&RampParams::slope,
+              {.name = "slope", .unit = "measurement/sample", .doc = "growth of the added drift"}));
   }
 };
 struct SinusoidParams {
@@ -62,8 +77,10 @@ struct SinusoidParams {
   double phase = 0.0;
   static auto fields() {
     return std::make_tuple(
-        field(&SinusoidParams::amplitude, {.name = "amplitude", .unit = "measurement", .doc = "size of the added wave"}),
-        field(&SinusoidParams::period, {.name = "period", .unit = "samples", .doc = "length of one wave", .least = 0.0, .open = true}),
+        field(&SinusoidParams::amplitude,
+              {.name = "amplitude", .unit = "measurement", .doc = "size of the added wave"}),
+        field(&SinusoidParams::period,
+              {.name = "period", .unit = "samples", .doc = "length of one wave", .least = 0.0, .open = true}),
         field(&SinusoidParams::phase, {.name = "phase", .unit = "rad", .doc = "phase at the start"}));
   }
 };
@@ -72,8 +89,11 @@ struct AutoregressiveParams {
   double size = 1.0;
   static auto fields() {
     return std::make_tuple(
-        field(&AutoregressiveParams::coefficient, {.name = "coefficient", .unit = "1", .doc = "memory of the added signal"}),
-        field(&AutoregressiveParams::size, {.name = "size", .unit = "measurement", .doc = "standard deviation of its noise", .least = 0.0}));
+        field(&AutoregressiveParams::coefficient,
+              {.name = "coefficient", .unit = "1", .doc = "memory of the added signal"}),
+        field(
+            &AutoregressiveParams::size,
+            {.name = "size", .unit = "measurement", .doc = "standard deviation of its noise", .least = 0.0}));
   }
 };
 struct StoryParams {
@@ -81,15 +101,23 @@ struct StoryParams {
   std::vector<double> push;
   static auto fields() {
     return std::make_tuple(
-        field(&StoryParams::offset, {.name = "offset", .unit = "state", .doc = "displacement of the false state at the start, one number per state"}),
-        field(&StoryParams::push, {.name = "push", .unit = "state/sample", .doc = "added to the displacement at every sample; left out: 0"}));
+        field(&StoryParams::offset,
+              {.name = "offset",
+               .unit = "state",
+               .doc = "displacement of the false state at the start, one number per state"}),
+        field(&StoryParams::push, {.name = "push",
+                                   .unit = "state/sample",
+                                   .doc = "added to the displacement at every sample; left out: 0"}));
   }
 };
 struct StealthyParams {
   double fraction = 0.99;
   static auto fields() {
-    return std::make_tuple(field(&StealthyParams::fraction, {.name = "fraction", .unit = "1",
-                                                             .doc = "share of the tolerated deviation that is used; its sign is the direction"}));
+    return std::make_tuple(
+        field(&StealthyParams::fraction,
+              {.name = "fraction",
+               .unit = "1",
+               .doc = "share of the tolerated deviation that is used; its sign is the direction"}));
   }
 };
 struct ForgeParams {
@@ -97,14 +125,17 @@ struct ForgeParams {
   bool replace = false;
   static auto fields() {
     return std::make_tuple(
-        field(&ForgeParams::offset, {.name = "offset", .unit = "state", .doc = "added to every number of the message"}),
+        field(&ForgeParams::offset,
+              {.name = "offset", .unit = "state", .doc = "added to every number of the message"}),
         field(&ForgeParams::replace, {.name = "replace", .unit = "", .doc = "send the offset alone"}));
   }
 };
 struct EquivocateParams {
   double size = 1.0;
   static auto fields() {
-    return std::make_tuple(field(&EquivocateParams::size, {.name = "size", .unit = "state", .doc = "length of the lie told to each neighbour", .least = 0.0}));
+    return std::make_tuple(field(
+        &EquivocateParams::size,
+        {.name = "size", .unit = "state", .doc = "length of the lie told to each neighbour", .least = 0.0}));
   }
 };
 
@@ -126,17 +157,27 @@ Attack build(Schedule s, const NoParams&) { return denial(std::move(s)); }
 Attack build(Schedule s, const BiasParams& p) { return bias(std::move(s), p.value); }
 Attack build(Schedule s, const ScaleParams& p) { return scale(std::move(s), p.factor); }
 Attack build(Schedule s, const ConstantParams& p) { return constant(std::move(s), number_from(p.value)); }
-Attack build(Schedule s, const RandomParams& p) { return random_noise(std::move(s), p.law, p.size, p.replace); }
+Attack build(Schedule s, const RandomParams& p) {
+  return random_noise(std::move(s), p.law, p.size, p.replace);
+}
 Attack build(Schedule s, const ReplayParams& p) { return replayed(std::move(s), p.delay); }
 Attack build(Schedule s, const RampParams& p) { return ramp(std::move(s), p.slope); }
-Attack build(Schedule s, const SinusoidParams& p) { return sinusoid(std::move(s), p.amplitude, p.period, p.phase); }
-Attack build(Schedule s, const AutoregressiveParams& p) { return autoregressive(std::move(s), p.coefficient, p.size); }
+Attack build(Schedule s, const SinusoidParams& p) {
+  return sinusoid(std::move(s), p.amplitude, p.period, p.phase);
+}
+Attack build(Schedule s, const AutoregressiveParams& p) {
+  return autoregressive(std::move(s), p.coefficient, p.size);
+}
 Attack build(Schedule s, const StoryParams& p) {
   return false_trajectory(std::move(s), vector_of(p.offset), vector_of(p.push));
 }
 Attack build(Schedule s, const StealthyParams& p) { return stealthy(std::move(s), p.fraction); }
-std::shared_ptr<const MessageAttack> build(Schedule s, const ForgeParams& p) { return forge(std::move(s), p.offset, p.replace); }
-std::shared_ptr<const MessageAttack> build(Schedule s, const EquivocateParams& p) { return equivocate(std::move(s), p.size); }
+std::shared_ptr<const MessageAttack> build(Schedule s, const ForgeParams& p) {
+  return forge(std::move(s), p.offset, p.replace);
+}
+std::shared_ptr<const MessageAttack> build(Schedule s, const EquivocateParams& p) {
+  return equivocate(std::move(s), p.size);
+}
 
 template <class P>
 AttackInfo on_measurements(const char* name, const char* doc) {
@@ -164,11 +205,16 @@ std::span<const AttackInfo> attack_infos() {
       on_measurements<RampParams>("ramp", "a growing drift is added"),
       on_measurements<SinusoidParams>("sinusoid", "a wave is added"),
       on_measurements<AutoregressiveParams>("autoregressive", "correlated noise is added"),
-      on_measurements<StoryParams>("false_trajectory", "all attacked sensors report one false state that obeys the plant"),
-      on_measurements<StealthyParams>("stealthy", "stays inside the threshold that the agent applies (closed loop)"),
+      on_measurements<StoryParams>("false_trajectory",
+                                   "all attacked sensors report one false state that obeys the plant"),
+      on_measurements<StealthyParams>("stealthy",
+                                      "stays inside the threshold that the agent applies (closed loop)"),
       on_messages<ForgeParams>("forge", "the agent sends a false estimate to all neighbours"),
       on_messages<EquivocateParams>("equivocate", "the agent tells each neighbour another lie"),
-      AttackInfo{"silence", "message", "the agent sends nothing", {},
+      AttackInfo{"silence",
+                 "message",
+                 "the agent sends nothing",
+                 {},
                  [](Schedule s, const ParamMap& given) -> AnyAttack {
                    parse_params<NoParams>("attack", given);
                    return {"", nullptr, silence(std::move(s))};

@@ -21,7 +21,8 @@ Schedule::Schedule(std::vector<Phase> phases, std::int64_t stop, double probabil
   }
   if (stop_ <= phases_.back().start)
     refuse("stop", std::to_string(stop_), "a time after the start " + std::to_string(phases_.back().start));
-  if (!(probability_ >= 0.0 && probability_ <= 1.0)) refuse("probability", text(probability_), "a number in [0, 1]");
+  if (!(probability_ >= 0.0 && probability_ <= 1.0))
+    refuse("probability", text(probability_), "a number in [0, 1]");
 }
 
 std::span<const int> Schedule::agents(std::int64_t t) const {

@@ -13,8 +13,8 @@ void require_finite(const std::string& which, const Matrix& m) {
   for (Eigen::Index j = 0; j < m.cols(); ++j)
     for (Eigen::Index i = 0; i < m.rows(); ++i)
       if (!std::isfinite(m(i, j)))
-        refuse(which + "[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(m(i, j)), "a finite number",
-               "replace or remove it");
+        refuse(which + "[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(m(i, j)),
+               "a finite number", "replace or remove it");
 }
 
 void require_covariance(const std::string& which, const Matrix& m, Eigen::Index size) {
@@ -58,7 +58,8 @@ Model::Model(Matrix A, std::vector<Matrix> C, Noise noise)
            "one per agent (" + std::to_string(agents()) + ")");
   for (Eigen::Index i = 0; i < noise_.measurement_bound.size(); ++i)
     require_bound("measurement_bound[" + std::to_string(i) + "]", noise_.measurement_bound(i));
-  if (noise_.process_covariance.size() != 0) require_covariance("process_covariance", noise_.process_covariance, n);
+  if (noise_.process_covariance.size() != 0)
+    require_covariance("process_covariance", noise_.process_covariance, n);
   const auto& Sv = noise_.measurement_covariance;
   if (!Sv.empty() && Sv.size() != C_.size())
     refuse("measurement_covariance", std::to_string(Sv.size()) + " matrices",

@@ -54,7 +54,8 @@ Network::Network(int agents, std::span<const Edge> edges, bool directed) : direc
     const std::string got = "(" + std::to_string(from) + ", " + std::to_string(to) + ")";
     if (from < 0 || to < 0 || from >= agents || to >= agents)
       refuse(which, got, "indices in 0.." + std::to_string(agents - 1), "agents are numbered from 0");
-    if (from == to) refuse(which, got + ", a self-loop", "two different agents", "an agent always knows itself");
+    if (from == to)
+      refuse(which, got + ", a self-loop", "two different agents", "an agent always knows itself");
     pairs.emplace_back(to, from);
     if (!directed) pairs.emplace_back(from, to);
   }
@@ -104,7 +105,8 @@ void Network::require_connected() const {
   for (int i = 0; i < agents() && shown < 5; ++i)
     if (!seen[static_cast<std::size_t>(i)]) cut += (shown++ ? ", " : "") + std::to_string(i);
   refuse("network", "a graph that is not connected (lambda_2 = 0)", "a connected one",
-         shown ? "no path joins agent 0 and agent(s) " + cut : "some agents hear agent 0 but cannot be heard by it");
+         shown ? "no path joins agent 0 and agent(s) " + cut
+               : "some agents hear agent 0 but cannot be heard by it");
 }
 
 Matrix Network::laplacian() const {

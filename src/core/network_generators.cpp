@@ -59,7 +59,9 @@ Network Network::random_geometric(int agents, double radius, std::uint64_t seed,
 
   // Cells no smaller than the radius: neighbours are in the 3 x 3 cells around a point.
   const int side = std::clamp(static_cast<int>(1.0 / radius), 1, 1 + static_cast<int>(std::sqrt(agents)));
-  const auto cell = [side](double coordinate) { return std::min(static_cast<int>(coordinate * side), side - 1); };
+  const auto cell = [side](double coordinate) {
+    return std::min(static_cast<int>(coordinate * side), side - 1);
+  };
   std::vector<std::vector<int>> cells(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   std::vector<Edge> edges;
   for (int i = 0; i < agents; ++i) {
@@ -76,7 +78,8 @@ Network Network::random_geometric(int agents, double radius, std::uint64_t seed,
 }
 
 Network Network::erdos_renyi(int agents, double probability, std::uint64_t seed) {
-  if (!(probability >= 0.0 && probability <= 1.0)) refuse("probability", text(probability), "a number in [0, 1]");
+  if (!(probability >= 0.0 && probability <= 1.0))
+    refuse("probability", text(probability), "a number in [0, 1]");
   const Random random(seed, 0, Purpose::graph);
   std::vector<Edge> edges;
   for (int i = 0; i < agents; ++i)

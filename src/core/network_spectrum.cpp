@@ -65,12 +65,13 @@ LaplacianSpectrum Network::laplacian_spectrum() const {
   if (directed_) refuse("network", "a directed one", "an undirected one", "its Laplacian must be symmetric");
   if (agents() == 1) return {0.0, 0.0};
   if (agents() <= kDenseLimit) {
-    const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>(laplacian(), Eigen::EigenvaluesOnly).eigenvalues();
+    const Vector values =
+        Eigen::SelfAdjointEigenSolver<Matrix>(laplacian(), Eigen::EigenvaluesOnly).eigenvalues();
     return {std::max(values(1), 0.0), values(agents() - 1)};
   }
-  if (!connected()) return {0.0, largest_eigenvalue(agents(), [lap = sparse_laplacian(*this)](const Vector& v) {
-                              return Vector(lap * v);
-                            })};
+  if (!connected())
+    return {0.0, largest_eigenvalue(
+                     agents(), [lap = sparse_laplacian(*this)](const Vector& v) { return Vector(lap * v); })};
   const Sparse lap = sparse_laplacian(*this);
   const double lambda_max = largest_eigenvalue(agents(), [&](const Vector& v) { return Vector(lap * v); });
   // lambda_2 = 1 / largest eigenvalue of the pseudo-inverse. Grounding agent 0 makes the Laplacian

@@ -29,7 +29,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::string type_name(const ParamValue& value) {
-  constexpr const char* names[] = {"true or false", "a whole number", "a number", "a text", "a list of numbers"};
+  constexpr const char* names[] = {"true or false", "a whole number", "a number", "a text",
+                                   "a list of numbers"};
   return names[value.index()];
 }
 
@@ -39,14 +40,16 @@ std::string shown(const ParamValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return text(*number);
   if (const auto* words = std::get_if<std::string>(&value)) return "\"" + *words + "\"";
   std::string all;
-  for (const double number : std::get<std::vector<double>>(value)) all += (all.empty() ? "" : ", ") + text(number);
+  for (const double number : std::get<std::vector<double>>(value))
+    all += (all.empty() ? "" : ", ") + text(number);
   return "[" + all + "]";
 }
 
 std::string range(const ParamInfo& info) {
   std::string words = type_name(info.initial);
   if (std::isfinite(info.least)) words += (info.open ? " > " : " >= ") + text(info.least);
-  if (std::isfinite(info.most)) words += (std::isfinite(info.least) ? " and" : "") + (" <= " + text(info.most));
+  if (std::isfinite(info.most))
+    words += (std::isfinite(info.least) ? " and" : "") + (" <= " + text(info.most));
   return words;
 }
 
@@ -72,7 +75,8 @@ void refuse_unknown(const std::string& owner, const std::string& name, std::span
 void check_param(const std::string& owner, const ParamInfo& info, const ParamValue& value) {
   const std::string which = owner + "." + info.name;
   if (const auto* words = std::get_if<std::string>(&value)) {
-    if (!info.choices.empty() && std::find(info.choices.begin(), info.choices.end(), *words) == info.choices.end())
+    if (!info.choices.empty() &&
+        std::find(info.choices.begin(), info.choices.end(), *words) == info.choices.end())
       refuse(which, shown(value), "one of: " + join(info.choices), info.doc);
     return;
   }
@@ -82,8 +86,9 @@ void check_param(const std::string& owner, const ParamInfo& info, const ParamVal
       if (!(number >= info.least && number <= info.most)) refuse(which, shown(value), range(info), info.doc);
     return;
   }
-  const double number = std::holds_alternative<double>(value) ? std::get<double>(value)
-                                                              : static_cast<double>(std::get<std::int64_t>(value));
+  const double number = std::holds_alternative<double>(value)
+                            ? std::get<double>(value)
+                            : static_cast<double>(std::get<std::int64_t>(value));
   if (std::isnan(number)) {
     const bool may_be_absent = std::isnan(std::get<double>(info.initial)) && !info.required;
     if (!may_be_absent) refuse(which, info.required ? "nothing" : "nan", range(info), info.doc);

@@ -18,14 +18,16 @@ SplitSystem split_outputs(const Model& model, const Network& network) {
 
   const Noise& old = model.noise();
   Noise noise{old.process_bound, {}, old.process_covariance, {}};
-  if (old.measurement_bound.size() != 0) noise.measurement_bound.resize(static_cast<Eigen::Index>(owner.size()));
+  if (old.measurement_bound.size() != 0)
+    noise.measurement_bound.resize(static_cast<Eigen::Index>(owner.size()));
   std::vector<Matrix> C;
   for (std::size_t k = 0; k < owner.size(); ++k) {
     const int i = owner[k];
     const int r = static_cast<int>(k) - first[static_cast<std::size_t>(i)];
     const bool senses = model.outputs(i) > 0;
     C.push_back(senses ? Matrix(model.C(i).row(r)) : Matrix(0, model.states()));
-    if (old.measurement_bound.size() != 0) noise.measurement_bound(static_cast<Eigen::Index>(k)) = old.measurement_bound(i);
+    if (old.measurement_bound.size() != 0)
+      noise.measurement_bound(static_cast<Eigen::Index>(k)) = old.measurement_bound(i);
     if (!old.measurement_covariance.empty()) {
       const Matrix& S = old.measurement_covariance[static_cast<std::size_t>(i)];
       noise.measurement_covariance.push_back(senses ? Matrix::Constant(1, 1, S(r, r)) : Matrix(0, 0));
@@ -41,7 +43,8 @@ SplitSystem split_outputs(const Model& model, const Network& network) {
   for (const auto& [from, to] : network.edges()) join(from, to);
   for (int i = 0; i < model.agents(); ++i) join(i, i);
   const int parts = static_cast<int>(owner.size());
-  return {Model(model.A(), std::move(C), std::move(noise)), Network(parts, edges, network.directed()), std::move(owner)};
+  return {Model(model.A(), std::move(C), std::move(noise)), Network(parts, edges, network.directed()),
+          std::move(owner)};
 }
 
 }  // namespace garrison

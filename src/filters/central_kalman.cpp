@@ -5,19 +5,23 @@
 
 namespace garrison {
 
-Matrix central_kalman(const Model& model, const MatrixRef& measurements, const VectorRef& x0, double start_variance) {
+Matrix central_kalman(const Model& model, const MatrixRef& measurements, const VectorRef& x0,
+                      double start_variance) {
   const auto n = model.states();
   const Noise& noise = model.noise();
   if (noise.process_covariance.size() == 0 || noise.measurement_covariance.empty())
-    refuse("model", "no covariances", "process_covariance and measurement_covariance", "a Kalman filter weighs with them");
+    refuse("model", "no covariances", "process_covariance and measurement_covariance",
+           "a Kalman filter weighs with them");
   if (measurements.cols() != model.total_outputs())
-    refuse("measurements", std::to_string(measurements.cols()) + " columns", std::to_string(model.total_outputs()));
+    refuse("measurements", std::to_string(measurements.cols()) + " columns",
+           std::to_string(model.total_outputs()));
   if (x0.size() != n) refuse("x0", std::to_string(x0.size()) + " numbers", std::to_string(n));
   if (!(start_variance >= 0.0)) refuse("start_variance", text(start_variance), "a number >= 0");
   Vector R(model.total_outputs());
   for (int i = 0; i < model.agents(); ++i) {
     const Matrix& S = noise.measurement_covariance[static_cast<std::size_t>(i)];
-    if (!S.isDiagonal(1e-12)) refuse("measurement_covariance[" + std::to_string(i) + "]", "a full matrix", "a diagonal one");
+    if (!S.isDiagonal(1e-12))
+      refuse("measurement_covariance[" + std::to_string(i) + "]", "a full matrix", "a diagonal one");
     R.segment(model.offset(i), model.outputs(i)) = S.diagonal();
   }
   const Matrix C = model.stacked();

@@ -58,7 +58,8 @@ Lfre::Gains Lfre::design(const Params& params, const Model& model, const Network
   for (std::size_t k = 0; k < queue.size(); ++k)
     for (int j = 0; j < N; ++j) {
       const auto heard = network.neighbours(j);
-      if (distance[static_cast<std::size_t>(j)] >= 0 || !std::binary_search(heard.begin(), heard.end(), queue[k]))
+      if (distance[static_cast<std::size_t>(j)] >= 0 ||
+          !std::binary_search(heard.begin(), heard.end(), queue[k]))
         continue;
       distance[static_cast<std::size_t>(j)] = distance[static_cast<std::size_t>(queue[k])] + 1;
       queue.push_back(j);
@@ -91,7 +92,8 @@ Check Lfre::check(const Params& params, const Model& model, const Network& netwo
   c.conditions.push_back({"sources", sources, ">= " + text(needed), sources >= needed,
                           "agents that observe the whole state alone"});
   c.conditions.push_back({"fewest parents", static_cast<double>(fewest), ">= " + text(needed),
-                          static_cast<double>(fewest) >= needed, "trimming leaves at least one honest value"});
+                          static_cast<double>(fewest) >= needed,
+                          "trimming leaves at least one honest value"});
   return c;
 }
 

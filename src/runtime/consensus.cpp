@@ -44,7 +44,8 @@ ConsensusPlan::ConsensusPlan(std::span<const int> offsets, std::span<const int> 
 int ConsensusPlan::rounds_in_flight(int width) const {
   const auto row = static_cast<std::size_t>(width) * 2 * sizeof(double);
   if (order_.size() * row <= kCache) return 1;
-  return static_cast<int>(std::min<std::size_t>(kCache / (row * static_cast<std::size_t>(bandwidth_ + 1)), 64));
+  return static_cast<int>(
+      std::min<std::size_t>(kCache / (row * static_cast<std::size_t>(bandwidth_ + 1)), 64));
 }
 
 void ConsensusPlan::run(double* x, double* scratch, int width, double alpha, std::span<const double> omega,
@@ -53,8 +54,8 @@ void ConsensusPlan::run(double* x, double* scratch, int width, double alpha, std
   const auto N = static_cast<std::int32_t>(order_.size());
   const auto row_range = [&](int round, std::int32_t begin, std::int32_t end) {
     const double weight = omega.empty() ? 1.0 : omega[static_cast<std::size_t>(round)];
-    kernel::average_rows({first_.data(), neighbour_.data(), buffers[round % 2], buffers[(round + 1) % 2], begin, end,
-                          alpha, weight},
+    kernel::average_rows({first_.data(), neighbour_.data(), buffers[round % 2], buffers[(round + 1) % 2],
+                          begin, end, alpha, weight},
                          width);
   };
   const bool threaded = workers != nullptr && workers->threads() > 1;
@@ -75,7 +76,9 @@ void ConsensusPlan::run(double* x, double* scratch, int width, double alpha, std
       const int group = std::min(fused, rounds - base);
       const std::int64_t block = std::max<std::int64_t>(bandwidth_ / 4, 64);
       const std::int64_t end = N + static_cast<std::int64_t>(group - 1) * bandwidth_;
-      const auto clamp = [&](std::int64_t r) { return static_cast<std::int32_t>(std::clamp<std::int64_t>(r, 0, N)); };
+      const auto clamp = [&](std::int64_t r) {
+        return static_cast<std::int32_t>(std::clamp<std::int64_t>(r, 0, N));
+      };
       for (std::int64_t front = 0; front < end; front += block)
         for (int l = 0; l < group; ++l) {
           const std::int64_t lag = static_cast<std::int64_t>(l) * bandwidth_;

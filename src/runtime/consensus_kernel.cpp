@@ -46,22 +46,38 @@ GARRISON_INLINE void rows_of_any_width(const RowJob& job, int width) {
 template <bool plain>
 GARRISON_INLINE void dispatch(const RowJob& job, int width) {
   switch (width) {
-    case 1: return rows<1, plain>(job);
-    case 2: return rows<2, plain>(job);
-    case 3: return rows<3, plain>(job);
-    case 4: return rows<4, plain>(job);
-    case 5: return rows<5, plain>(job);
-    case 6: return rows<6, plain>(job);
-    case 7: return rows<7, plain>(job);
-    case 8: return rows<8, plain>(job);
-    case 16: return rows<16, plain>(job);  // from here on: eight trials side by side
-    case 24: return rows<24, plain>(job);
-    case 32: return rows<32, plain>(job);
-    case 40: return rows<40, plain>(job);
-    case 48: return rows<48, plain>(job);
-    case 56: return rows<56, plain>(job);
-    case 64: return rows<64, plain>(job);
-    default: return rows_of_any_width<plain>(job, width);
+    case 1:
+      return rows<1, plain>(job);
+    case 2:
+      return rows<2, plain>(job);
+    case 3:
+      return rows<3, plain>(job);
+    case 4:
+      return rows<4, plain>(job);
+    case 5:
+      return rows<5, plain>(job);
+    case 6:
+      return rows<6, plain>(job);
+    case 7:
+      return rows<7, plain>(job);
+    case 8:
+      return rows<8, plain>(job);
+    case 16:
+      return rows<16, plain>(job);  // from here on: eight trials side by side
+    case 24:
+      return rows<24, plain>(job);
+    case 32:
+      return rows<32, plain>(job);
+    case 40:
+      return rows<40, plain>(job);
+    case 48:
+      return rows<48, plain>(job);
+    case 56:
+      return rows<56, plain>(job);
+    case 64:
+      return rows<64, plain>(job);
+    default:
+      return rows_of_any_width<plain>(job, width);
   }
 }
 

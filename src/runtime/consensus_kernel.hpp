@@ -8,10 +8,10 @@ namespace garrison::kernel {
 
 /// One round for the rows begin..end-1 of N x width arrays.
 struct RowJob {
-  const std::int32_t* first;      ///< N+1 offsets into `neighbour`
+  const std::int32_t* first;  ///< N+1 offsets into `neighbour`
   const std::int32_t* neighbour;
   const double* now;
-  double* next;                   ///< holds the values of one round ago when omega != 1
+  double* next;  ///< holds the values of one round ago when omega != 1
   std::int32_t begin;
   std::int32_t end;
   double alpha;

@@ -19,12 +19,13 @@ LinkCounters& LinkCounters::operator+=(const LinkCounters& other) {
   return *this;
 }
 
-Link::Link(const Network& network, LinkFaults faults, std::vector<std::shared_ptr<const MessageAttack>> attacks,
-           std::uint64_t seed, std::uint32_t trial)
+Link::Link(const Network& network, LinkFaults faults,
+           std::vector<std::shared_ptr<const MessageAttack>> attacks, std::uint64_t seed, std::uint32_t trial)
     : faults_(faults), attacks_(std::move(attacks)), seed_(seed), trial_(trial) {
   require_probability("link.drop", faults_.drop);
   require_probability("link.delay", faults_.delay);
-  if (faults_.delay_rounds < 1) refuse("link.delay_rounds", std::to_string(faults_.delay_rounds), "at least 1");
+  if (faults_.delay_rounds < 1)
+    refuse("link.delay_rounds", std::to_string(faults_.delay_rounds), "at least 1");
   liar_.assign(static_cast<std::size_t>(network.agents()), 0);
   for (const auto& attack : attacks_) {
     attack->schedule().require_agents_below(network.agents());
@@ -34,7 +35,8 @@ Link::Link(const Network& network, LinkFaults faults, std::vector<std::shared_pt
 
 Link::Fate Link::fate(const Hop& hop) const {
   const Random random(seed_, trial_, Purpose::link);
-  const auto address = static_cast<std::uint32_t>(hop.sender) * 65537U + static_cast<std::uint32_t>(hop.receiver);
+  const auto address =
+      static_cast<std::uint32_t>(hop.sender) * 65537U + static_cast<std::uint32_t>(hop.receiver);
   const auto index = 2U * static_cast<std::uint32_t>(hop.round);
   if (faults_.drop > 0.0 && random.uniform(hop.t, address, index) < faults_.drop) return Fate::lost;
   if (faults_.delay > 0.0 && random.uniform(hop.t, address, index + 1) < faults_.delay) return Fate::late;

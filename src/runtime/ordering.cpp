@@ -11,7 +11,9 @@ class Search {
   Search(std::span<const int> offsets, std::span<const int> lists)
       : offsets_(offsets), lists_(lists), mark_(offsets.size() - 1, 0) {}
 
-  int degree(int i) const { return offsets_[static_cast<std::size_t>(i) + 1] - offsets_[static_cast<std::size_t>(i)]; }
+  int degree(int i) const {
+    return offsets_[static_cast<std::size_t>(i) + 1] - offsets_[static_cast<std::size_t>(i)];
+  }
 
   /// Breadth-first order from `start`, neighbours by degree; returns where the last level begins.
   std::size_t levels(int start, std::vector<int>& order) {
@@ -27,7 +29,8 @@ class Search {
         level_end = order.size();
       }
       const std::size_t fresh = order.size();
-      for (int e = offsets_[static_cast<std::size_t>(order[k])]; e < offsets_[static_cast<std::size_t>(order[k]) + 1]; ++e) {
+      for (int e = offsets_[static_cast<std::size_t>(order[k])];
+           e < offsets_[static_cast<std::size_t>(order[k]) + 1]; ++e) {
         const int j = lists_[static_cast<std::size_t>(e)];
         if (mark_[static_cast<std::size_t>(j)] == stamp_) continue;
         mark_[static_cast<std::size_t>(j)] = stamp_;

@@ -14,7 +14,8 @@ Matrix root(const Matrix& covariance) {
 
 class Simulated final : public Source {
  public:
-  Simulated(const Model& model, const NoiseLaw& law, const PlantOptions& plant, std::uint64_t seed, std::uint32_t trial)
+  Simulated(const Model& model, const NoiseLaw& law, const PlantOptions& plant, std::uint64_t seed,
+            std::uint32_t trial)
       : model_(model),
         law_(law),
         start_(seed, trial, Purpose::start),
@@ -75,8 +76,10 @@ class Recorded final : public Source {
 
 }  // namespace
 
-void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radius, bool on_sphere, Vector& out) {
-  for (Eigen::Index k = 0; k < out.size(); ++k) out(k) = random.normal(t, agent, static_cast<std::uint32_t>(k));
+void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radius, bool on_sphere,
+          Vector& out) {
+  for (Eigen::Index k = 0; k < out.size(); ++k)
+    out(k) = random.normal(t, agent, static_cast<std::uint32_t>(k));
   const double length = out.norm();
   const double u = random.uniform(t, agent, static_cast<std::uint32_t>(out.size()));
   const double share = on_sphere ? 1.0 : std::pow(u, 1.0 / static_cast<double>(out.size()));
@@ -95,18 +98,21 @@ NoiseLaw::NoiseLaw(const std::string& law, const Model& model) : model_(model) {
     measurement_ = bounds_v ? Kind::uniform : covariance_v ? Kind::normal : Kind::none;
   } else if (law == "uniform" || law == "extreme") {
     if (!bounds_w || !bounds_v)
-      refuse("noise", "\"" + law + "\"", "a model with process_bound and measurement_bound", "give both bounds");
+      refuse("noise", "\"" + law + "\"", "a model with process_bound and measurement_bound",
+             "give both bounds");
     process_ = measurement_ = law == "uniform" ? Kind::uniform : Kind::extreme;
   } else if (law == "normal") {
     if (!covariance_w || !covariance_v)
-      refuse("noise", "\"normal\"", "a model with both covariances", "give process and measurement covariance");
+      refuse("noise", "\"normal\"", "a model with both covariances",
+             "give process and measurement covariance");
     process_ = measurement_ = Kind::normal;
   } else if (law != "none") {
     refuse("noise", "\"" + law + "\"", "one of: auto, uniform, extreme, normal, none");
   }
   if (process_ == Kind::normal) process_root_ = root(noise.process_covariance);
   if (measurement_ == Kind::normal)
-    for (const Matrix& covariance : noise.measurement_covariance) measurement_roots_.push_back(root(covariance));
+    for (const Matrix& covariance : noise.measurement_covariance)
+      measurement_roots_.push_back(root(covariance));
 }
 
 void NoiseLaw::process(const Random& random, std::int64_t t, Vector& w) const {
@@ -145,7 +151,8 @@ std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law
   return std::make_unique<Simulated>(model, law, plant, seed, trial);
 }
 
-std::unique_ptr<Source> recorded_source(const Model& model, const MatrixRef& measurements, const MatrixRef& truth) {
+std::unique_ptr<Source> recorded_source(const Model& model, const MatrixRef& measurements,
+                                        const MatrixRef& truth) {
   return std::make_unique<Recorded>(model, measurements, truth);
 }
 

@@ -42,10 +42,12 @@ class NoiseLaw {
 };
 
 /// A random vector of length at most `radius` (uniform in the ball), or of exactly that length.
-void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radius, bool on_sphere, Vector& out);
+void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radius, bool on_sphere,
+          Vector& out);
 
 std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law, const PlantOptions& plant,
                                          std::uint64_t seed, std::uint32_t trial);
-std::unique_ptr<Source> recorded_source(const Model& model, const MatrixRef& measurements, const MatrixRef& truth);
+std::unique_ptr<Source> recorded_source(const Model& model, const MatrixRef& measurements,
+                                        const MatrixRef& truth);
 
 }  // namespace garrison::detail

@@ -41,7 +41,8 @@ Recorder::Recorder(const Model& model, const AnyFilter& filter, int steps, bool 
 }
 
 std::size_t Recorder::row(int trial, int t) const {
-  return static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps + 1) + static_cast<std::size_t>(t);
+  return static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps + 1) +
+         static_cast<std::size_t>(t);
 }
 
 void Recorder::errors(std::size_t row, const double* estimate, const double* truth) {
@@ -50,7 +51,8 @@ void Recorder::errors(std::size_t row, const double* estimate, const double* tru
   std::copy_n(truth, n, record_.truth.data() + row * n);
   for (std::size_t i = 0; i < N; ++i) {
     double square = 0.0;
-    for (std::size_t k = 0; k < n; ++k) square += (estimate[i * n + k] - truth[k]) * (estimate[i * n + k] - truth[k]);
+    for (std::size_t k = 0; k < n; ++k)
+      square += (estimate[i * n + k] - truth[k]) * (estimate[i * n + k] - truth[k]);
     record_.error[row * N + i] = std::sqrt(square);
   }
 }
@@ -68,7 +70,8 @@ void Recorder::count(int trial, int t, std::span<const double> y) {
     record_.nonfinite += nonfinite;
   }
   if (!keep_.measurements) return;
-  const auto at = static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps) + static_cast<std::size_t>(t - 1);
+  const auto at = static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps) +
+                  static_cast<std::size_t>(t - 1);
   std::copy(y.begin(), y.end(), record_.measurements.begin() + static_cast<std::ptrdiff_t>(at * outputs_));
 }
 
@@ -96,7 +99,8 @@ void Recorder::take_lane(int trial, int t, const LaneRunner& runner, int lane, c
                          std::span<const double>) {
   const std::size_t at = row(trial, t);
   const auto size = static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
-  double* out = keep_.estimate ? record_.estimate.data() + at * size : estimates_[static_cast<std::size_t>(trial)].data();
+  double* out = keep_.estimate ? record_.estimate.data() + at * size
+                               : estimates_[static_cast<std::size_t>(trial)].data();
   const double* all = runner.estimates();
   for (std::size_t k = 0; k < size; ++k) out[k] = all[k * kLanes + static_cast<std::size_t>(lane)];
   if (truth != nullptr) errors(at, out, truth);
@@ -134,8 +138,9 @@ void Recorder::finish(const LinkCounters& link, std::int64_t overflows) {
 
 Record Recorder::release() {
   // Threads finish trials in any order; the record must not depend on it.
-  std::sort(record_.accusations.begin(), record_.accusations.end(),
-            [](const auto& a, const auto& b) { return std::tie(a.trial, a.time) < std::tie(b.trial, b.time); });
+  std::sort(record_.accusations.begin(), record_.accusations.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.trial, a.time) < std::tie(b.trial, b.time);
+  });
   return std::move(record_);
 }
 

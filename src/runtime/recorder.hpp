@@ -12,12 +12,14 @@ namespace garrison::detail {
 /// Trials write to disjoint parts of the arrays, so threads need no lock except for the counters.
 class Recorder {
  public:
-  Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known, const RunOptions& options);
+  Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known,
+           const RunOptions& options);
 
   const Record& record() const { return record_; }
   /// Everything asked for at time t of a trial; y is what the filter received (not read at t = 0).
   void take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y);
-  void take_lane(int trial, int t, const LaneRunner& runner, int lane, const double* truth, std::span<const double> y);
+  void take_lane(int trial, int t, const LaneRunner& runner, int lane, const double* truth,
+                 std::span<const double> y);
   /// Counts and keeps the measurements of time t >= 1.
   void count(int trial, int t, std::span<const double> y);
   void finish(const LinkCounters& link, std::int64_t overflows);
@@ -31,7 +33,7 @@ class Recorder {
   Record record_;
   Keep keep_;
   std::size_t outputs_;
-  std::vector<std::vector<AgentSet>> last_;    // per trial: the sets at the last accusation
+  std::vector<std::vector<AgentSet>> last_;     // per trial: the sets at the last accusation
   std::vector<std::vector<double>> estimates_;  // per trial, when estimates are not kept
   std::mutex mutex_;
 };

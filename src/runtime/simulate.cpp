@@ -76,7 +76,8 @@ void run_trial(const Model& model, const Network& network, const RunOptions& opt
   auto attacks = start_attacks(model, options, id);
   const RunnerVictims victims(runner);
   std::vector<double> y(static_cast<std::size_t>(model.total_outputs()));
-  runner.reset(starts(model, options.start).colwise() + source.start_shift(), link.perfect() ? nullptr : &link);
+  runner.reset(starts(model, options.start).colwise() + source.start_shift(),
+               link.perfect() ? nullptr : &link);
   recorder.take(trial, 0, runner, source.truth(), y);
   for (int t = 1; t <= recorder.record().steps; ++t) {
     source.next(t, y);
@@ -113,7 +114,8 @@ void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
   std::vector<double> y(M);
   std::vector<double> all(M * kLanes);
   runner.reset(x0.data());
-  for (int l = 0; l < used; ++l) recorder.take_lane(first + l, 0, runner, l, lanes[static_cast<std::size_t>(l)].source->truth(), y);
+  for (int l = 0; l < used; ++l)
+    recorder.take_lane(first + l, 0, runner, l, lanes[static_cast<std::size_t>(l)].source->truth(), y);
   for (int t = 1; t <= record.steps; ++t) {
     for (int l = 0; l < kLanes; ++l) {
       auto& lane = lanes[static_cast<std::size_t>(l)];
@@ -189,11 +191,12 @@ Record drive(const Model& model, const Network& network, const AnyFilter& filter
 
 }  // namespace
 
-Record simulate(const Model& model, const Network& network, const AnyFilter& filter, const PlantOptions& plant,
-                const RunOptions& options) {
+Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
+                const PlantOptions& plant, const RunOptions& options) {
   if (plant.steps < 1) refuse("steps", std::to_string(plant.steps), "at least 1");
   if (plant.x0.size() != 0 && plant.x0.size() != model.states())
-    refuse("x0", std::to_string(plant.x0.size()) + " numbers", std::to_string(model.states()) + ", one per state");
+    refuse("x0", std::to_string(plant.x0.size()) + " numbers",
+           std::to_string(model.states()) + ", one per state");
   if (!plant.x0.allFinite()) refuse("x0", "a number that is not finite", "a finite initial state");
   if (!(plant.start_error >= 0.0) || !std::isfinite(plant.start_error))
     refuse("start_error", text(plant.start_error), "a finite number >= 0");
@@ -203,9 +206,11 @@ Record simulate(const Model& model, const Network& network, const AnyFilter& fil
   });
 }
 
-Record replay(const Model& model, const Network& network, const AnyFilter& filter, const MatrixRef& measurements,
-              const MatrixRef& truth, const RunOptions& options) {
-  const auto shape = [](const MatrixRef& m) { return std::to_string(m.rows()) + " x " + std::to_string(m.cols()); };
+Record replay(const Model& model, const Network& network, const AnyFilter& filter,
+              const MatrixRef& measurements, const MatrixRef& truth, const RunOptions& options) {
+  const auto shape = [](const MatrixRef& m) {
+    return std::to_string(m.rows()) + " x " + std::to_string(m.cols());
+  };
   if (measurements.rows() < 1 || measurements.cols() != model.total_outputs())
     refuse("measurements", shape(measurements), "steps x " + std::to_string(model.total_outputs()),
            "one column per row of the C_i, agent by agent; NaN where a measurement is missing");

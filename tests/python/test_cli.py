@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 import pytest
-
 from garrison.cli import main
 
 SCENARIO = """
@@ -59,14 +58,12 @@ def test_run_writes_summary_estimates_and_report(scenario: Path, tmp_path: Path)
     assert [row["attacked"] for row in summary["rows"]] == [True, False]
     assert (out / "estimates.csv").read_text().startswith("trial,time,agent,x0,x1,bound\n")
     page = (out / "report.html").read_text()
-    assert "<svg" in page and "http" not in page.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
-        "http://creativecommons.org", ""
-    ).replace("https://matplotlib.org", "")
+    assert "<svg" in page and "http" not in page.replace("http://www.w3.org", "").replace(
+        "http://purl.org", ""
+    ).replace("http://creativecommons.org", "").replace("https://matplotlib.org", "")
 
 
-def test_run_never_overwrites_silently(
-    scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_run_never_overwrites_silently(scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["run", str(scenario), "-o", str(out)]) == 0
     assert "not empty" in refused(capsys, "run", str(scenario), "-o", str(out))
@@ -102,7 +99,11 @@ def test_same_scenario_gives_the_same_numbers(scenario: Path, tmp_path: Path) ->
         ("steps = 30", "steps = 0", ["steps", "0", ">= 1"]),
         ("C = [[1, 0]", "C = [[1, 0, 0]", ["C[0]", "2 columns"]),
         ("rounds = 6", "rounds = 6\nattacked = 6", ["attacked", "6", "5"]),
-        ("threshold = 2.0", "threshold = 2.0\ninitial_error = 1.0\ndetector = true\nattacked = 1", ["L is too small"]),
+        (
+            "threshold = 2.0",
+            "threshold = 2.0\ninitial_error = 1.0\ndetector = true\nattacked = 1",
+            ["L is too small"],
+        ),
         ("steps = 30", "", ["[run] steps"]),
         ("A = [[1.0, 0.1]", 'A = {file = "missing.csv"}\n# [[', ["missing.csv"]),
     ],
@@ -131,14 +132,13 @@ def test_missing_and_unreadable_files(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "no such folder" in refused(capsys, "verify", str(tmp_path / "nowhere"))
 
 
-def test_check_exit_code_says_whether_conditions_hold(
-    scenario: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_check_exit_code_says_whether_conditions_hold(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(scenario)]) == 0  # no bound is asked for: nothing is required
     changed(scenario, "rounds = 6", "rounds = 6\ninitial_error = 1.0\nattacked = 1")
     capsys.readouterr()
     assert main(["check", str(scenario), "--json"]) == 1
     assert not json.loads(capsys.readouterr().out)["holds"]
+
 
 def test_list_and_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["list"]) == 0

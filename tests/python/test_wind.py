@@ -3,10 +3,9 @@
 import datetime as dt
 from pathlib import Path
 
+import garrison as gr
 import numpy as np
 import pytest
-
-import garrison as gr
 from garrison.fitting import read_records
 from garrison.job import run_scenario, signal_size
 from garrison.scenario import read_scenario

@@ -14,7 +14,8 @@ GARRISON_EXPORT bool observable(const MatrixRef& A, const MatrixRef& C);
 /// Removals that s_sparse_observable tries at most before it refuses.
 inline constexpr double kMostRemovals = 2e6;
 
-/// (A, kept rows) is observable for every choice of N - s kept rows of C (N x n). Equal rows are interchangeable.
+/// (A, kept rows) is observable for every choice of N - s kept rows of C (N x n). Equal rows are
+/// interchangeable.
 /// @throws InvalidInput when s is outside 0..N or more than kMostRemovals choices would have to be tried
 GARRISON_EXPORT bool s_sparse_observable(const MatrixRef& A, const MatrixRef& C, int s);
 

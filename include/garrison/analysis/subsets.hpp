@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worst choice of s sensors to lose: lambda_0 (6), varpi (theorem 3) and tau_0 (theorem 5) of the saturation paper.
+// Worst choice of s sensors to lose: lambda_0 (6), varpi (theorem 3) and tau_0 (theorem 5) of the saturation
+// paper.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,9 @@ struct SubsetLimits {
   double max_seconds = kInfinity;
 };
 
-/// Result of a search over the s removed rows. The true value lies in [lower, upper]; theorems need the safe end:
-/// `lower` of lambda_0, `upper` of varpi and tau_0. Never the other one, which is only what was found so far.
+/// Result of a search over the s removed rows. The true value lies in [lower, upper]; theorems need the safe
+/// end: `lower` of lambda_0, `upper` of varpi and tau_0. Never the other one, which is only what was found so
+/// far.
 struct GARRISON_EXPORT SubsetBound {
   double lower = 0.0;
   double upper = 0.0;
@@ -29,18 +31,22 @@ struct GARRISON_EXPORT SubsetBound {
   std::string method;
 };
 
-/// (6): least lambda_min(sum of C_i'C_i) over all sets of N - s rows. C: N x n, finite, rows of any length, zero rows
-/// (relays) allowed; 0 <= s <= N. s = N gives 0. @throws InvalidInput
+/// (6): least lambda_min(sum of C_i'C_i) over all sets of N - s rows. C: N x n, finite, rows of any length,
+/// zero rows (relays) allowed; 0 <= s <= N. s = N gives 0. @throws InvalidInput
 GARRISON_EXPORT SubsetBound lambda0(const MatrixRef& C, int s, const SubsetLimits& limits = {});
 
-/// Closed form of (6) when every two rows are parallel or orthogonal unit vectors (|C_i C_j'| within 1e-12 of 0 or 1):
-/// 0 with fewer groups of parallel rows than n, else max(0, smallest group - s). Empty otherwise.
+/// Closed form of (6) when every two rows are parallel or orthogonal unit vectors (|C_i C_j'| within 1e-12 of
+/// 0 or 1): 0 with fewer groups of parallel rows than n, else max(0, smallest group - s). Empty otherwise.
 GARRISON_EXPORT std::optional<double> lambda0_orthogonal(const MatrixRef& C, int s);
 
-/// Theorem 3: largest ||(I - (1/N) sum of C_i'C_i) A|| over sets of N - s rows. A: n x n. @throws InvalidInput
-GARRISON_EXPORT SubsetBound varpi(const MatrixRef& C, const MatrixRef& A, int s, const SubsetLimits& limits = {});
+/// Theorem 3: largest ||(I - (1/N) sum of C_i'C_i) A|| over sets of N - s rows. A: n x n. @throws
+/// InvalidInput
+GARRISON_EXPORT SubsetBound varpi(const MatrixRef& C, const MatrixRef& A, int s,
+                                  const SubsetLimits& limits = {});
 
-/// Theorem 5: largest (1/N) ||[C_i'C_i A]|| (blocks side by side) over sets of N - s rows. @throws InvalidInput
-GARRISON_EXPORT SubsetBound tau0(const MatrixRef& C, const MatrixRef& A, int s, const SubsetLimits& limits = {});
+/// Theorem 5: largest (1/N) ||[C_i'C_i A]|| (blocks side by side) over sets of N - s rows. @throws
+/// InvalidInput
+GARRISON_EXPORT SubsetBound tau0(const MatrixRef& C, const MatrixRef& A, int s,
+                                 const SubsetLimits& limits = {});
 
 }  // namespace garrison

@@ -24,7 +24,7 @@ class Victims {
 /// One sample on its way from the sensors to the filters.
 struct Sample {
   std::int64_t t;
-  std::span<double> y;       ///< all measurements, flat by agent; attacks rewrite it in place
+  std::span<double> y;  ///< all measurements, flat by agent; attacks rewrite it in place
   const Victims& victims;
 };
 
@@ -60,7 +60,8 @@ GARRISON_EXPORT Attack bias(Schedule schedule, double value);
 GARRISON_EXPORT Attack scale(Schedule schedule, double factor);
 /// y = value, which may be nan, inf or 1e300.
 GARRISON_EXPORT Attack constant(Schedule schedule, double value);
-/// y + noise. law: "uniform" in [-size, size], "normal", "laplace" or "cauchy" with scale `size`; `replace` drops y.
+/// y + noise. law: "uniform" in [-size, size], "normal", "laplace" or "cauchy" with scale `size`; `replace`
+/// drops y.
 GARRISON_EXPORT Attack random_noise(Schedule schedule, const std::string& law, double size, bool replace);
 /// The measurement is lost (NaN).
 GARRISON_EXPORT Attack denial(Schedule schedule);

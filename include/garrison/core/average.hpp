@@ -15,13 +15,14 @@ inline double averaged_entry(double x, double sum, double degree, double alpha) 
 }
 
 /// The same, Chebyshev-filtered: omega * plain - (omega - 1) * entry one round ago.
-inline double averaged_entry(double x, double sum, double degree, double alpha, double omega, double previous) noexcept {
+inline double averaged_entry(double x, double sum, double degree, double alpha, double omega,
+                             double previous) noexcept {
   return omega * averaged_entry(x, sum, degree, alpha) - (omega - 1.0) * previous;
 }
 
-/// One round of one agent, in place: x (n numbers) becomes its average with `count` neighbours, whose rows are
-/// `row(0) .. row(count-1)`; `previous` becomes the old x. Sums run in the order of the rows, entry by entry, so
-/// the bits do not depend on vector width. omega = 1 is a plain round.
+/// One round of one agent, in place: x (n numbers) becomes its average with `count` neighbours, whose rows
+/// are `row(0) .. row(count-1)`; `previous` becomes the old x. Sums run in the order of the rows, entry by
+/// entry, so the bits do not depend on vector width. omega = 1 is a plain round.
 template <int n, class Row>
 inline void average_round(int nn, double alpha, double omega, double* x, double* previous, std::size_t count,
                           const Row& row) noexcept {

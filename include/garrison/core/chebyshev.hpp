@@ -7,9 +7,10 @@
 
 namespace garrison {
 
-// L rounds apply p_L(W) = T_L(W / gamma) / T_L(1 / gamma), W = I - alpha Lap, whose eigenvalues on disagreements
-// lie in [-gamma, gamma]. p_L(1) = 1 keeps the mean; on disagreements ||p_L|| <= 1 / T_L(1 / gamma). With
-// r_l = T_{l-1}(1/gamma) / T_l(1/gamma): r_1 = gamma, r_{l+1} = 1 / (2/gamma - r_l), omega_{l+1} = 2 r_{l+1} / gamma,
+// L rounds apply p_L(W) = T_L(W / gamma) / T_L(1 / gamma), W = I - alpha Lap, whose eigenvalues on
+// disagreements lie in [-gamma, gamma]. p_L(1) = 1 keeps the mean; on disagreements ||p_L|| <= 1 / T_L(1 /
+// gamma). With r_l = T_{l-1}(1/gamma) / T_l(1/gamma): r_1 = gamma, r_{l+1} = 1 / (2/gamma - r_l), omega_{l+1}
+// = 2 r_{l+1} / gamma,
 //   x_{l+1} = omega_{l+1} W x_l - (omega_{l+1} - 1) x_{l-1},  omega_1 = 1.
 
 /// Weight per round for 0 <= gamma < 1; all 1 (plain rounds) when gamma = 0.

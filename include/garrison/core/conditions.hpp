@@ -11,11 +11,11 @@ namespace garrison {
 
 /// One condition of a theorem: `value` must be `needed` (a relation such as "> 3").
 struct Condition {
-  std::string name;    ///< e.g. "lambda_0 > s (11)"
+  std::string name;  ///< e.g. "lambda_0 > s (11)"
   double value;
   std::string needed;
   bool holds;
-  std::string meaning;  ///< one line for people
+  std::string meaning;   ///< one line for people
   bool required = true;  ///< false: only sharpens the result, the main promise does not need it
 };
 

@@ -10,15 +10,24 @@ namespace garrison {
 template <class Action>
 auto dispatch(int states, const Action& action) {
   switch (states) {
-    case 1: return action.template operator()<1>();
-    case 2: return action.template operator()<2>();
-    case 3: return action.template operator()<3>();
-    case 4: return action.template operator()<4>();
-    case 5: return action.template operator()<5>();
-    case 6: return action.template operator()<6>();
-    case 7: return action.template operator()<7>();
-    case 8: return action.template operator()<8>();
-    default: return action.template operator()<Dynamic>();
+    case 1:
+      return action.template operator()<1>();
+    case 2:
+      return action.template operator()<2>();
+    case 3:
+      return action.template operator()<3>();
+    case 4:
+      return action.template operator()<4>();
+    case 5:
+      return action.template operator()<5>();
+    case 6:
+      return action.template operator()<6>();
+    case 7:
+      return action.template operator()<7>();
+    case 8:
+      return action.template operator()<8>();
+    default:
+      return action.template operator()<Dynamic>();
   }
 }
 

@@ -15,13 +15,13 @@ namespace garrison {
 
 /// What one agent is told of itself. Plain pointers, so that agents share one plant.
 struct Local {
-  int id;            ///< public id, 0..agents-1
-  int agents;        ///< N
-  int states;        ///< n at run time
-  int outputs;       ///< rows of C_i; 0 for a relay
-  int degree;        ///< neighbours that this agent hears
-  const double* A;   ///< n x n, column by column
-  const double* C;   ///< outputs x n, row by row
+  int id;           ///< public id, 0..agents-1
+  int agents;       ///< N
+  int states;       ///< n at run time
+  int outputs;      ///< rows of C_i; 0 for a relay
+  int degree;       ///< neighbours that this agent hears
+  const double* A;  ///< n x n, column by column
+  const double* C;  ///< outputs x n, row by row
 };
 
 /// What the network says of one agent's sensor.
@@ -59,22 +59,23 @@ constexpr int dimension(const Local& local) {
 /// - `expected` writes the measurement that the agent predicts for the next step (local.outputs entries),
 ///   `alarm_level` the deviation from it that the agent tolerates there: what an informed attacker knows.
 template <class F, int n>
-concept Filter = requires(const Local& local, const typename F::Gains& gains, typename F::template State<n>& state,
-                          const typename F::template State<n>& view, typename F::template Message<n>& message,
-                          const Inbox<typename F::template Message<n>>& inbox, const double* y, double* out,
-                          const Vec<n>& x0, std::int64_t t, int round) {
-  { F::name } -> std::convertible_to<std::string_view>;
-  { F::rounds(gains) } -> std::same_as<int>;
-  F::template init<n>(local, gains, x0, state, message);
-  { F::template sense<n>(local, gains, state, y, t, message) } noexcept;
-  { F::template fuse<n>(local, gains, state, inbox, round, message) } noexcept;
-  { F::template report<n>(local, gains, view) } noexcept -> std::same_as<Report>;
-  { F::template estimate<n>(view) } noexcept -> std::convertible_to<const Vec<n>&>;
-  { F::template accused<n>(view) } noexcept -> std::same_as<const AgentSet*>;
-  { F::template expected<n>(local, gains, view, out) } noexcept;
-  { F::template alarm_level<n>(local, gains, view) } noexcept -> std::same_as<double>;
-  { F::template signals<n>(local, gains, view, out) } noexcept;
-  { message.values() } -> std::same_as<std::span<double>>;
-};
+concept Filter =
+    requires(const Local& local, const typename F::Gains& gains, typename F::template State<n>& state,
+             const typename F::template State<n>& view, typename F::template Message<n>& message,
+             const Inbox<typename F::template Message<n>>& inbox, const double* y, double* out,
+             const Vec<n>& x0, std::int64_t t, int round) {
+      { F::name } -> std::convertible_to<std::string_view>;
+      { F::rounds(gains) } -> std::same_as<int>;
+      F::template init<n>(local, gains, x0, state, message);
+      { F::template sense<n>(local, gains, state, y, t, message) } noexcept;
+      { F::template fuse<n>(local, gains, state, inbox, round, message) } noexcept;
+      { F::template report<n>(local, gains, view) } noexcept -> std::same_as<Report>;
+      { F::template estimate<n>(view) } noexcept -> std::convertible_to<const Vec<n>&>;
+      { F::template accused<n>(view) } noexcept -> std::same_as<const AgentSet*>;
+      { F::template expected<n>(local, gains, view, out) } noexcept;
+      { F::template alarm_level<n>(local, gains, view) } noexcept -> std::same_as<double>;
+      { F::template signals<n>(local, gains, view, out) } noexcept;
+      { message.values() } -> std::same_as<std::span<double>>;
+    };
 
 }  // namespace garrison

@@ -26,23 +26,23 @@ struct GARRISON_EXPORT ParamInfo {
   std::string symbol = {};  ///< letter of the paper
   std::string unit = {};
   std::string doc = {};
-  ParamValue initial = {};     ///< default; NaN = "not given"
-  bool required = false;       ///< has no sensible default
-  double least = -kInfinity;   ///< range of numbers
+  ParamValue initial = {};    ///< default; NaN = "not given"
+  bool required = false;      ///< has no sensible default
+  double least = -kInfinity;  ///< range of numbers
   double most = kInfinity;
-  bool open = false;           ///< `least` itself is excluded
+  bool open = false;                      ///< `least` itself is excluded
   std::vector<std::string> choices = {};  ///< admissible texts
 };
 
 /// One member of a Params struct with its description (the default is the member's initialiser).
 template <class P, class T>
 struct Field {
-  T P::*member;
+  T P::* member;
   ParamInfo info;
 };
 
 template <class P, class T>
-Field<P, T> field(T P::*member, ParamInfo info) {
+Field<P, T> field(T P::* member, ParamInfo info) {
   info.initial = P{}.*member;
   return {member, std::move(info)};
 }
@@ -55,7 +55,8 @@ GARRISON_EXPORT std::string nearest_name(const std::string& unknown, std::span<c
 [[noreturn]] GARRISON_EXPORT void refuse_unknown(const std::string& owner, const std::string& name,
                                                  std::span<const std::string> known);
 /// Converts between whole numbers and numbers where nothing is lost; refuses other types.
-GARRISON_EXPORT ParamValue convert_param(const std::string& owner, const ParamInfo& info, const ParamValue& value);
+GARRISON_EXPORT ParamValue convert_param(const std::string& owner, const ParamInfo& info,
+                                         const ParamValue& value);
 
 namespace detail {
 template <class T>

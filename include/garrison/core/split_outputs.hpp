@@ -17,8 +17,8 @@ struct GARRISON_EXPORT SplitSystem {
 };
 
 /// Replaces every agent with m > 1 outputs by m scalar agents that hear each other and all neighbours of the
-/// original. Measurements keep their flat order. One attacked original counts as m attacked agents. Diagonals of
-/// measurement covariances are kept, cross terms are dropped.
+/// original. Measurements keep their flat order. One attacked original counts as m attacked agents. Diagonals
+/// of measurement covariances are kept, cross terms are dropped.
 GARRISON_EXPORT SplitSystem split_outputs(const Model& model, const Network& network);
 
 }  // namespace garrison

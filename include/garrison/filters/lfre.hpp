@@ -22,12 +22,13 @@ namespace garrison {
 /// An agent that can observe the whole state alone is a source and runs a Luenberger observer,
 ///   xhat_i(t) = A xhat_i(t-1) + H_i (y_i(t-1) - C_i xhat_i(t-1)),  xhat_i(1) = A xhat_i(0).
 /// Every other one averages, entry by entry, its parents' xhat(t-1) without the f largest and f smallest, and
-/// predicts: xhat_i(t) = A mean. Parents are the neighbours closer to a source, or all neighbours when fewer than
-/// 2f + 1 are. Missing neighbours are left out; with none left the agent predicts from its own estimate.
+/// predicts: xhat_i(t) = A mean. Parents are the neighbours closer to a source, or all neighbours when fewer
+/// than 2f + 1 are. Missing neighbours are left out; with none left the agent predicts from its own estimate.
 struct GARRISON_EXPORT Lfre {
   static constexpr std::string_view name = "lfre";
   static constexpr std::string_view title = "Local-filtering-based resilient estimation";
-  static constexpr std::string_view source = "Mitra, Sundaram, Automatica 2019; baseline of the saturation paper";
+  static constexpr std::string_view source =
+      "Mitra, Sundaram, Automatica 2019; baseline of the saturation paper";
 
   struct Params {
     int faulty = 1;
@@ -35,12 +36,19 @@ struct GARRISON_EXPORT Lfre {
 
     static auto fields() {
       return std::make_tuple(
-          field(&Params::faulty, {.name = "faulty", .symbol = "f", .unit = "agents",
-                                  .doc = "values trimmed from each end of the parents' estimates", .least = 0}),
-          field(&Params::poles, {.name = "poles", .symbol = "", .unit = "1",
-                                 .doc = "real poles of the sources' observers, one per state; left out: equally "
-                                        "spaced from 0.3 to 0.4",
-                                 .least = -1.0, .most = 1.0}));
+          field(&Params::faulty, {.name = "faulty",
+                                  .symbol = "f",
+                                  .unit = "agents",
+                                  .doc = "values trimmed from each end of the parents' estimates",
+                                  .least = 0}),
+          field(&Params::poles,
+                {.name = "poles",
+                 .symbol = "",
+                 .unit = "1",
+                 .doc = "real poles of the sources' observers, one per state; left out: equally "
+                        "spaced from 0.3 to 0.4",
+                 .least = -1.0,
+                 .most = 1.0}));
     }
   };
 
@@ -81,7 +89,8 @@ struct GARRISON_EXPORT Lfre {
   }
 
   template <int n>
-  static void sense(const Local& l, const Gains&, State<n>& s, const double* y, std::int64_t, Message<n>& m) noexcept {
+  static void sense(const Local& l, const Gains&, State<n>& s, const double* y, std::int64_t,
+                    Message<n>& m) noexcept {
     s.y_before = s.y_now;
     s.y_now = l.outputs > 0 && std::abs(y[0]) < kHuge ? y[0] : kNaN;
     m.x = s.x;
@@ -146,12 +155,13 @@ struct GARRISON_EXPORT Lfre {
 
  private:
   template <int n>
-  static void trimmed_mean(const std::vector<int>& parents, int faulty, const Inbox<Message<n>>& inbox, int nn,
-                           State<n>& s) noexcept {
+  static void trimmed_mean(const std::vector<int>& parents, int faulty, const Inbox<Message<n>>& inbox,
+                           int nn, State<n>& s) noexcept {
     for (int k = 0; k < nn; ++k) {
       std::size_t m = 0;
       for (std::size_t j = 0; j < inbox.size(); ++j)
-        if (std::binary_search(parents.begin(), parents.end(), inbox[j].sender)) s.column[m++] = inbox[j].x[k];
+        if (std::binary_search(parents.begin(), parents.end(), inbox[j].sender))
+          s.column[m++] = inbox[j].x[k];
       s.mean[k] = s.x[k];
       if (m == 0) continue;
       const auto begin = s.column.begin();

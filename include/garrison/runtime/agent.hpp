@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "garrison/core/filter.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
-#include "garrison/core/filter.hpp"
 
 namespace garrison {
 
@@ -64,8 +64,13 @@ class Agent final : public AnyAgent {
         model_(model),
         neighbours_(network.neighbours(id).begin(), network.neighbours(id).end()),
         rows_(model.C(id)),
-        local_{id,           model.agents(),    model.states(), model.outputs(id), network.degree(id),
-               model_.A().data(), rows_.data()} {
+        local_{id,
+               model.agents(),
+               model.states(),
+               model.outputs(id),
+               network.degree(id),
+               model_.A().data(),
+               rows_.data()} {
     reset(Vector::Zero(model.states()));
   }
   Agent(const Agent&) = delete;
@@ -143,7 +148,8 @@ class Agent final : public AnyAgent {
     const auto twice = std::adjacent_find(letters.begin(), letters.end(),
                                           [](auto a, auto b) { return a->sender() == b->sender(); });
     if (twice != letters.end())
-      refuse("inbox", "two messages from agent " + std::to_string((*twice)->sender()), "one per neighbour and round");
+      refuse("inbox", "two messages from agent " + std::to_string((*twice)->sender()),
+             "one per neighbour and round");
     return letters;
   }
 

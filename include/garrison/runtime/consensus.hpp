@@ -22,8 +22,9 @@ class GARRISON_EXPORT ConsensusPlan {
   std::span<const int> order() const { return order_; }
 
   /// In place on x, N x width row by row in `order()`; scratch has the same size. `omega`: Chebyshev weight
-  /// per round, empty = plain. width >= 1. Does not allocate. With `workers` each round is split over threads,
-  /// otherwise several rounds are fused where the rows do not fit into the cache; the bits are the same.
+  /// per round, empty = plain. width >= 1. Does not allocate. With `workers` each round is split over
+  /// threads, otherwise several rounds are fused where the rows do not fit into the cache; the bits are the
+  /// same.
   void run(double* x, double* scratch, int width, double alpha, std::span<const double> omega, int rounds,
            Workers* workers = nullptr) const;
 

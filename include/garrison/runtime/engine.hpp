@@ -39,7 +39,8 @@ class Engine final : public Runner {
   using Message = typename F::template Message<n>;
 
  public:
-  Engine(std::shared_ptr<const typename F::Gains> gains, const Model& model, const Network& network, int threads)
+  Engine(std::shared_ptr<const typename F::Gains> gains, const Model& model, const Network& network,
+         int threads)
       : gains_(std::move(gains)),
         model_(model),
         plan_(network.offsets(), network.lists()),
@@ -96,7 +97,8 @@ class Engine final : public Runner {
       const auto i = static_cast<std::size_t>(locals_[k].id);
       const Vec<n>& x = F::template estimate<n>(states_[k]);
       const Report r = F::template report<n>(locals_[k], *gains_, states_[k]);
-      if (f.estimate != nullptr) std::copy_n(x.data(), x.size(), f.estimate + i * static_cast<std::size_t>(x.size()));
+      if (f.estimate != nullptr)
+        std::copy_n(x.data(), x.size(), f.estimate + i * static_cast<std::size_t>(x.size()));
       if (f.bound != nullptr) f.bound[i] = r.bound;
       if (f.statistic != nullptr) f.statistic[i] = r.statistic;
       if (f.threshold != nullptr) f.threshold[i] = r.threshold;

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "garrison/core/conditions.hpp"
+#include "garrison/core/lanes.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
 #include "garrison/runtime/agent.hpp"
-#include "garrison/core/lanes.hpp"
 #include "garrison/runtime/runner.hpp"
 
 namespace garrison {

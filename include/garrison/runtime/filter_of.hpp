@@ -14,7 +14,9 @@ template <class F>
 class PreparedOf final : public Prepared {
  public:
   PreparedOf(typename F::Gains gains, const Model& model, const Network& network)
-      : gains_(std::make_shared<const typename F::Gains>(std::move(gains))), model_(model), network_(network) {}
+      : gains_(std::make_shared<const typename F::Gains>(std::move(gains))),
+        model_(model),
+        network_(network) {}
 
   std::unique_ptr<Runner> runner(int threads) const override {
     return dispatch(model_.states(), [&]<int n>() -> std::unique_ptr<Runner> {
@@ -74,10 +76,11 @@ class FilterOf final : public AnyFilter {
 /// The registry line of family F.
 template <class F>
 FamilyInfo family_info() {
-  return {std::string(F::name), std::string(F::title), std::string(F::source), describe<typename F::Params>(),
-          [](const ParamMap& given) -> std::shared_ptr<const AnyFilter> {
-            return std::make_shared<FilterOf<F>>(parse_params<typename F::Params>(std::string(F::name), given));
-          }};
+  return {
+      std::string(F::name), std::string(F::title), std::string(F::source), describe<typename F::Params>(),
+      [](const ParamMap& given) -> std::shared_ptr<const AnyFilter> {
+        return std::make_shared<FilterOf<F>>(parse_params<typename F::Params>(std::string(F::name), given));
+      }};
 }
 
 }  // namespace garrison

@@ -21,11 +21,11 @@ struct GARRISON_EXPORT LinkFaults {
 
 /// What happened to messages during a run.
 struct GARRISON_EXPORT LinkCounters {
-  std::int64_t sent = 0;       ///< messages that honest links carried as they were
-  std::int64_t lost = 0;       ///< dropped, late beyond the start, or withheld by the sender
-  std::int64_t late = 0;       ///< delivered, but an old one
-  std::int64_t forged = 0;     ///< delivered with other values than the receiver should have got
-  std::int64_t refused = 0;    ///< not delivered because a value was not finite
+  std::int64_t sent = 0;     ///< messages that honest links carried as they were
+  std::int64_t lost = 0;     ///< dropped, late beyond the start, or withheld by the sender
+  std::int64_t late = 0;     ///< delivered, but an old one
+  std::int64_t forged = 0;   ///< delivered with other values than the receiver should have got
+  std::int64_t refused = 0;  ///< not delivered because a value was not finite
   LinkCounters& operator+=(const LinkCounters& other);
 };
 

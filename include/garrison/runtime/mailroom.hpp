@@ -15,9 +15,9 @@
 namespace garrison {
 
 /// One array of messages: a ring of buffers (one message per agent, in the engine's order) and behind them a
-/// place per lying edge. On perfect links every agent reads its neighbours' slots of the current buffer. Faults only
-/// rewrite slots: a lost message leaves its slot out, a late one points into an older buffer, a forged one is
-/// written behind the honest ones and only the victim points to it.
+/// place per lying edge. On perfect links every agent reads its neighbours' slots of the current buffer.
+/// Faults only rewrite slots: a lost message leaves its slot out, a late one points into an older buffer, a
+/// forged one is written behind the honest ones and only the victim points to it.
 template <class Message>
 class Mailroom {
  public:
@@ -48,7 +48,8 @@ class Mailroom {
   }
   /// Copies the freshly initialised outgoing messages everywhere, so that later copies find their memory.
   void fill() {
-    for (std::size_t k = order_.size(); k < messages_.size(); ++k) messages_[k] = messages_[k % order_.size()];
+    for (std::size_t k = order_.size(); k < messages_.size(); ++k)
+      messages_[k] = messages_[k % order_.size()];
   }
 
   bool perfect() const { return link_ == nullptr || link_->perfect(); }
@@ -56,7 +57,8 @@ class Mailroom {
   Message* outgoing() { return messages_.data() + base(posted_); }
   void post() { ++posted_; }
 
-  /// Prepares the inboxes of one round from the current messages. `finite`: nobody has an estimate that is not.
+  /// Prepares the inboxes of one round from the current messages. `finite`: nobody has an estimate that is
+  /// not.
   void collect(std::int64_t t, int round, bool finite) {
     as_wired_ = perfect() && finite;
     if (as_wired_) return;
@@ -70,7 +72,8 @@ class Mailroom {
 
   Inbox<Message> inbox(std::size_t k) const {
     if (as_wired_)
-      return {messages_.data() + base(posted_ - 1), std::span(slots_).subspan(first_[k], first_[k + 1] - first_[k])};
+      return {messages_.data() + base(posted_ - 1),
+              std::span(slots_).subspan(first_[k], first_[k + 1] - first_[k])};
     return {messages_.data(), std::span(delivered_).subspan(first_[k], received_[k])};
   }
 
@@ -102,10 +105,10 @@ class Mailroom {
   }
 
   std::vector<int> order_;
-  std::vector<std::size_t> first_;         // of each agent's slots, N+1
-  std::vector<std::uint32_t> slots_;       // as wired: positions of the neighbours, by public id
-  std::vector<std::uint32_t> delivered_;   // as delivered this round: indices into messages_
-  std::vector<std::size_t> received_;      // how many of them
+  std::vector<std::size_t> first_;        // of each agent's slots, N+1
+  std::vector<std::uint32_t> slots_;      // as wired: positions of the neighbours, by public id
+  std::vector<std::uint32_t> delivered_;  // as delivered this round: indices into messages_
+  std::vector<std::size_t> received_;     // how many of them
   std::vector<Message> messages_;
   std::size_t depth_ = 2;
   std::uint64_t posted_ = 0;

@@ -38,10 +38,10 @@ struct GARRISON_EXPORT Record {
   std::vector<Accusation> accusations;
 
   LinkCounters link;
-  std::int64_t missing = 0;     ///< measurements that were NaN
-  std::int64_t nonfinite = 0;   ///< measurements that were infinite or beyond kHuge
-  std::int64_t overflows = 0;   ///< steps with an estimate that was not finite
-  bool interrupted = false;     ///< stopped by the caller before the end
+  std::int64_t missing = 0;    ///< measurements that were NaN
+  std::int64_t nonfinite = 0;  ///< measurements that were infinite or beyond kHuge
+  std::int64_t overflows = 0;  ///< steps with an estimate that was not finite
+  bool interrupted = false;    ///< stopped by the caller before the end
 };
 
 }  // namespace garrison

@@ -16,8 +16,8 @@ namespace garrison {
 /// What to keep of a run. Errors are always kept when the truth is known.
 struct GARRISON_EXPORT Keep {
   bool estimate = true;
-  bool report = true;        ///< bound, statistic, threshold, verdict, accusations
-  bool signals = false;      ///< the family's own signals
+  bool report = true;    ///< bound, statistic, threshold, verdict, accusations
+  bool signals = false;  ///< the family's own signals
   bool measurements = true;
 };
 
@@ -25,8 +25,8 @@ struct GARRISON_EXPORT Keep {
 struct GARRISON_EXPORT RunOptions {
   int trials = 1;
   std::uint64_t seed = 0;
-  int threads = 0;  ///< 0 = all cores; the result does not depend on it
-  Matrix start;     ///< initial estimates, n x N, or n x 1 for all agents alike; empty = zeros
+  int threads = 0;              ///< 0 = all cores; the result does not depend on it
+  Matrix start;                 ///< initial estimates, n x N, or n x 1 for all agents alike; empty = zeros
   std::vector<Attack> attacks;  ///< applied in this order
   std::vector<std::shared_ptr<const MessageAttack>> message_attacks;
   LinkFaults link;
@@ -38,8 +38,9 @@ struct GARRISON_EXPORT RunOptions {
 /// How the simulated plant starts and is disturbed.
 struct GARRISON_EXPORT PlantOptions {
   int steps = 0;
-  Vector x0;                 ///< true initial state; empty = zeros
-  double start_error = 0.0;  ///< the common initial estimate is moved by a random vector of at most this length
+  Vector x0;  ///< true initial state; empty = zeros
+  double start_error =
+      0.0;  ///< the common initial estimate is moved by a random vector of at most this length
   /// "uniform" within the model's bounds, "extreme" at them, "normal" with the model's covariances, "none",
   /// or "auto": uniform where bounds are known, else normal where covariances are, else none.
   std::string noise = "auto";
@@ -54,6 +55,7 @@ GARRISON_EXPORT Record simulate(const Model& model, const Network& network, cons
 /// Feeds recorded measurements, steps x total_outputs, row r belonging to time r+1; NaN = missing.
 /// `truth`: empty, or (steps+1) x n. Attacks apply on top of the log (trials differ in their chance).
 GARRISON_EXPORT Record replay(const Model& model, const Network& network, const AnyFilter& filter,
-                              const MatrixRef& measurements, const MatrixRef& truth, const RunOptions& options);
+                              const MatrixRef& measurements, const MatrixRef& truth,
+                              const RunOptions& options);
 
 }  // namespace garrison

@@ -69,7 +69,9 @@ def verify_file(path: Path, family: str | None = None) -> FileResult | None:
         if "must" in case:
             result.fields = judge(module, case, _template(case, paper, path))
         elif "inputs" in case and "expected" in case:
-            result.fields = compare(module.evaluate(case["inputs"], case["expected"]), case["expected"], module.TOLERANCES)
+            result.fields = compare(
+                module.evaluate(case["inputs"], case["expected"]), case["expected"], module.TOLERANCES
+            )
         else:
             result.fields = [FieldResult.failure("file", "has neither expected nor must")]
     except Exception as error:  # a case must never stop the replay of the others

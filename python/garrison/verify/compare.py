@@ -71,7 +71,11 @@ def _numeric(name: str, got: Any, expected: Any, relative: float) -> FieldResult
 def _leaf(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
     if got is NOT_UNDERSTOOD:
         return FieldResult.failure(name, "not understood")
-    if isinstance(expected, bool) or expected is None or (isinstance(expected, str) and isinstance(array(expected), str)):
+    if (
+        isinstance(expected, bool)
+        or expected is None
+        or (isinstance(expected, str) and isinstance(array(expected), str))
+    ):
         same = got == expected and isinstance(got, bool) == isinstance(expected, bool)
         return FieldResult(name, 0.0 if same else 1.0, same, "" if same else f"got {got!r}, expected {expected!r}")
     if got is None or isinstance(got, bool):

@@ -27,7 +27,10 @@ def recognises(inputs: Inputs) -> bool:
 def _system(i: Inputs) -> tuple[gr.Model, gr.Network]:
     C = np.asarray(array(i["C"]), dtype=float)
     model = gr.Model(
-        np.asarray(array(i["A"]), dtype=float), C, process_bound=i.get("b_w", math.nan), measurement_bound=i.get("b_v")
+        np.asarray(array(i["A"]), dtype=float),
+        C,
+        process_bound=i.get("b_w", math.nan),
+        measurement_bound=i.get("b_v"),
     )
     return model, gr.Network([tuple(e) for e in i["edges"]], agents=len(C))
 
@@ -48,7 +51,9 @@ def _run(i: Inputs, filter: _core.Filter) -> gr.Run:
     start = np.asarray(array(i["x0_hat"]), dtype=float)
     y = np.asarray(array(i["y"]), dtype=float)[1:]
     truth = np.asarray(array(i["x"]), dtype=float) if "x" in i else None
-    return gr.replay(filter, model, net, measurements=y, truth=truth, start=start, keep=("estimate", "report", "signals"))
+    return gr.replay(
+        filter, model, net, measurements=y, truth=truth, start=start, keep=("estimate", "report", "signals")
+    )
 
 
 def _algorithm2(i: Inputs, index: str = "t") -> _core.Filter:
@@ -255,7 +260,8 @@ def _baselines(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
 
 def _estimate(run: gr.Run) -> Array:
     assert run.estimate is not None
-    return run.estimate[0]
+    estimate: Array = run.estimate[0]
+    return estimate
 
 
 def _ineq16(i: Inputs, run: dict[str, Any]) -> Any:
@@ -268,7 +274,17 @@ def _ineq16(i: Inputs, run: dict[str, Any]) -> Any:
 
 def _evaluate_one(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
     out: dict[str, Any] = {}
-    main = {"x_hat", "k", "phi", "rho_bar", "p", "innovations", "detected_changes", "max_error", "disagreement"}
+    main = {
+        "x_hat",
+        "k",
+        "phi",
+        "rho_bar",
+        "p",
+        "innovations",
+        "detected_changes",
+        "max_error",
+        "disagreement",
+    }
     if main & expected.keys():
         second = _is_algorithm2(expected)
         run = _signals(_run(i, _algorithm2(i) if second else _filter(i)), i)
@@ -285,7 +301,7 @@ def _evaluate_one(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
         run = _signals(_run(i, _algorithm2(i)), i)
         out |= {f"alg2_{k}": run[k] for k in ("x_hat", "k", "phi", "rho_bar")}
         out["alg2_any_detected"] = any(s for change in run["detected_changes"] for s in change["sets"])
-    if {"constants", "bounds", "cond9"} & expected.keys() and "runs" not in expected or "constants" in expected:
+    if ({"constants", "bounds", "cond9"} & expected.keys() and "runs" not in expected) or "constants" in expected:
         out["constants"] = _bounds(i, expected.get("constants", {}))
         out["bounds"] = _bounds(i, expected.get("bounds", {}))
         out["cond9"] = out["constants"]["cond9"]

@@ -19,7 +19,8 @@ std::string above(double value) { return "> " + text(value); }
 
 bool scalar_unit_rows(const Model& model) {
   for (int i = 0; i < model.agents(); ++i)
-    if (model.outputs(i) > 1 || (model.outputs(i) == 1 && std::abs(model.C(i).norm() - 1.0) > 1e-9)) return false;
+    if (model.outputs(i) > 1 || (model.outputs(i) == 1 && std::abs(model.C(i).norm() - 1.0) > 1e-9))
+      return false;
   return true;
 }
 
@@ -30,9 +31,11 @@ void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_valu
   const auto g = theorem5(s, tau0_value, varpi_value);
   c.conditions.push_back({"eta0 (1 - F(eta0)) >= q0 (9)", k.cond9_margin, ">= 0", k.cond9,
                           "the error stays bounded by theorem 1"});
-  c.conditions.push_back({"(beta - b_w - b_v)/a > rho_1 + p0 (12)", bounds.cond12_margin, "> 0", bounds.cond12,
-                          "honest measurements are never saturated from t = 2 on (theorem 3)", false});
-  c.conditions.push_back({"spectral radius of G < 1 (theorem 5)", g.spectral_radius, "< 1", g.spectral_radius < 1.0,
+  c.conditions.push_back({"(beta - b_w - b_v)/a > rho_1 + p0 (12)", bounds.cond12_margin, "> 0",
+                          bounds.cond12, "honest measurements are never saturated from t = 2 on (theorem 3)",
+                          false});
+  c.conditions.push_back({"spectral radius of G < 1 (theorem 5)", g.spectral_radius, "< 1",
+                          g.spectral_radius < 1.0,
                           "without noise the errors vanish once all attackers are proved", false});
   c.quantities.push_back({"p0", k.p0, "limit of the disagreement bound (8)"});
   c.quantities.push_back({"q0", k.q0, "what noise, disagreement and attack add per step (8)"});
@@ -66,24 +69,29 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   const Matrix C = saturation::detail::sensor_rows(model);
   c.quantities.push_back({"||A||", facts.a, "largest growth of an error per step"});
   c.quantities.push_back({"lambda_0", facts.lambda0.lower,
-                          facts.lambda0.exact ? "worst information of N - s sensors (6), exact"
-                                              : "certified lower bound of (6); the exact search was stopped"});
-  c.quantities.push_back({"varpi", facts.varpi, "largest mean error growth, all honest unsaturated (theorem 3)"});
+                          facts.lambda0.exact
+                              ? "worst information of N - s sensors (6), exact"
+                              : "certified lower bound of (6); the exact search was stopped"});
+  c.quantities.push_back(
+      {"varpi", facts.varpi, "largest mean error growth, all honest unsaturated (theorem 3)"});
   Setting setting = saturation::detail::setting(p, model, facts, rates);
   const double growth = facts.a * rates.contraction;
   c.conditions.push_back({"lambda_0 > s (11)", facts.lambda0.lower, above(s), condition11(setting),
                           "some threshold and rounds work for ||A|| near 1 (theorem 2)", false});
   // With lambda_0 < s a plant that contracts (a < 1) always has some small threshold with (9).
   const double a_max = std::max(1.0, normA_max_exact(setting));
-  c.conditions.push_back({"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max), facts.a < a_max,
+  c.conditions.push_back({"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max),
+                          facts.a < a_max,
                           "some threshold, initial error and rounds satisfy (9) (our notes, exact)", false});
-  c.conditions.push_back({"||A|| gamma^L < 1", growth, "< 1", growth < 1.0, "the disagreement stays bounded", bound_asked});
-  const auto least = minimal_rounds(setting, p.chebyshev ? std::function<double(int)>([&](int L) {
-                                      return chebyshev_contraction(rates.gamma, L);
-                                    })
-                                                         : [&](int L) { return std::pow(rates.gamma, L); });
-  c.quantities.push_back({"minimal rounds", least ? static_cast<double>(*least) : kNaN,
-                          least ? "fewest rounds for which some threshold satisfies (9)" : "no number of rounds is enough"});
+  c.conditions.push_back(
+      {"||A|| gamma^L < 1", growth, "< 1", growth < 1.0, "the disagreement stays bounded", bound_asked});
+  const auto least = minimal_rounds(
+      setting, p.chebyshev
+                   ? std::function<double(int)>([&](int L) { return chebyshev_contraction(rates.gamma, L); })
+                   : [&](int L) { return std::pow(rates.gamma, L); });
+  c.quantities.push_back(
+      {"minimal rounds", least ? static_cast<double>(*least) : kNaN,
+       least ? "fewest rounds for which some threshold satisfies (9)" : "no number of rounds is enough"});
   const bool noise_known = !std::isnan(setting.b_w) && !std::isnan(setting.b_v);
   if (std::isnan(p.initial_error) || !noise_known) {
     c.quantities.push_back({"asymptotic bound", kNaN, "needs initial_error and both noise bounds"});

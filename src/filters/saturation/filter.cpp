@@ -14,7 +14,8 @@ using saturation::detail::Facts;
 
 void require_parameters(const Saturation::Params& p, const Model& model) {
   if (std::isnan(p.threshold) && !p.adaptive)
-    refuse("saturation.threshold", "nothing", "a number > 0 (inf = never saturate)", "or set adaptive = true");
+    refuse("saturation.threshold", "nothing", "a number > 0 (inf = never saturate)",
+           "or set adaptive = true");
   if (!std::isnan(p.threshold) && p.adaptive)
     refuse("saturation.threshold", text(p.threshold), "nothing together with adaptive = true",
            "the adaptive threshold follows from the noise bounds and initial_error");
@@ -37,7 +38,8 @@ void require_bound_assumptions(const Model& model) {
            "an error bound needs bounded noise; leave initial_error out to run without");
   for (int i = 0; i < model.agents(); ++i) {
     if (model.outputs(i) > 1)
-      refuse("C[" + std::to_string(i) + "]", std::to_string(model.outputs(i)) + " rows", "at most one row per agent",
+      refuse("C[" + std::to_string(i) + "]", std::to_string(model.outputs(i)) + " rows",
+             "at most one row per agent",
              "an error bound needs scalar sensors: split_outputs gives each row an agent of its own");
     if (model.outputs(i) == 0) continue;
     const double length = model.C(i).norm();
@@ -52,7 +54,8 @@ void require_bound_assumptions(const Model& model) {
 Saturation::Gains Saturation::design(const Params& p, const Model& model, const Network& network) {
   require_parameters(p, model);
   if (network.directed())
-    refuse("network", "a directed one", "an undirected one", "averaging keeps the mean only on undirected graphs");
+    refuse("network", "a directed one", "an undirected one",
+           "averaging keeps the mean only on undirected graphs");
   network.require_connected();
   Gains g;
   g.rounds = p.rounds;
@@ -68,7 +71,8 @@ Saturation::Gains Saturation::design(const Params& p, const Model& model, const 
   g.alpha = rates.alpha;
   g.omega = rates.omega;
   if (g.detector && !g.bounded)
-    refuse("saturation.threshold", text(p.threshold), "a finite number with the detector", "thresholds build on it");
+    refuse("saturation.threshold", text(p.threshold), "a finite number with the detector",
+           "thresholds build on it");
   if (!g.bounded) return g;
   require_bound_assumptions(model);
   const Facts facts = saturation::detail::facts(model, p.attacked, p.adaptive);
@@ -89,7 +93,8 @@ void Saturation::check_start(const Gains& g, const Matrix& x0) {
     if (x0.col(i) != x0.col(0))
       refuse("start", "different initial estimates for agents 0 and " + std::to_string(i),
              "the same one for all agents",
-             "the error bound and the detector of Algorithm 2 rest on it; leave initial_error out to run without");
+             "the error bound and the detector of Algorithm 2 rest on it; leave initial_error out to run "
+             "without");
 }
 
 }  // namespace garrison

@@ -15,11 +15,11 @@ constexpr std::ptrdiff_t kL = kLanes;
 
 /// Predict and saturate for all agents; arrays [agent][component][lane].
 struct SenseJob {
-  const double* A;         // n x n, column by column
-  const double* C;         // all rows, in the order of agents
-  const int* outputs;      // per agent
-  const int* first_output; // per agent: index into y
-  const double* y;         // [measurement][lane]
+  const double* A;          // n x n, column by column
+  const double* C;          // all rows, in the order of agents
+  const int* outputs;       // per agent
+  const int* first_output;  // per agent: index into y
+  const double* y;          // [measurement][lane]
   double* x;
   int agents;
   double beta;
@@ -59,14 +59,22 @@ GARRISON_INLINE void sense_all(const SenseJob& job) {
 
 GARRISON_CLONES void sense_lanes(const SenseJob& job, int n) {
   switch (n) {
-    case 1: return sense_all<1>(job);
-    case 2: return sense_all<2>(job);
-    case 3: return sense_all<3>(job);
-    case 4: return sense_all<4>(job);
-    case 5: return sense_all<5>(job);
-    case 6: return sense_all<6>(job);
-    case 7: return sense_all<7>(job);
-    default: return sense_all<8>(job);
+    case 1:
+      return sense_all<1>(job);
+    case 2:
+      return sense_all<2>(job);
+    case 3:
+      return sense_all<3>(job);
+    case 4:
+      return sense_all<4>(job);
+    case 5:
+      return sense_all<5>(job);
+    case 6:
+      return sense_all<6>(job);
+    case 7:
+      return sense_all<7>(job);
+    default:
+      return sense_all<8>(job);
   }
 }
 
@@ -91,7 +99,8 @@ class SaturationLanes final : public LaneRunner {
     clock_.p = 0.0;
     for (int l = 0; l < kLanes; ++l)
       for (int k = 0; k < model_.agents(); ++k)
-        for (int r = 0; r < model_.states(); ++r) at(k, r, l) = x0[l](r, plan_.order()[static_cast<std::size_t>(k)]);
+        for (int r = 0; r < model_.states(); ++r)
+          at(k, r, l) = x0[l](r, plan_.order()[static_cast<std::size_t>(k)]);
     publish();
   }
 
@@ -100,7 +109,8 @@ class SaturationLanes final : public LaneRunner {
     sense_lanes({model_.A().data(), rows_.data(), outputs_.data(), first_output_.data(), y, x_.data(),
                  model_.agents(), clock_.beta},
                 model_.states());
-    plan_.run(x_.data(), scratch_.data(), model_.states() * kLanes, gains_->alpha, gains_->omega, gains_->rounds);
+    plan_.run(x_.data(), scratch_.data(), model_.states() * kLanes, gains_->alpha, gains_->omega,
+              gains_->rounds);
     publish();
   }
   const double* estimates() const override { return public_.data(); }
@@ -119,7 +129,8 @@ class SaturationLanes final : public LaneRunner {
   std::shared_ptr<const Saturation::Gains> gains_;
   Model model_;
   ConsensusPlan plan_;
-  Saturation::State<1> clock_;  // carries the threshold over time, which is the same for all agents and trials
+  Saturation::State<1>
+      clock_;  // carries the threshold over time, which is the same for all agents and trials
   std::vector<int> outputs_;
   std::vector<int> first_output_;
   std::vector<double> rows_;

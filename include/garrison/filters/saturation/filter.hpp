@@ -27,19 +27,20 @@
 #include "garrison/core/average.hpp"
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/filter.hpp"
+#include "garrison/core/lanes.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
 #include "garrison/filters/saturation/adaptive.hpp"
 #include "garrison/filters/saturation/detector.hpp"
-#include "garrison/core/lanes.hpp"
 
 namespace garrison {
 
 struct GARRISON_EXPORT Saturation {
   static constexpr std::string_view name = "saturation";
   static constexpr std::string_view title = "Saturated consensus filter, with attack detector";
-  static constexpr std::string_view source = "He, Ren, Sandberg, Johansson, IEEE TAC 2022, Algorithms 1 and 2";
+  static constexpr std::string_view source =
+      "He, Ren, Sandberg, Johansson, IEEE TAC 2022, Algorithms 1 and 2";
 
   struct Params {
     double threshold = kNaN;
@@ -55,35 +56,66 @@ struct GARRISON_EXPORT Saturation {
 
     static auto fields() {
       return std::make_tuple(
-          field(&Params::threshold, {.name = "threshold", .symbol = "beta", .unit = "measurement",
+          field(&Params::threshold, {.name = "threshold",
+                                     .symbol = "beta",
+                                     .unit = "measurement",
                                      .doc = "largest innovation that is used in full; inf = never saturate. "
                                             "May be left out with adaptive = true",
-                                     .least = 0.0, .open = true}),
-          field(&Params::rounds, {.name = "rounds", .symbol = "L", .unit = "1",
-                                  .doc = "consensus rounds per sample", .least = 0, .most = 1e6}),
-          field(&Params::step, {.name = "step", .symbol = "alpha", .unit = "1",
-                                .doc = "consensus step; left out: 2/(lambda_2 + lambda_max)", .least = 0.0}),
-          field(&Params::attacked, {.name = "attacked", .symbol = "s", .unit = "agents",
-                                    .doc = "most sensors attacked (or missing) at a time; enters bound and detector",
-                                    .least = 0}),
-          field(&Params::initial_error, {.name = "initial_error", .symbol = "eta0", .unit = "state",
-                                         .doc = "bound on the distance of the common initial estimate from the "
-                                                "state; giving it asks for run-time error bounds",
-                                         .least = 0.0, .open = true}),
-          field(&Params::detector, {.name = "detector", .symbol = "", .unit = "",
-                                    .doc = "Algorithm 2: prove and isolate attacked sensors (their set must not "
-                                           "change over time)"}),
-          field(&Params::detector_index, {.name = "detector_index", .symbol = "d_i", .unit = "",
-                                          .doc = "which count of proved sensors enters rhobar(t): \"t\" = d_i(t-1) "
-                                                 "as printed, \"t+1\" = d_i(t), sharper and as sound",
-                                          .choices = {"t", "t+1"}}),
-          field(&Params::adaptive, {.name = "adaptive", .symbol = "", .unit = "",
+                                     .least = 0.0,
+                                     .open = true}),
+          field(&Params::rounds, {.name = "rounds",
+                                  .symbol = "L",
+                                  .unit = "1",
+                                  .doc = "consensus rounds per sample",
+                                  .least = 0,
+                                  .most = 1e6}),
+          field(&Params::step, {.name = "step",
+                                .symbol = "alpha",
+                                .unit = "1",
+                                .doc = "consensus step; left out: 2/(lambda_2 + lambda_max)",
+                                .least = 0.0}),
+          field(&Params::attacked,
+                {.name = "attacked",
+                 .symbol = "s",
+                 .unit = "agents",
+                 .doc = "most sensors attacked (or missing) at a time; enters bound and detector",
+                 .least = 0}),
+          field(&Params::initial_error,
+                {.name = "initial_error",
+                 .symbol = "eta0",
+                 .unit = "state",
+                 .doc = "bound on the distance of the common initial estimate from the "
+                        "state; giving it asks for run-time error bounds",
+                 .least = 0.0,
+                 .open = true}),
+          field(&Params::detector,
+                {.name = "detector",
+                 .symbol = "",
+                 .unit = "",
+                 .doc = "Algorithm 2: prove and isolate attacked sensors (their set must not "
+                        "change over time)"}),
+          field(&Params::detector_index,
+                {.name = "detector_index",
+                 .symbol = "d_i",
+                 .unit = "",
+                 .doc = "which count of proved sensors enters rhobar(t): \"t\" = d_i(t-1) "
+                        "as printed, \"t+1\" = d_i(t), sharper and as sound",
+                 .choices = {"t", "t+1"}}),
+          field(&Params::adaptive, {.name = "adaptive",
+                                    .symbol = "",
+                                    .unit = "",
                                     .doc = "let the threshold follow the known bound on honest innovations "
                                            "(our notes; needs initial_error)"}),
-          field(&Params::chebyshev, {.name = "chebyshev", .symbol = "", .unit = "",
-                                     .doc = "Chebyshev-filtered rounds: stronger contraction from the same messages"}),
-          field(&Params::accuse_missing, {.name = "accuse_missing", .symbol = "", .unit = "",
-                                          .doc = "detector: a missing (NaN) measurement counts as proof of attack"}));
+          field(&Params::chebyshev,
+                {.name = "chebyshev",
+                 .symbol = "",
+                 .unit = "",
+                 .doc = "Chebyshev-filtered rounds: stronger contraction from the same messages"}),
+          field(&Params::accuse_missing,
+                {.name = "accuse_missing",
+                 .symbol = "",
+                 .unit = "",
+                 .doc = "detector: a missing (NaN) measurement counts as proof of attack"}));
     }
   };
 
@@ -283,12 +315,19 @@ struct GARRISON_EXPORT Saturation {
   }
 
   static constexpr std::size_t signal_count = 7;
-  static std::vector<std::string> signal_names() { return {"gain", "innovation", "level", "phi", "rho", "p", "detected"}; }
+  static std::vector<std::string> signal_names() {
+    return {"gain", "innovation", "level", "phi", "rho", "p", "detected"};
+  }
   /// Values of signal_names() after a step: k_i, h_i, beta, phi_i, rho or rhobar_i at t, p(t), d_i(t).
   template <int n>
   static void signals(const Local&, const Gains& g, const State<n>& s, double* out) noexcept {
-    const double all[] = {s.gain,        s.innovation,  s.beta, s.phi, rho_now(g, s),
-                          p_now(g, s), static_cast<double>(s.proved.size())};
+    const double all[] = {s.gain,
+                          s.innovation,
+                          s.beta,
+                          s.phi,
+                          rho_now(g, s),
+                          p_now(g, s),
+                          static_cast<double>(s.proved.size())};
     std::copy(std::begin(all), std::end(all), out);
   }
 
@@ -304,6 +343,7 @@ struct GARRISON_EXPORT Saturation {
     s.d = s.proved.size();
     s.phi = saturation::detection_threshold(g.setting, s.rho, s.p);
   }
+
  private:
   /// A x, column by column: every entry sums in the order k = 0..n-1 whatever the vector width.
   static void predict(const double* A, const double* x, double* out, int nn) noexcept {
@@ -329,7 +369,8 @@ struct GARRISON_EXPORT Saturation {
   static double rho_now(const Gains& g, const State<n>& s) noexcept {
     if (!g.bounded || s.t == 0) return s.rho;
     if (g.adaptive) return saturation::adaptive_next(g.setting, g.varpi, s.rho, s.p).rho;
-    if (!g.detector) return saturation::rho_bar_next(g.setting, g.q0, s.rho, g.p0, 0);  // (7): p0 instead of p(t-1)
+    if (!g.detector)
+      return saturation::rho_bar_next(g.setting, g.q0, s.rho, g.p0, 0);  // (7): p0 instead of p(t-1)
     return saturation::rho_bar_next(g.setting, g.q0, s.rho, s.p, g.sharp_index ? s.proved.size() : s.d);
   }
   /// p(t) of (10), or of the adaptive threshold.

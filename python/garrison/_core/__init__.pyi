@@ -1,0 +1,619 @@
+"""
+Compiled core of garrison. Use it through the garrison package.
+"""
+
+from __future__ import annotations
+import collections.abc
+import numpy
+import numpy.typing
+import typing
+from . import saturation
+
+__all__: list[str] = [
+    "Agent",
+    "Attack",
+    "DesignInfeasible",
+    "Error",
+    "Filter",
+    "Identified",
+    "InvalidInput",
+    "IoError",
+    "Lfre",
+    "Message",
+    "Model",
+    "Network",
+    "Saturation",
+    "ScalarGain",
+    "SubsetBound",
+    "attack_infos",
+    "central_kalman",
+    "chebyshev_contraction",
+    "check",
+    "filter_infos",
+    "identify",
+    "lambda0",
+    "lambda0_orthogonal",
+    "lfre_parents",
+    "make_attack",
+    "make_filter",
+    "nearest_name",
+    "observable",
+    "one_step_sparse_observable",
+    "replay",
+    "s_sparse_observable",
+    "saturation",
+    "simulate",
+    "split_outputs",
+    "tau0",
+    "varpi",
+]
+
+class Error(Exception):
+    pass
+
+class InvalidInput(Error, ValueError):
+    pass
+
+class DesignInfeasible(Error, ValueError):
+    pass
+
+class IoError(Error, OSError):
+    pass
+
+class Model:
+    """
+    The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.
+
+    A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.
+    process_bound: ||w|| <= it, >= 0, nan = not known. measurement_bound: |v_i| <= it, a number or
+    one per agent. Covariances: (n, n), and one (m_i, m_i) array per agent.
+    Raises InvalidInput when shapes do not fit or a number is not finite.
+    """
+    def __init__(
+        self,
+        A: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        C: typing.Any,
+        *,
+        process_bound: typing.SupportsFloat | typing.SupportsIndex = ...,
+        measurement_bound: typing.Any = None,
+        process_covariance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+        measurement_covariance: typing.Any | None = None,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    @property
+    def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n)
+        """
+    @property
+    def C(self) -> list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
+        """
+        One (m_i, n) array per agent.
+        """
+    @property
+    def agents(self) -> int:
+        """
+        N
+        """
+    @property
+    def measurement_bound(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def outputs(self) -> int:
+        """
+        Scalar measurements per sample of the whole network.
+        """
+    @property
+    def process_bound(self) -> float: ...
+    @property
+    def states(self) -> int:
+        """
+        n
+        """
+
+class Network:
+    """
+    Who hears whom. Immutable.
+
+    edges: (sender, receiver) pairs, a networkx graph, or a sparse
+    matrix whose entry (i, j) says that i hears j. agents: needed when the last ones have no edge.
+    Pairs given twice count once. Raises InvalidInput on a self-loop or an index out of range.
+    """
+    @staticmethod
+    def complete(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    @staticmethod
+    def erdos_renyi(
+        agents: typing.SupportsInt | typing.SupportsIndex,
+        probability: typing.SupportsFloat | typing.SupportsIndex,
+        seed: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> Network: ...
+    @staticmethod
+    def grid(
+        rows: typing.SupportsInt | typing.SupportsIndex, columns: typing.SupportsInt | typing.SupportsIndex
+    ) -> Network: ...
+    @staticmethod
+    def path(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    @staticmethod
+    def random_geometric(
+        agents: typing.SupportsInt | typing.SupportsIndex,
+        radius: typing.SupportsFloat | typing.SupportsIndex,
+        seed: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> Network:
+        """
+        Points uniform in the unit square, edges below `radius`.
+        """
+    @staticmethod
+    def ring(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    @staticmethod
+    def star(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    def __init__(
+        self, edges: typing.Any, agents: typing.SupportsInt | typing.SupportsIndex | None = None, directed: bool = False
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def laplacian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def laplacian_spectrum(self) -> tuple[float, float]:
+        """
+        (lambda_2, lambda_max) of the Laplacian; undirected networks only.
+        """
+    def laplacian_weights(
+        self, step: typing.SupportsFloat | typing.SupportsIndex
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        I - step * Laplacian
+        """
+    def max_degree_weights(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        I - Laplacian / (1 + largest degree)
+        """
+    def metropolis_weights(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Doubly stochastic (N, N) weights; undirected only.
+        """
+    def neighbours(self, agent: typing.SupportsInt | typing.SupportsIndex) -> list[int]:
+        """
+        Sorted ids of the agents that `agent` hears.
+        """
+    @property
+    def agents(self) -> int: ...
+    @property
+    def connected(self) -> bool: ...
+    @property
+    def directed(self) -> bool: ...
+    @property
+    def edges(self) -> list[tuple[int, int]]: ...
+
+class Filter:
+    """
+    A filter family with its parameters.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def params(self) -> dict: ...
+    @property
+    def signal_names(self) -> list[str]:
+        """
+        Names of the signals that a run can keep.
+        """
+
+class Saturation(Filter):
+    """
+    Saturated consensus filter, with attack detector.
+
+    Source: He, Ren, Sandberg, Johansson, IEEE TAC 2022, Algorithms 1 and 2
+
+    threshold: largest innovation that is used in full; inf = never saturate. May be left out with adaptive = true [measurement], > 0
+    rounds: consensus rounds per sample [1], >= 0, <= 1e+06
+    step: consensus step; left out: 2/(lambda_2 + lambda_max) [1], >= 0
+    attacked: most sensors attacked (or missing) at a time; enters bound and detector [agents], >= 0
+    initial_error: bound on the distance of the common initial estimate from the state; giving it asks for run-time error bounds [state], > 0
+    detector: Algorithm 2: prove and isolate attacked sensors (their set must not change over time)
+    detector_index: which count of proved sensors enters rhobar(t): "t" = d_i(t-1) as printed, "t+1" = d_i(t), sharper and as sound
+    adaptive: let the threshold follow the known bound on honest innovations (our notes; needs initial_error)
+    chebyshev: Chebyshev-filtered rounds: stronger contraction from the same messages
+    accuse_missing: detector: a missing (NaN) measurement counts as proof of attack
+    """
+    def __init__(
+        self,
+        *,
+        threshold: typing.SupportsFloat | typing.SupportsIndex = ...,
+        rounds: typing.SupportsInt | typing.SupportsIndex = 3,
+        step: typing.SupportsFloat | typing.SupportsIndex = ...,
+        attacked: typing.SupportsInt | typing.SupportsIndex = 0,
+        initial_error: typing.SupportsFloat | typing.SupportsIndex = ...,
+        detector: bool = False,
+        detector_index: str = "t",
+        adaptive: bool = False,
+        chebyshev: bool = False,
+        accuse_missing: bool = False,
+    ) -> None: ...
+
+class ScalarGain(Filter):
+    """
+    Scalar-gain consensus filter (no protection).
+
+    Source: Khan, Jadbabaie, Automatica 2014; baseline of the saturation paper
+
+    rounds: consensus rounds per sample [1], >= 0, <= 1e+06
+    step: consensus step; left out: 2/(lambda_2 + lambda_max) [1], >= 0
+    chebyshev: Chebyshev-filtered rounds: stronger contraction from the same messages
+    """
+    def __init__(
+        self,
+        *,
+        rounds: typing.SupportsInt | typing.SupportsIndex = 3,
+        step: typing.SupportsFloat | typing.SupportsIndex = ...,
+        chebyshev: bool = False,
+    ) -> None: ...
+
+class Lfre(Filter):
+    """
+    Local-filtering-based resilient estimation.
+
+    Source: Mitra, Sundaram, Automatica 2019; baseline of the saturation paper
+
+    faulty: values trimmed from each end of the parents' estimates [agents], >= 0
+    poles: real poles of the sources' observers, one per state; left out: equally spaced from 0.3 to 0.4 [1], >= -1, <= 1
+    """
+    def __init__(
+        self,
+        *,
+        faulty: typing.SupportsInt | typing.SupportsIndex = 1,
+        poles: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+    ) -> None: ...
+
+class Attack:
+    """
+    An attack with its schedule; made by the functions of garrison.attacks.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def agents(self) -> list[int]:
+        """
+        Every agent that is attacked at some time.
+        """
+    @property
+    def name(self) -> str: ...
+    @property
+    def start(self) -> int:
+        """
+        First sample that may be attacked.
+        """
+    @property
+    def target(self) -> str: ...
+
+class Message:
+    """
+    A message between agents of the same filter.
+    """
+    @property
+    def sender(self) -> int: ...
+    @property
+    def values(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Its numbers (a copy).
+        """
+
+class Agent:
+    """
+    One agent on its own: `sense` once per sample, then `fuse` once per round, with the same bits as
+    inside simulate and replay.
+    """
+    def __init__(
+        self, filter: Filter, model: Model, network: Network, id: typing.SupportsInt | typing.SupportsIndex
+    ) -> None: ...
+    def fuse(self, inbox: collections.abc.Sequence[Message]) -> Message:
+        """
+        Messages of the neighbours in any order; leave missing ones out. Returns the next message.
+        """
+    def reset(self, x0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        """
+        Back to time 0 with the initial estimate x0, (n,).
+        """
+    def sense(self, y: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> Message:
+        """
+        One number per row of C_i, nan = missing. Returns the first message of this sample.
+        """
+    @property
+    def accused(self) -> list[int]:
+        """
+        Agents that this one believes to be attacked.
+        """
+    @property
+    def bound(self) -> float: ...
+    @property
+    def dropped(self) -> int:
+        """
+        Messages dropped because a number was not finite.
+        """
+    @property
+    def estimate(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def id(self) -> int: ...
+    @property
+    def rounds(self) -> int:
+        """
+        Rounds per sample.
+        """
+    @property
+    def statistic(self) -> float: ...
+    @property
+    def threshold(self) -> float: ...
+    @property
+    def verdict(self) -> int: ...
+
+class SubsetBound:
+    """
+    Result of a search over the s removed sensors; the true value lies in [lower, upper].
+    Safe in theorems: lower of lambda0, upper of varpi and tau0.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def exact(self) -> bool:
+        """
+        The search finished.
+        """
+    @property
+    def lower(self) -> float: ...
+    @property
+    def method(self) -> str: ...
+    @property
+    def nodes(self) -> int: ...
+    @property
+    def removed(self) -> list[int]:
+        """
+        Worst set found, sorted.
+        """
+    @property
+    def upper(self) -> float: ...
+
+class Identified:
+    """
+    A model identified from clean records; use garrison.fit.
+    """
+    def measurements(
+        self,
+        raw: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        first: typing.SupportsInt | typing.SupportsIndex,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Measurements (T, N) of other records under this model.
+        """
+    def reference_states(
+        self, measured: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Least-squares states (T, n) of clean measurements of the same time.
+        """
+    @property
+    def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n)
+        """
+    @property
+    def C(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n), rows of unit length
+        """
+    @property
+    def measurement_bound(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,)
+        """
+    @property
+    def measurement_variance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,)
+        """
+    @property
+    def process_bound(self) -> float: ...
+    @property
+    def process_covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n)
+        """
+    @property
+    def scale(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,): anomaly / scale = measurement
+        """
+    @property
+    def season(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (1 + 2 harmonics, N)
+        """
+    @property
+    def share(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,): part of the variance that each factor carries
+        """
+
+def attack_infos() -> list:
+    """
+    All attacks with the description of their parameters.
+    """
+
+def central_kalman(
+    model: Model,
+    measurements: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    x0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    start_variance: typing.SupportsFloat | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    Estimates (T + 1, n) of a central Kalman filter.
+    """
+
+def chebyshev_contraction(
+    gamma: typing.SupportsFloat | typing.SupportsIndex, rounds: typing.SupportsInt | typing.SupportsIndex
+) -> float:
+    """
+    What `rounds` Chebyshev-filtered rounds leave of a disagreement.
+    """
+
+def check(filter: Filter, model: Model, network: Network) -> tuple[list, list]:
+    """
+    Conditions and quantities of the family's theorems, as two lists of dicts.
+    """
+
+def filter_infos() -> list:
+    """
+    All families with the description of their parameters.
+    """
+
+def identify(
+    raw: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    first: typing.SupportsInt | typing.SupportsIndex,
+    *,
+    factors: typing.SupportsInt | typing.SupportsIndex = 2,
+    harmonics: typing.SupportsInt | typing.SupportsIndex = 2,
+    period: typing.SupportsFloat | typing.SupportsIndex = 365.25,
+    root: bool = False,
+    factor: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+) -> Identified:
+    """
+    Fit a model to clean records (T, N), nan = missing.
+    """
+
+def lambda0(
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    s: typing.SupportsInt | typing.SupportsIndex,
+    max_nodes: typing.SupportsInt | typing.SupportsIndex = 20000000,
+    max_seconds: typing.SupportsFloat | typing.SupportsIndex = ...,
+) -> SubsetBound:
+    """
+    (6) of the saturation paper: least lambda_min(sum C_i'C_i) over all sets of N - s rows of C, (N, n).
+    """
+
+def lambda0_orthogonal(
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    s: typing.SupportsInt | typing.SupportsIndex,
+) -> float | None:
+    """
+    Closed form of lambda0 for rows that are parallel or orthogonal; None for others.
+    """
+
+def lfre_parents(filter: Filter, model: Model, network: Network) -> list[list[int]]:
+    """
+    Parents of every agent in an Lfre filter.
+    """
+
+def make_attack(
+    name: str,
+    schedule: collections.abc.Sequence[
+        tuple[
+            typing.SupportsInt | typing.SupportsIndex,
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        ]
+    ],
+    stop: typing.SupportsInt | typing.SupportsIndex | None,
+    probability: typing.SupportsFloat | typing.SupportsIndex,
+    params: dict,
+) -> Attack:
+    """
+    The attack `name`. schedule: (start, agents) phases in order of time.
+    """
+
+def make_filter(name: str, params: dict) -> Filter:
+    """
+    The filter `name`; unknown names are refused with the nearest one.
+    """
+
+def nearest_name(unknown: str, known: collections.abc.Sequence[str]) -> str:
+    """
+    The known name closest to `unknown`, or an empty text.
+    """
+
+def observable(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+) -> bool:
+    """
+    (A, C) is observable, C (m, n).
+    """
+
+def one_step_sparse_observable(
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    s: typing.SupportsInt | typing.SupportsIndex,
+) -> bool:
+    """
+    Any N - s rows of C span the state.
+    """
+
+def replay(
+    model: Model,
+    network: Network,
+    filter: Filter,
+    *,
+    measurements: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    truth: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    trials: typing.SupportsInt | typing.SupportsIndex,
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    threads: typing.SupportsInt | typing.SupportsIndex,
+    start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None,
+    attacks: collections.abc.Sequence[Attack],
+    link: dict,
+    keep: collections.abc.Sequence[str],
+    progress: typing.Any,
+) -> dict:
+    """
+    Arrays of a replayed run; use garrison.replay.
+    """
+
+def s_sparse_observable(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    s: typing.SupportsInt | typing.SupportsIndex,
+) -> bool:
+    """
+    (A, kept rows) is observable whichever s rows of C are lost.
+    """
+
+def simulate(
+    model: Model,
+    network: Network,
+    filter: Filter,
+    *,
+    steps: typing.SupportsInt | typing.SupportsIndex,
+    x0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    start_error: typing.SupportsFloat | typing.SupportsIndex,
+    noise: str,
+    trials: typing.SupportsInt | typing.SupportsIndex,
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    threads: typing.SupportsInt | typing.SupportsIndex,
+    start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None,
+    attacks: collections.abc.Sequence[Attack],
+    link: dict,
+    keep: collections.abc.Sequence[str],
+    progress: typing.Any,
+) -> dict:
+    """
+    Arrays of a simulated run; use garrison.simulate.
+    """
+
+def split_outputs(model: Model, network: Network) -> tuple[Model, Network, list[int]]:
+    """
+    (model, network, owner) with an agent per output: m agents that hear each other for one with m outputs.
+    """
+
+def tau0(
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    s: typing.SupportsInt | typing.SupportsIndex,
+) -> SubsetBound:
+    """
+    Theorem 5: largest (1/N) ||[C_i'C_i A]|| over sets of N - s rows.
+    """
+
+def varpi(
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    s: typing.SupportsInt | typing.SupportsIndex,
+) -> SubsetBound:
+    """
+    Theorem 3: largest ||(I - (1/N) sum C_i'C_i) A|| over sets of N - s rows.
+    """
+
+__version__: str = "0.1.0"

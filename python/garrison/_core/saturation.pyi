@@ -1,0 +1,157 @@
+"""
+Theorems, conditions and design of the saturation filter.
+"""
+
+from __future__ import annotations
+import numpy
+import numpy.typing
+import typing
+
+__all__: list[str] = [
+    "F",
+    "Setting",
+    "best_threshold",
+    "beta_interval",
+    "condition11",
+    "constants",
+    "design",
+    "eps_paper",
+    "feasibility_margin",
+    "fixed_points",
+    "minimal_rounds",
+    "normA_max_exact",
+    "normalise_rows",
+    "p_at",
+    "rho_sequence",
+    "scale_states",
+    "theorem4",
+    "theorem5",
+    "theorem_bounds",
+    "whiten",
+]
+
+class Setting:
+    """
+    What the theorems of the saturation filter need to know; see the C++ header.
+    """
+    def __init__(
+        self,
+        *,
+        agents: typing.SupportsInt | typing.SupportsIndex,
+        a: typing.SupportsFloat | typing.SupportsIndex,
+        lambda0: typing.SupportsFloat | typing.SupportsIndex,
+        contraction: typing.SupportsFloat | typing.SupportsIndex,
+        attacked: typing.SupportsInt | typing.SupportsIndex,
+        beta: typing.SupportsFloat | typing.SupportsIndex = ...,
+        eta0: typing.SupportsFloat | typing.SupportsIndex = ...,
+        b_w: typing.SupportsFloat | typing.SupportsIndex = ...,
+        b_v: typing.SupportsFloat | typing.SupportsIndex = ...,
+        sharp: bool = False,
+    ) -> None: ...
+
+def F(setting: Setting, rho: typing.SupportsFloat | typing.SupportsIndex) -> float:
+    """
+    F of (8).
+    """
+
+def best_threshold(setting: Setting, margin: typing.SupportsFloat | typing.SupportsIndex = 1e-06) -> dict:
+    """
+    Threshold with the least certified asymptotic bound.
+    """
+
+def beta_interval(setting: Setting) -> tuple[float, float]:
+    """
+    Thresholds with (9) for the given initial error; nan when there are none.
+    """
+
+def condition11(setting: Setting) -> bool: ...
+def constants(setting: Setting) -> dict:
+    """
+    (8) and (9).
+    """
+
+def design(
+    setting: Setting,
+    gamma: typing.SupportsFloat | typing.SupportsIndex,
+    *,
+    chebyshev: bool = False,
+    least: typing.SupportsInt | typing.SupportsIndex = 1,
+    most: typing.SupportsInt | typing.SupportsIndex = 200,
+    slack: typing.SupportsFloat | typing.SupportsIndex = 1e-09,
+) -> dict:
+    """
+    Rounds and threshold that minimise the certified bound; see the C++ header.
+    """
+
+def eps_paper(setting: Setting) -> float: ...
+def feasibility_margin(setting: Setting) -> float: ...
+def fixed_points(setting: Setting) -> tuple[float, float]:
+    """
+    Lower and upper fixed point of (7); nan where there is none.
+    """
+
+def minimal_rounds(setting: Setting, gamma: typing.SupportsFloat | typing.SupportsIndex) -> int | None:
+    """
+    Fewest plain rounds for which some threshold satisfies (9); None when no number is enough.
+    """
+
+def normA_max_exact(setting: Setting) -> float: ...
+def normalise_rows(
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    b_v: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+) -> dict:
+    """
+    Unit rows, with the noise bounds and the factors for y that belong to them.
+    """
+
+def p_at(setting: Setting, t: typing.SupportsInt | typing.SupportsIndex) -> float:
+    """
+    p(t) of (10).
+    """
+
+def rho_sequence(setting: Setting, T: typing.SupportsInt | typing.SupportsIndex) -> list[float]:
+    """
+    rho_0 .. rho_T of (7).
+    """
+
+def scale_states(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    b_w: typing.SupportsFloat | typing.SupportsIndex,
+    b_v: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    tau: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+) -> dict:
+    """
+    Coordinates z = diag(tau) x.
+    """
+
+def theorem4(setting: Setting, T: typing.SupportsInt | typing.SupportsIndex) -> list:
+    """
+    Theorem 4 for d = 0..s proved attackers.
+    """
+
+def theorem5(
+    setting: Setting,
+    tau0: typing.SupportsFloat | typing.SupportsIndex,
+    varpi: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"], float]:
+    """
+    G of theorem 5 and its spectral radius.
+    """
+
+def theorem_bounds(
+    setting: Setting, varpi: typing.SupportsFloat | typing.SupportsIndex, T: typing.SupportsInt | typing.SupportsIndex
+) -> dict:
+    """
+    Theorems 1 and 3 and proposition 2 with t0 = 1.
+    """
+
+def whiten(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    b_w: typing.SupportsFloat | typing.SupportsIndex,
+    b_v: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+) -> dict:
+    """
+    Coordinates in which sum C_i'C_i was the identity.
+    """
