@@ -39,6 +39,7 @@ format: setup ## format C++ and Python, write the type stubs anew
 
 bench: ## measure against the peers; results in bench/results
 	@tools/setup.sh bench
+	@bench/build.sh
 	@.venv/bin/python bench/run.py
 
 clean: ## remove everything that was built or installed here

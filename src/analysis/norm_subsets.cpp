@@ -26,10 +26,16 @@ class Enumeration {
 
   template <class Value>
   SubsetBound run(const Value& value) {
-    Mat<n> S = Mat<n>::Zero(C_.cols(), C_.cols());
-    for (Eigen::Index i = 0; i < C_.rows(); ++i) S += outer(i);
+    const std::size_t G = groups_.members.size();
+    const Mat<n> zero = Mat<n>::Zero(C_.cols(), C_.cols());
+    tail_.assign(G + 1, zero);
+    capacity_.assign(G + 1, 0);
+    for (std::size_t k = G; k-- > 0;) {
+      tail_[k] = tail_[k + 1] + kept(groups_.members[k], 0);
+      capacity_[k] = capacity_[k + 1] + groups_.members[k].size();
+    }
     best_.lower = -1.0;
-    walk(S, 0, s_, value);
+    walk(zero, 0, static_cast<std::size_t>(s_), value);
     std::sort(best_.removed.begin(), best_.removed.end());
     best_.upper = best_.lower;
     best_.exact = true;
@@ -38,31 +44,34 @@ class Enumeration {
   }
 
  private:
-  Mat<n> outer(Eigen::Index i) const { return weight_(i) * C_.row(i).transpose() * C_.row(i); }
+  /// Sum over the members that stay when the first `taken` go.
+  Mat<n> kept(const std::vector<int>& members, std::size_t taken) const {
+    Mat<n> sum = Mat<n>::Zero(C_.cols(), C_.cols());
+    for (std::size_t j = taken; j < members.size(); ++j)
+      sum += weight_(members[j]) * C_.row(members[j]).transpose() * C_.row(members[j]);
+    return sum;
+  }
 
+  /// S: what is kept of the groups before k. Sums are built up, never subtracted: nothing is left of removed
+  /// rows.
   template <class Value>
-  void walk(Mat<n> S, std::size_t k, int left, const Value& value) {
+  void walk(const Mat<n>& S, std::size_t k, std::size_t left, const Value& value) {
     if (left == 0) {
       ++best_.nodes;
-      const double v = value(S);
+      const double v = value(Mat<n>(S + tail_[k]));
       if (v <= best_.lower) return;
       best_.lower = v;
       best_.removed = removed_;
       return;
     }
-    if (k == groups_.members.size()) return;
-    std::size_t capacity = 0;
-    for (std::size_t j = k; j < groups_.members.size(); ++j) capacity += groups_.members[j].size();
-    if (capacity < static_cast<std::size_t>(left)) return;
+    if (capacity_[k] < left) return;
     const auto& members = groups_.members[k];
-    std::size_t taken = 0;
-    walk(S, k + 1, left, value);
-    for (; taken < members.size() && static_cast<int>(taken) < left; ++taken) {
-      S -= outer(members[taken]);
-      removed_.push_back(members[taken]);
-      walk(S, k + 1, left - static_cast<int>(taken) - 1, value);
+    const std::size_t before = removed_.size();
+    for (std::size_t taken = 0; taken <= std::min(members.size(), left); ++taken) {
+      if (taken > 0) removed_.push_back(members[taken - 1]);
+      walk(Mat<n>(S + kept(members, taken)), k + 1, left - taken, value);
     }
-    removed_.resize(removed_.size() - taken);
+    removed_.resize(before);
   }
 
   const MatrixRef& C_;
@@ -71,6 +80,8 @@ class Enumeration {
   const detail::RowGroups& groups_;
   SubsetBound best_;
   std::vector<int> removed_;
+  std::vector<Mat<n>> tail_;           // sum of all rows of the groups from k on
+  std::vector<std::size_t> capacity_;  // how many rows they have
 };
 
 template <class M>

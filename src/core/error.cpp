@@ -8,8 +8,9 @@ namespace garrison {
 
 void refuse(const std::string& which, const std::string& got, const std::string& expected,
             const std::string& advice) {
-  std::string message = which + ": got " + got + ", expected " + expected;
-  if (!advice.empty()) message += "; " + advice;
+  std::string message = which;
+  message.append(": got ").append(got).append(", expected ").append(expected);
+  if (!advice.empty()) message.append("; ").append(advice);
   throw InvalidInput(message);
 }
 

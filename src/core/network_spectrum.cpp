@@ -17,8 +17,8 @@ constexpr double kLanczosAccuracy = 1e-13;
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Largest eigenvalue of a symmetric operator on the space orthogonal to the all-ones vector, by Lanczos
-/// with full reorthogonalisation; stops when the Ritz value has settled to kLanczosAccuracy.
+/// Estimate of the largest eigenvalue of a symmetric operator on the space orthogonal to the all-ones vector,
+/// by Lanczos with full reorthogonalisation; stops when the Ritz value has settled to kLanczosAccuracy.
 double largest_eigenvalue(Eigen::Index size, const std::function<Vector(const Vector&)>& apply) {
   const auto deflate = [](Vector& v) { v.array() -= v.mean(); };
   Vector q(size);
@@ -59,6 +59,21 @@ Sparse sparse_laplacian(const Network& network) {
   return lap;
 }
 
+/// Largest eigenvalue of a Laplacian. Where it lies close to the next ones, Lanczos on the matrix itself
+/// stops short of it; on (sigma I - Lap)^-1 with sigma just above it, it stands out. A factorisation that
+/// succeeds proves that sigma is above.
+double top_eigenvalue(const Sparse& lap) {
+  const double estimate = largest_eigenvalue(lap.rows(), [&](const Vector& v) { return Vector(lap * v); });
+  Sparse identity(lap.rows(), lap.rows());
+  identity.setIdentity();
+  for (double sigma = estimate * (1.0 + 1e-4);; sigma += 0.01 * estimate) {
+    const Eigen::SimplicialLDLT<Sparse> factor(Sparse(sigma * identity - lap));
+    if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() <= 0.0) continue;
+    return sigma -
+           1.0 / largest_eigenvalue(lap.rows(), [&](const Vector& v) { return Vector(factor.solve(v)); });
+  }
+}
+
 }  // namespace
 
 LaplacianSpectrum Network::laplacian_spectrum() const {
@@ -69,11 +84,9 @@ LaplacianSpectrum Network::laplacian_spectrum() const {
         Eigen::SelfAdjointEigenSolver<Matrix>(laplacian(), Eigen::EigenvaluesOnly).eigenvalues();
     return {std::max(values(1), 0.0), values(agents() - 1)};
   }
-  if (!connected())
-    return {0.0, largest_eigenvalue(
-                     agents(), [lap = sparse_laplacian(*this)](const Vector& v) { return Vector(lap * v); })};
   const Sparse lap = sparse_laplacian(*this);
-  const double lambda_max = largest_eigenvalue(agents(), [&](const Vector& v) { return Vector(lap * v); });
+  const double lambda_max = top_eigenvalue(lap);
+  if (!connected()) return {0.0, lambda_max};
   // lambda_2 = 1 / largest eigenvalue of the pseudo-inverse. Grounding agent 0 makes the Laplacian
   // definite; on vectors orthogonal to 1 its inverse differs from the pseudo-inverse by a constant only.
   const Sparse grounded = lap.bottomRightCorner(agents() - 1, agents() - 1);

@@ -8,7 +8,9 @@ namespace garrison::detail {
 
 Recorder::Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known,
                    const RunOptions& options)
-    : keep_(options.keep), outputs_(static_cast<std::size_t>(model.total_outputs())) {
+    : keep_(options.keep),
+      vouch_(options.message_attacks.empty()),
+      outputs_(static_cast<std::size_t>(model.total_outputs())) {
   Record& r = record_;
   r.trials = options.trials;
   r.steps = steps;
@@ -90,6 +92,7 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
   }
   if (keep_.signals) frame.signals = record_.signals.data() + at * N * record_.signal_names.size();
   runner.read(frame);
+  if (!vouch_ && frame.bound != nullptr) std::fill_n(frame.bound, N, kNaN);
   if (truth != nullptr) errors(at, frame.estimate, truth);
   if (keep_.report) accusations(trial, t, runner);
   if (t > 0) count(trial, t, y);

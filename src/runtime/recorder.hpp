@@ -32,6 +32,7 @@ class Recorder {
 
   Record record_;
   Keep keep_;
+  bool vouch_;  // no agent lies in its messages: only then a family's bounds are covered
   std::size_t outputs_;
   std::vector<std::vector<AgentSet>> last_;     // per trial: the sets at the last accusation
   std::vector<std::vector<double>> estimates_;  // per trial, when estimates are not kept

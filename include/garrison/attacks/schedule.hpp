@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "garrison/core/error.hpp"
@@ -25,6 +26,11 @@ class GARRISON_EXPORT Schedule {
   /// @throws InvalidInput when phases do not start in increasing order, stop is not after the last start,
   /// an agent id is negative, or probability is outside [0, 1].
   explicit Schedule(std::vector<Phase> phases, std::int64_t stop = kForever, double probability = 1.0);
+
+  /// One phase: the same agents from `start` on.
+  Schedule(std::int64_t start, std::vector<int> agents, std::int64_t stop = kForever,
+           double probability = 1.0)
+      : Schedule(std::vector<Phase>{{start, std::move(agents)}}, stop, probability) {}
 
   /// Agents that may be attacked at time t, before chance.
   std::span<const int> agents(std::int64_t t) const;

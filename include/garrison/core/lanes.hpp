@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "garrison/core/error.hpp"
 #include "garrison/core/types.hpp"
 
 namespace garrison {

@@ -23,7 +23,7 @@ struct GARRISON_EXPORT Record {
   std::vector<double> measurements;  ///< [trial][time 1..steps][measurement], as the filter received them
   std::vector<double> estimate;      ///< [trial][time][agent][state]
   std::vector<double> error;         ///< ||estimate - truth||; empty when the truth is not known
-  std::vector<double> bound;         ///< certified bound on the error
+  std::vector<double> bound;         ///< certified bound on the error; NaN when agents lie in messages
   std::vector<double> statistic;
   std::vector<double> threshold;
   std::vector<std::uint8_t> verdict;  ///< values of Verdict

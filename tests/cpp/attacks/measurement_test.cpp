@@ -33,7 +33,7 @@ Matrix said(const Attack& plan, std::uint64_t seed = 1) {
   return out;
 }
 
-Schedule one(std::int64_t start = 3, std::int64_t stop = 6) { return Schedule({{start, {1}}}, stop); }
+Schedule one(std::int64_t start = 3, std::int64_t stop = 6) { return Schedule(start, {1}, stop); }
 
 }  // namespace
 
@@ -54,7 +54,7 @@ TEST_CASE("each attack says what its description says") {
   CHECK(said(replayed(one(), 2))(3, 1) == 3.0);   // t = 4 says what t = 2 was
   CHECK(said(replayed(one(), 20))(3, 1) == 2.0);  // nothing that old: the first sample
   CHECK(said(stealthy(one(), -0.5))(2, 1) == 10.0 - 1.0);
-  const Matrix story = said(false_trajectory(Schedule({{2, {0, 2}}}), Vector::Constant(1, 8.0), {}));
+  const Matrix story = said(false_trajectory(Schedule(2, {0, 2}), Vector::Constant(1, 8.0), {}));
   CHECK(story(1, 0) == 2.0 + 8.0);
   CHECK(story(2, 2) == 5.0 + 4.0);  // the displacement obeys the plant: 8, 4, 2, ...
   CHECK(story(3, 0) == 4.0 + 2.0);
@@ -76,21 +76,22 @@ TEST_CASE("laws have their sizes, seeds decide") {
 }
 
 TEST_CASE("schedules: phases, chance, refusals") {
-  const Schedule moving({{2, {0}}, {5, {1, 2}}}, 8);
+  const Schedule moving(std::vector<Schedule::Phase>{{2, {0}}, {5, {1, 2}}}, 8);
   CHECK(moving.agents(1).empty());
   CHECK(moving.agents(4).size() == 1);
   CHECK(moving.agents(7).size() == 2);
   CHECK(moving.agents(8).empty());
   CHECK(moving.everyone() == std::vector<int>{0, 1, 2});
-  const Schedule chance({{0, {0}}}, Schedule::kForever, 0.3);
+  const Schedule chance(0, {2}, Schedule::kForever, 0.3);
   const Random random(1, 0, Purpose::attack);
   int hits = 0;
   for (int t = 0; t < 10000; ++t) hits += chance.strikes(random, t, 0, 1) ? 1 : 0;
   CHECK(std::abs(hits - 3000) < 200);
-  CHECK_THROWS_WITH_AS(Schedule({{5, {0}}, {5, {1}}}), doctest::Contains("a time after 5"), InvalidInput);
-  CHECK_THROWS_AS(Schedule({{5, {0}}}, 5), InvalidInput);
-  CHECK_THROWS_AS(Schedule({{5, {0}}}, 9, 1.5), InvalidInput);
-  CHECK_THROWS_WITH_AS(bias(Schedule({{1, {7}}}), 1.0)->start(kModel, random, 1), doctest::Contains("7"),
+  CHECK_THROWS_WITH_AS(Schedule(std::vector<Schedule::Phase>{{5, {0}}, {5, {1}}}),
+                       doctest::Contains("a time after 5"), InvalidInput);
+  CHECK_THROWS_AS(Schedule(5, {2}, 5), InvalidInput);
+  CHECK_THROWS_AS(Schedule(5, {2}, 9, 1.5), InvalidInput);
+  CHECK_THROWS_WITH_AS(bias(Schedule(1, {7}), 1.0)->start(kModel, random, 1), doctest::Contains("7"),
                        InvalidInput);
 }
 
@@ -104,11 +105,11 @@ TEST_CASE("an informed attacker stays below the detector's threshold") {
                                                  {"initial_error", 1.0},
                                                  {"detector", true}});
   RunOptions o;
-  o.attacks = {stealthy(Schedule({{1, {1, 4}}}), 0.999)};
+  o.attacks = {stealthy(Schedule(1, {1, 4}), 0.999)};
   o.keep.signals = true;
   const Record record = simulate(model, network, *filter, {60, {}, 0.5, "uniform"}, o);
   CHECK(record.accusations.size() == 1);  // the empty sets of time 0
-  o.attacks = {stealthy(Schedule({{1, {1, 4}}}), 1.01)};
+  o.attacks = {stealthy(Schedule(1, {1, 4}), 1.01)};
   CHECK(simulate(model, network, *filter, {60, {}, 0.5, "uniform"}, o).accusations.size() > 1);
 }
 

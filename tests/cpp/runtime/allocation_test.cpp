@@ -67,7 +67,7 @@ TEST_CASE("no step of any family allocates, at any dimension, on good and on bad
       const auto runner = filter->prepare(model, network)->runner(1);
       for (const bool faults : {false, true}) {
         Link link(network, {0.2, 0.2, 3},
-                  {forge(Schedule({{3, {1}}}), 2.0, false), equivocate(Schedule({{2, {4}}}), 1.0)}, 1, 0);
+                  {forge(Schedule(3, {1}), 2.0, false), equivocate(Schedule(2, {4}), 1.0)}, 1, 0);
         runner->reset(Matrix::Zero(n, 8), faults ? &link : nullptr);
         std::vector<double> y(8);
         for (int t = 1; t <= 40; ++t) {

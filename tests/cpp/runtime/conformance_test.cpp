@@ -131,9 +131,9 @@ TEST_CASE("any number of threads gives the same bits, and so do trials side by s
     test::Rng rng(static_cast<std::uint64_t>(n));
     const Model model = test::scalar_model(rng, n, 9, 1.0, 0.02, 0.01);
     const Network network = test::connected_network(rng, 9);
-    const std::vector<Attack> attacks{scale(Schedule({{5, {2}}}), 3.0),
-                                      random_noise(Schedule({{9, {4, 5}}}, 20, 0.5), "normal", 2.0, false),
-                                      denial(Schedule({{12, {7}}}))};
+    const std::vector<Attack> attacks{scale(Schedule(5, {2}), 3.0),
+                                      random_noise(Schedule(9, {4, 5}, 20, 0.5), "normal", 2.0, false),
+                                      denial(Schedule(12, {7}))};
     for (const auto& filter : filters(true)) {
       CAPTURE(n);
       CAPTURE(filter->name());
@@ -205,9 +205,8 @@ TEST_CASE("lost, late and forged messages are counted and never spread what is n
       CAPTURE(filter->name());
       RunOptions o = options_with(Vector::Zero(n));
       o.link = {0.2, 0.2, 2};
-      o.message_attacks = {forge(Schedule({{4, {1}}}), kNaN, true),
-                           forge(Schedule({{8, {2}}}, 12), 5.0, false), equivocate(Schedule({{6, {3}}}), 2.0),
-                           silence(Schedule({{10, {4}}}))};
+      o.message_attacks = {forge(Schedule(4, {1}), kNaN, true), forge(Schedule(8, {2}, 12), 5.0, false),
+                           equivocate(Schedule(6, {3}), 2.0), silence(Schedule(10, {4}))};
       const Record record = replay(s.model, s.network, *filter, s.y, Matrix(), o);
       CHECK(all_finite(record.estimate));
       CHECK(record.link.refused > 0);

@@ -13,7 +13,9 @@
 //
 // Where we leave the print (our notes on the paper): the test has a rounding guard; "= s" in line 6 reads
 // ">= s"; a bound is reported only by an agent that still tests, because (16) is false for the others; an
-// agent that missed a message, or heard from one that did, reports no bound.
+// agent that missed a message or got an old one, or heard from one that did, reports no bound. Bounds cover
+// attacked sensors, not agents that lie in their messages: drivers drop them when such an attack is
+// simulated.
 #pragma once
 
 #include <algorithm>
@@ -149,7 +151,7 @@ struct GARRISON_EXPORT Saturation {
     double p = kNaN;          // p at t-1
     int d = 0;                // |I_i(t-1)|
     std::int64_t t = 0;
-    bool intact = true;  // no message is missing behind this estimate
+    bool intact = true;  // no message is missing or old behind this estimate
     Verdict verdict = Verdict::cleared;
     AgentSet proved;  // I_i
   };
@@ -157,6 +159,8 @@ struct GARRISON_EXPORT Saturation {
   template <int n>
   struct Message {
     Vec<n> x;
+    std::int64_t t = 0;  // sample and round it was sent in: an old message is recognised
+    int round = 0;
     bool intact = true;
     AgentSet proved;
     std::span<double> values() { return {x.data(), static_cast<std::size_t>(x.size())}; }
@@ -245,7 +249,7 @@ struct GARRISON_EXPORT Saturation {
                 : used == 0       ? Verdict::silent
                 : limited > 0     ? Verdict::suspected
                                   : Verdict::cleared;
-    send(s, m);
+    send(s, 0, m);
   }
 
   template <int n>
@@ -258,10 +262,10 @@ struct GARRISON_EXPORT Saturation {
     // Estimates and sets travel in one message: the proof of "no false accusation" rests on it.
     if (inbox.size() < static_cast<std::size_t>(l.degree)) s.intact = false;
     for (std::size_t k = 0; k < inbox.size(); ++k) {
-      s.intact = s.intact && inbox[k].intact;
+      s.intact = s.intact && inbox[k].intact && inbox[k].t == s.t && inbox[k].round == round;
       if (g.detector) s.proved.unite(inbox[k].proved);
     }
-    send(s, m);
+    send(s, round + 1, m);
   }
 
   /// The rounds would change nothing but the average if both agents carry the same side information.
@@ -358,8 +362,10 @@ struct GARRISON_EXPORT Saturation {
   }
 
   template <int n>
-  static void send(const State<n>& s, Message<n>& m) noexcept {
+  static void send(const State<n>& s, int round, Message<n>& m) noexcept {
     m.x = s.x;
+    m.t = s.t;
+    m.round = round;
     m.intact = s.intact;
     m.proved = s.proved;
   }

@@ -115,8 +115,7 @@ Instance draw(std::uint64_t seed) {
     in.attacked = some_agents(rng, s, N);
     if (s > 0 && in.detector) {
       in.attacks = {random_attack(
-          rng,
-          Schedule({{test::whole(rng, 1, 10), in.attacked}}, Schedule::kForever, test::uniform(rng, 0.3, 1)),
+          rng, Schedule(test::whole(rng, 1, 10), in.attacked, Schedule::kForever, test::uniform(rng, 0.3, 1)),
           n)};
     } else if (s > 0) {  // Algorithm 1: the attacked set may move
       std::vector<Schedule::Phase> phases;
@@ -224,7 +223,7 @@ TEST_CASE("theorem 4: after d sensors are proved, the error settles below its bo
     if (list.empty()) continue;
     // One loud attacker, the others stealthy: d stays below s, so that agents go on testing.
     const std::vector<int> rest(in.attacked.begin() + 1, in.attacked.end());
-    in.attacks = {bias(Schedule({{2, {in.attacked.front()}}}), 1e6), stealthy(Schedule({{2, rest}}), 0.9)};
+    in.attacks = {bias(Schedule(2, {in.attacked.front()}), 1e6), stealthy(Schedule(2, rest), 0.9)};
     RunOptions o;
     o.attacks = in.attacks;
     o.threads = 1;

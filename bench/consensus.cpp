@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// L rounds of x <- (I - alpha Lap) x: ours, Eigen's, and a whole filter step of ours.
+#include "garrison/runtime/consensus.hpp"
+
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <memory>
+#include <numbers>
+
+#include "bench.hpp"
+#include "garrison/core/network.hpp"
+#include "garrison/runtime/family.hpp"
+
+using namespace garrison;
+
+namespace {
+
+constexpr int kWidth = 8;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, kWidth, Eigen::RowMajor>;
+using AnyRowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// All contenders on one random geometric network of mean degree 8, states of width 8.
+class Consensus {
+ public:
+  Consensus(int agents, int rounds, std::uint64_t seed)
+      : rounds_(rounds),
+        network_(Network::random_geometric(agents, std::sqrt(8.0 / (std::numbers::pi * agents)), seed)),
+        plan_(network_.offsets(), network_.lists()),
+        alpha_(1.0 / (1.0 + network_.max_degree())) {
+    std::vector<int> position(static_cast<std::size_t>(agents));
+    for (int k = 0; k < agents; ++k)
+      position[static_cast<std::size_t>(plan_.order()[static_cast<std::size_t>(k)])] = k;
+    std::vector<Eigen::Triplet<double>> given;
+    std::vector<Eigen::Triplet<double>> ordered;
+    for (int i = 0; i < agents; ++i) {
+      const int p = position[static_cast<std::size_t>(i)];
+      given.emplace_back(i, i, 1.0 - alpha_ * network_.degree(i));
+      ordered.emplace_back(p, p, 1.0 - alpha_ * network_.degree(i));
+      for (const int j : network_.neighbours(i)) {
+        given.emplace_back(i, j, alpha_);
+        ordered.emplace_back(p, position[static_cast<std::size_t>(j)], alpha_);
+      }
+    }
+    W_.resize(agents, agents);
+    W_.setFromTriplets(ordered.begin(), ordered.end());
+    given_.resize(agents, agents);
+    given_.setFromTriplets(given.begin(), given.end());
+    x_ = RowMajor::NullaryExpr(agents, kWidth, [](Eigen::Index i, Eigen::Index k) {
+      return std::sin(1.0 + 0.7 * static_cast<double>(i) + 1.3 * static_cast<double>(k));
+    });
+    scratch_ = x_;
+    prepare_filter(agents);
+  }
+
+  Eigen::SparseMatrix<double, Eigen::RowMajor> ordered() const { return W_; }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> as_given() const { return given_; }
+  RowMajor start() const { return x_; }
+
+  std::pair<double, RowMajor> ours() {
+    RowMajor x = x_;
+    const double begin = cpu_seconds();
+    plan_.run(x.data(), scratch_.data(), kWidth, alpha_, {}, rounds_);
+    return {cpu_seconds() - begin, x};
+  }
+  std::pair<double, RowMajor> eigen_fixed() const {
+    RowMajor x = x_;
+    RowMajor next = x_;
+    const double begin = cpu_seconds();
+    for (int r = 0; r < rounds_; ++r) {
+      next.noalias() = W_ * x;
+      x.swap(next);
+    }
+    return {cpu_seconds() - begin, x};
+  }
+  std::pair<double, RowMajor> eigen_dynamic() const {
+    AnyRowMajor x = x_;
+    AnyRowMajor next = x_;
+    const double begin = cpu_seconds();
+    for (int r = 0; r < rounds_; ++r) {
+      next.noalias() = W_ * x;
+      x.swap(next);
+    }
+    return {cpu_seconds() - begin, x};
+  }
+  /// A whole step: sense with one scalar output per agent, then the rounds.
+  double filter_step() {
+    const double begin = cpu_seconds();
+    runner_->step(++t_, y_.data());
+    return cpu_seconds() - begin;
+  }
+
+ private:
+  void prepare_filter(int agents) {
+    const Matrix A = 0.99 * Matrix::Identity(kWidth, kWidth) + 0.001 * Matrix::Ones(kWidth, kWidth);
+    std::vector<Matrix> C;
+    for (int i = 0; i < agents; ++i) {
+      Matrix row = Matrix::Zero(1, kWidth);
+      row(0, i % kWidth) = 1.0;
+      C.push_back(row);
+    }
+    // The network may fall into parts; the filter wants one.
+    const Network joined = network_.connected() ? network_ : Network(agents, joined_edges());
+    const auto filter = make_filter(
+        "saturation",
+        {{"threshold", 0.5}, {"rounds", std::int64_t{rounds_}}, {"step", 1.0 / (1.0 + joined.max_degree())}});
+    runner_ = filter->prepare(Model(A, std::move(C)), joined)->runner(1);
+    runner_->reset(x_.transpose(), nullptr);
+    y_.assign(static_cast<std::size_t>(agents), 0.3);
+  }
+
+  /// The edges of the network and one more to each part that agent 0 does not reach.
+  std::vector<Edge> joined_edges() const {
+    std::vector<Edge> edges = network_.edges();
+    std::vector<char> seen(static_cast<std::size_t>(network_.agents()), 0);
+    std::vector<int> stack;
+    for (int i = 0; i < network_.agents(); ++i) {
+      if (seen[static_cast<std::size_t>(i)]) continue;
+      if (i > 0) edges.emplace_back(i - 1, i);
+      seen[static_cast<std::size_t>(i)] = 1;
+      stack.push_back(i);
+      while (!stack.empty()) {
+        const int k = stack.back();
+        stack.pop_back();
+        for (const int j : network_.neighbours(k))
+          if (!seen[static_cast<std::size_t>(j)]) {
+            seen[static_cast<std::size_t>(j)] = 1;
+            stack.push_back(j);
+          }
+      }
+    }
+    return edges;
+  }
+
+  int rounds_;
+  Network network_;
+  ConsensusPlan plan_;
+  double alpha_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> W_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> given_;
+  RowMajor x_;
+  RowMajor scratch_;
+  std::unique_ptr<Runner> runner_;
+  std::vector<double> y_;
+  std::int64_t t_ = 0;
+};
+
+}  // namespace
+
+void bind_consensus(py::module_& m) {
+  py::class_<Consensus>(m, "Consensus")
+      .def(py::init<int, int, std::uint64_t>(), py::arg("agents"), py::arg("rounds"), py::arg("seed"))
+      .def("ordered", &Consensus::ordered)
+      .def("as_given", &Consensus::as_given)
+      .def("start", &Consensus::start)
+      .def("ours", &Consensus::ours)
+      .def("eigen_fixed", &Consensus::eigen_fixed)
+      .def("eigen_dynamic", &Consensus::eigen_dynamic)
+      .def("filter_step", &Consensus::filter_step);
+}

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench.hpp"
+
+PYBIND11_MODULE(garrison_bench, m) {
+  m.doc() = "Our kernels and their C++ peers, timed inside one process.";
+  bind_limits(m);
+  bind_consensus(m);
+  bind_lambda0(m);
+}
