@@ -4,9 +4,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 import garrison as gr
+import numpy as np
 
 TRIALS, STEPS, AGENTS, STATES, ROUNDS, BETA = 100, 500, 30, 4, 10, 0.5
 
@@ -29,7 +28,9 @@ def monte_carlo(repeats: int, interleaved: Any, summary: Any) -> list[dict[str, 
     filt = gr.filters.Saturation(threshold=BETA, rounds=ROUNDS)
     attack = gr.attacks.Scale(agents=[3, 8, 13, 21, 27], factor=3.0, start=50)
     # Ours makes the noise, the plant and the attack itself; the peers are given the measurements.
-    given = gr.simulate(model, net, filt, steps=STEPS, trials=TRIALS, attack=attack, seed=1, keep=["estimate", "measurements"])
+    given = gr.simulate(
+        model, net, filt, steps=STEPS, trials=TRIALS, attack=attack, seed=1, keep=["estimate", "measurements"]
+    )
     y = given.measurements
     W = np.eye(AGENTS) - alpha * net.laplacian()
 
@@ -79,7 +80,9 @@ def monte_carlo(repeats: int, interleaved: Any, summary: Any) -> list[dict[str, 
     return summary(interleaved(rows, repeats), "ours, all cores, with own noise")
 
 
-def _jax_rows(y: Any, A: Any, C: Any, W: Any, WL: Any, right: Callable[[np.ndarray], bool]) -> dict[str, Callable[[], float]]:
+def _jax_rows(
+    y: Any, A: Any, C: Any, W: Any, WL: Any, right: Callable[[np.ndarray], bool]
+) -> dict[str, Callable[[], float]]:
     """JAX vmap + scan, if it is installed (pip install jax)."""
     try:
         import jax

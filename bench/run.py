@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import garrison as gr
 import garrison_bench as peers
 import numpy as np
 import scipy
@@ -20,8 +21,6 @@ import scipy.sparse as sp
 from montecarlo import monte_carlo
 from rich.console import Console
 from rich.table import Table
-
-import garrison as gr
 
 HERE = Path(__file__).parent
 
@@ -43,7 +42,9 @@ def summary(times: dict[str, list[float]], ours: str) -> list[dict[str, Any]]:
     for name, seconds in times.items():
         ratios = np.array(seconds) / np.array(times[ours])
         spread = [float(ratios.min()), float(ratios.max())]
-        out.append({"row": name, "ms": 1e3 * float(np.median(seconds)), "ratio": float(np.median(ratios)), "spread": spread})
+        out.append(
+            {"row": name, "ms": 1e3 * float(np.median(seconds)), "ratio": float(np.median(ratios)), "spread": spread}
+        )
     return out
 
 
@@ -71,7 +72,11 @@ def consensus(agents: int, rounds: int, repeats: int) -> list[dict[str, Any]]:
         return x
 
     expected = scipy_rounds(W)
-    for name, (_, got) in {"ours": task.ours(), "eigen": task.eigen_fixed(), "eigen dynamic": task.eigen_dynamic()}.items():
+    for name, (_, got) in {
+        "ours": task.ours(),
+        "eigen": task.eigen_fixed(),
+        "eigen dynamic": task.eigen_dynamic(),
+    }.items():
         assert np.abs(got - expected).max() < 1e-12, f"{name} is wrong"
     inner = max(1, 20_000 // agents)
     rows: dict[str, Callable[[], float]] = {
@@ -106,7 +111,12 @@ def lambda0(agents: int, s: int, unit: bool, repeats: int, most: int = 2_000_000
     spread = [float(ratio.min()), float(ratio.max())]
     return [
         {"row": "ours", "ms": 1e3 * max(ours), "ratio": 1.0, "spread": [1.0, 1.0], "nodes": max(nodes)},
-        {"row": "enumeration in C++", "ms": 1e3 * float(np.median(brute)), "ratio": float(np.median(ratio)), "spread": spread},
+        {
+            "row": "enumeration in C++",
+            "ms": 1e3 * float(np.median(brute)),
+            "ratio": float(np.median(ratio)),
+            "spread": spread,
+        },
     ]
 
 
@@ -134,7 +144,12 @@ def main() -> None:
     tasks["lambda0 N=100 n=4 s=10 Gaussian"] = lambda: lambda0(100, 10, False, 3)
     tasks["lambda0 N=100 n=4 s=10 unit rows"] = lambda: lambda0(100, 10, True, 3)
     results: dict[str, Any] = {
-        "versions": {"garrison": gr.__version__, "numpy": np.__version__, "scipy": scipy.__version__, "python": platform.python_version()},
+        "versions": {
+            "garrison": gr.__version__,
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+            "python": platform.python_version(),
+        },
         "load": os.getloadavg(),
         "cores": os.cpu_count(),
         "limits": limits(),
