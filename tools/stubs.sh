@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# tools/stubs.sh [--check]: writes python/garrison/_core/*.pyi from the installed module, or fails when they are out of date.
+# tools/stubs.sh [--check]: writes python/garrison/_core/*.pyi from the installed module, or fails when they are
+# out of date.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 stubs=python/garrison/_core
@@ -14,7 +15,7 @@ new=$work/garrison/_core
 if [[ ${1:-} != --check ]]; then
   rm -rf "$stubs"
   cp -r "$new" "$stubs"
-elif ! diff -ru "$stubs" "$new"; then
+elif ! diff -ruN "$stubs" "$new"; then
   echo "stubs: $stubs is out of date; write it anew with tools/stubs.sh" >&2
   exit 1
 fi

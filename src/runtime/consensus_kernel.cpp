@@ -9,20 +9,34 @@
 namespace garrison::kernel {
 namespace {
 
+/// B doubles that are added and multiplied together; any alignment, any aliasing.
+template <int B>
+struct Block {
+  typedef double type __attribute__((vector_size(B * sizeof(double)), aligned(sizeof(double)), may_alias));
+};
+
+/// Widest block that divides a row of W entries.
+constexpr int block_of(int W) { return W % 8 == 0 ? 8 : W % 4 == 0 ? 4 : W % 2 == 0 ? 2 : 1; }
+
 template <int W, bool plain>
 GARRISON_INLINE void rows(const RowJob& job) {
+  constexpr int B = block_of(W);
+  constexpr int blocks = W / B;
+  using V = typename Block<B>::type;
   for (std::int32_t i = job.begin; i < job.end; ++i) {
-    double sum[W] = {};
+    V sum[blocks] = {};
     const std::int32_t* e = job.neighbour + job.first[i];
     const std::int32_t* const last = job.neighbour + job.first[i + 1];
     const auto degree = static_cast<double>(last - e);
     for (; e != last; ++e) {
-      const double* other = job.now + static_cast<std::ptrdiff_t>(*e) * W;
-      for (int k = 0; k < W; ++k) sum[k] += other[k];
+      const V* other = reinterpret_cast<const V*>(job.now + static_cast<std::ptrdiff_t>(*e) * W);
+#pragma GCC unroll 8
+      for (int k = 0; k < blocks; ++k) sum[k] += other[k];
     }
-    const double* x = job.now + static_cast<std::ptrdiff_t>(i) * W;
-    double* next = job.next + static_cast<std::ptrdiff_t>(i) * W;
-    for (int k = 0; k < W; ++k)
+    const V* x = reinterpret_cast<const V*>(job.now + static_cast<std::ptrdiff_t>(i) * W);
+    V* next = reinterpret_cast<V*>(job.next + static_cast<std::ptrdiff_t>(i) * W);
+#pragma GCC unroll 8
+    for (int k = 0; k < blocks; ++k)
       next[k] = plain ? averaged_entry(x[k], sum[k], degree, job.alpha)
                       : averaged_entry(x[k], sum[k], degree, job.alpha, job.omega, next[k]);
   }

@@ -10,13 +10,16 @@
 namespace garrison {
 
 /// Entry k of a round: x - alpha (d x - sum of the d neighbours' entries), (5) with the sum taken first.
-inline double averaged_entry(double x, double sum, double degree, double alpha) noexcept {
+/// V: a double, or a vector of them, entry by entry.
+template <class V>
+inline __attribute__((always_inline)) V averaged_entry(V x, V sum, double degree, double alpha) noexcept {
   return x - alpha * (degree * x - sum);
 }
 
 /// The same, Chebyshev-filtered: omega * plain - (omega - 1) * entry one round ago.
-inline double averaged_entry(double x, double sum, double degree, double alpha, double omega,
-                             double previous) noexcept {
+template <class V>
+inline __attribute__((always_inline)) V averaged_entry(V x, V sum, double degree, double alpha, double omega,
+                                                       V previous) noexcept {
   return omega * averaged_entry(x, sum, degree, alpha) - (omega - 1.0) * previous;
 }
 
