@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "clones.hpp"
+#include "../core/clones.hpp"
 #include "garrison/core/average.hpp"
 
 namespace garrison::kernel {

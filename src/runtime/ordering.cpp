@@ -15,7 +15,11 @@ class Search {
     return offsets_[static_cast<std::size_t>(i) + 1] - offsets_[static_cast<std::size_t>(i)];
   }
 
-  /// Breadth-first order from `start`, neighbours by degree; returns where the last level begins.
+  bool done(int i) const { return mark_[static_cast<std::size_t>(i)] == kDone; }
+  void finish(int i) { mark_[static_cast<std::size_t>(i)] = kDone; }
+
+  /// Breadth-first order from `start` over agents that are not done, neighbours by degree; returns where
+  /// the last level begins.
   std::size_t levels(int start, std::vector<int>& order) {
     ++stamp_;
     const std::size_t begin = order.size();
@@ -32,7 +36,7 @@ class Search {
       for (int e = offsets_[static_cast<std::size_t>(order[k])];
            e < offsets_[static_cast<std::size_t>(order[k]) + 1]; ++e) {
         const int j = lists_[static_cast<std::size_t>(e)];
-        if (mark_[static_cast<std::size_t>(j)] == stamp_) continue;
+        if (mark_[static_cast<std::size_t>(j)] == stamp_ || done(j)) continue;
         mark_[static_cast<std::size_t>(j)] = stamp_;
         order.push_back(j);
       }
@@ -43,9 +47,10 @@ class Search {
   }
 
  private:
+  static constexpr int kDone = -1;
   std::span<const int> offsets_;
   std::span<const int> lists_;
-  std::vector<int> mark_;
+  std::vector<int> mark_;  // the last search that saw the agent, or kDone
   int stamp_ = 0;
 };
 
@@ -59,10 +64,14 @@ std::vector<int> reverse_cuthill_mckee(std::span<const int> offsets, std::span<c
   std::stable_sort(by_degree.begin(), by_degree.end(),
                    [&](int a, int b) { return search.degree(a) < search.degree(b); });
   std::vector<int> order;
-  std::vector<char> done(N, 0);
   std::vector<int> probe;
+  const auto take = [&](int start) {
+    const std::size_t begin = order.size();
+    search.levels(start, order);
+    for (std::size_t k = begin; k < order.size(); ++k) search.finish(order[k]);
+  };
   for (const int seed : by_degree) {
-    if (done[static_cast<std::size_t>(seed)]) continue;
+    if (search.done(seed)) continue;
     // Two sweeps towards an end of the component: a long, thin level structure has a small bandwidth.
     int start = seed;
     for (int sweep = 0; sweep < 2; ++sweep) {
@@ -70,9 +79,8 @@ std::vector<int> reverse_cuthill_mckee(std::span<const int> offsets, std::span<c
       const std::size_t last = search.levels(start, probe);
       start = probe[last];
     }
-    const std::size_t begin = order.size();
-    search.levels(start, order);
-    for (std::size_t k = begin; k < order.size(); ++k) done[static_cast<std::size_t>(order[k])] = 1;
+    take(start);
+    if (!search.done(seed)) take(seed);  // one-way edges: the end does not lead back
   }
   std::reverse(order.begin(), order.end());
   return order;

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace fs = std::filesystem;
 
@@ -17,7 +18,7 @@ TEST_CASE("headers include only what is below them") {
       {"analysis", {"analysis", "core"}},
       {"attacks", {"attacks", "core"}},
       {"filters", {"filters", "analysis", "core"}},
-      {"runtime", {"runtime", "filters", "attacks", "core"}},
+      {"runtime", {"runtime", "attacks", "core"}},
   };
   const fs::path root = fs::path(GARRISON_SOURCE) / "include" / "garrison";
   const std::regex include("#include \"garrison/([a-z]+)/");
@@ -37,4 +38,59 @@ TEST_CASE("headers include only what is below them") {
     }
   }
   CHECK(seen > 50);
+}
+
+TEST_CASE("compiled parts include only what is below them") {
+  const std::map<std::string, std::set<std::string>> allowed{
+      {"core", {"core"}},
+      {"analysis", {"analysis", "core"}},
+      {"attacks", {"attacks", "core"}},
+      {"filters", {"filters", "analysis", "core"}},
+      {"runtime", {"runtime", "attacks", "core"}},
+  };
+  // Where a family meets its drivers: it is instantiated there, and its trials run side by side.
+  const std::set<std::string> bridges{"garrison/runtime/filter_of.hpp", "garrison/runtime/consensus.hpp"};
+  const fs::path root = fs::path(GARRISON_SOURCE) / "src";
+  const std::regex include("#include \"([^\"]+)\"");
+  std::vector<std::string> bridged;
+  int seen = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const auto extension = entry.path().extension();
+    if (extension != ".hpp" && extension != ".cpp") continue;
+    const std::string folder = fs::relative(entry.path(), root).begin()->string();
+    if (folder == "registry.cpp") continue;  // knows everybody
+    REQUIRE(allowed.count(folder) == 1);
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      std::smatch match;
+      if (!std::regex_search(line, match, include)) continue;
+      ++seen;
+      const std::string name = match[1];
+      const bool ours = name.starts_with("garrison/");
+      const fs::path target =
+          ours ? fs::path(name).lexically_relative("garrison")
+               : (fs::relative(entry.path(), root).parent_path() / name).lexically_normal();
+      CAPTURE(entry.path().string());
+      CAPTURE(line);
+      if (folder == "filters" && bridges.count(name) == 1)
+        bridged.push_back(name);
+      else
+        CHECK(allowed.at(folder).count(target.begin()->string()) == 1);
+    }
+  }
+  CHECK(seen > 50);
+  CHECK(bridged.size() <= 5);
+}
+
+TEST_CASE("no header turns a family into a filter: that is compiled once") {
+  const fs::path root = fs::path(GARRISON_SOURCE) / "include";
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      CAPTURE(entry.path().string());
+      CHECK(line.find("#include \"garrison/runtime/filter_of.hpp\"") == std::string::npos);
+      CHECK(line.find("#include \"../") == std::string::npos);
+    }
+  }
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../../runtime/clones.hpp"
+#include "../../core/clones.hpp"
 #include "garrison/filters/saturation/filter.hpp"
 #include "garrison/runtime/consensus.hpp"
 

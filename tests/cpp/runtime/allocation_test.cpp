@@ -8,6 +8,9 @@
 #include <new>
 
 #include "../random_system.hpp"
+#include "garrison/core/dispatch.hpp"
+#include "garrison/filters/lfre.hpp"
+#include "garrison/filters/scalar_gain.hpp"
 #include "garrison/runtime/family.hpp"
 
 namespace {
@@ -87,5 +90,91 @@ TEST_CASE("no step of any family allocates, at any dimension, on good and on bad
         }
       }
     }
+  }
+}
+
+namespace {
+
+/// Allocations of 40 samples of two agents that hear each other, driven without any driver.
+template <class F, int n>
+long allocations_alone(const typename F::Params& params, const Model& model) {
+  const auto gains = F::design(params, model, Network::path(2));
+  typename F::template State<n> state[2];
+  typename F::template Message<n> message[2];
+  typename F::template Message<n> next[2];
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows[2];
+  Local local[2];
+  const Vec<n> x0 = Vector::Zero(model.states());
+  for (int i = 0; i < 2; ++i) {
+    rows[i] = model.C(i);
+    local[i] = {i, 2, model.states(), 1, 1, model.A().data(), rows[i].data()};
+    F::template init<n>(local[i], gains, x0, state[i], message[i]);
+    next[i] = message[i];
+  }
+  const std::uint32_t slots[2] = {1, 0};
+  double out[32];
+  count = 0;
+  armed = true;
+  for (int t = 1; t <= 40; ++t) {
+    for (int i = 0; i < 2; ++i) {
+      const double y = t == 7 ? kNaN : t == 9 ? kInfinity : 0.1 * t * (1 - 2 * i);
+      F::template sense<n>(local[i], gains, state[i], &y, t, message[i]);
+    }
+    for (int round = 0; round < F::rounds(gains); ++round) {
+      for (int i = 0; i < 2; ++i)
+        F::template fuse<n>(local[i], gains, state[i], {message, {slots + i, 1}}, round, next[i]);
+      for (int i = 0; i < 2; ++i) message[i] = next[i];
+    }
+    for (int i = 0; i < 2; ++i) {
+      F::template report<n>(local[i], gains, state[i]);
+      F::template signals<n>(local[i], gains, state[i], out);
+      F::template expected<n>(local[i], gains, state[i], out);
+      F::template alarm_level<n>(local[i], gains, state[i]);
+    }
+  }
+  armed = false;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("sense, fuse and report on their own do not allocate") {
+  for (int states = 1; states <= 9; ++states) {
+    test::Rng rng(static_cast<std::uint64_t>(states));
+    const Model model = test::scalar_model(rng, states, 2, 0.98, 0.02, 0.01);
+    dispatch(states, [&]<int n>() {
+      Saturation::Params detector;
+      detector.threshold = 0.2;
+      detector.attacked = 1;
+      detector.initial_error = 2.0;
+      detector.detector = true;
+      Saturation::Params adaptive = detector;
+      adaptive.detector = false;
+      adaptive.adaptive = true;
+      adaptive.threshold = kNaN;
+      CAPTURE(states);
+      CHECK(allocations_alone<Saturation, n>(detector, model) == 0);
+      CHECK(allocations_alone<Saturation, n>(adaptive, model) == 0);
+      CHECK(allocations_alone<ScalarGain, n>({}, model) == 0);
+      CHECK(allocations_alone<Lfre, n>({}, model) == 0);
+    });
+  }
+}
+
+TEST_CASE("eight trials side by side do not allocate either") {
+  for (const int n : {1, 3, 8}) {
+    test::Rng rng(static_cast<std::uint64_t>(n));
+    const Model model = test::scalar_model(rng, n, 8, 0.98, 0.02, 0.01);
+    const Network network = test::connected_network(rng, 8);
+    const auto lanes = make_filter("saturation", {{"threshold", 0.5}})->prepare(model, network)->lanes();
+    REQUIRE(lanes != nullptr);
+    const std::vector<Matrix> x0(kLanes, Matrix::Zero(n, 8));
+    lanes->reset(x0.data());
+    std::vector<double> y(8 * kLanes, 0.3);
+    count = 0;
+    armed = true;
+    for (int t = 0; t < 20; ++t) lanes->step(y.data());
+    armed = false;
+    CHECK(count == 0);
   }
 }

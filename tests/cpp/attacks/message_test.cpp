@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/attacks/message.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "garrison/core/types.hpp"
+#include "garrison/runtime/link.hpp"
+
+using namespace garrison;
+
+namespace {
+
+const Random kRandom(3, 0, Purpose::attack);
+
+std::vector<double> rewritten(const MessageAttack& attack, const Hop& hop, std::vector<double> values) {
+  attack.rewrite(hop, kRandom, values);
+  return values;
+}
+
+double length_of_change(const std::vector<double>& a, const std::vector<double>& b) {
+  double square = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+TEST_CASE("forge tells everybody the same lie, silence tells nothing") {
+  const std::vector<double> x{1.0, -2.0, 3.0};
+  const Hop hop{4, 0, 1, 2};
+  CHECK(rewritten(*forge(Schedule(1, {1}), 5.0, false), hop, x) == std::vector<double>{6.0, 3.0, 8.0});
+  CHECK(rewritten(*forge(Schedule(1, {1}), 5.0, true), hop, x) == std::vector<double>{5.0, 5.0, 5.0});
+  CHECK(rewritten(*forge(Schedule(1, {1}), 5.0, false), {9, 3, 1, 7}, x) ==
+        std::vector<double>{6.0, 3.0, 8.0});
+  std::vector<double> values = x;
+  CHECK(!silence(Schedule(1, {1}))->rewrite(hop, kRandom, values));
+}
+
+TEST_CASE("equivocation moves by its size in another direction for each receiver and round") {
+  const auto attack = equivocate(Schedule(1, {1}), 2.5);
+  for (const std::size_t n : {1U, 3U, 9U}) {
+    const std::vector<double> x(n, 0.7);
+    const auto lie = rewritten(*attack, {4, 0, 1, 2}, x);
+    CHECK(length_of_change(lie, x) == doctest::Approx(2.5));
+    CHECK(rewritten(*attack, {4, 0, 1, 2}, x) == lie);
+    if (n == 1) continue;
+    CHECK(rewritten(*attack, {4, 0, 1, 3}, x) != lie);
+    CHECK(rewritten(*attack, {4, 1, 1, 2}, x) != lie);
+    CHECK(rewritten(*attack, {5, 0, 1, 2}, x) != lie);
+  }
+  CHECK_THROWS_WITH_AS(equivocate(Schedule(1, {1}), -1.0), doctest::Contains("size: got -1"), InvalidInput);
+  CHECK_THROWS_AS(equivocate(Schedule(1, {1}), kNaN), InvalidInput);
+}
+
+TEST_CASE("a link lets attacks lie by their schedule, one after the other") {
+  const Network net = Network::complete(4);
+  const Link link(net, {}, {forge(Schedule(3, {1}, 6), 5.0, false), forge(Schedule(5, {1}), 0.0, true)}, 1,
+                  0);
+  CHECK(!link.perfect());
+  CHECK(link.lies(1));
+  CHECK(!link.lies(2));
+  const auto said = [&](std::int64_t t, int sender) {
+    std::vector<double> values{1.0};
+    bool changed = false;
+    CHECK(link.rewrite({t, 0, sender, 3}, values, changed));
+    CHECK(changed == (sender == 1 && t >= 3));
+    return values[0];
+  };
+  CHECK(said(2, 1) == 1.0);
+  CHECK(said(3, 1) == 6.0);
+  CHECK(said(3, 2) == 1.0);
+  CHECK(said(5, 1) == 0.0);  // the later attack has the last word
+  CHECK(said(9, 1) == 0.0);
+  const Link chance(net, {}, {forge(Schedule(1, {1}, Schedule::kForever, 0.25), 5.0, false)}, 1, 0);
+  int lies = 0;
+  for (int t = 1; t <= 8000; ++t) {
+    std::vector<double> values{1.0};
+    bool changed = false;
+    chance.rewrite({t, 0, 1, 2}, values, changed);
+    lies += changed ? 1 : 0;
+  }
+  CHECK(std::abs(lies - 2000) < 200);
+}
+
+TEST_CASE("honest links fail with their probability and the seed decides") {
+  const Network net = Network::complete(4);
+  const Link link(net, {0.3, 0.5, 4}, {}, 9, 1);
+  const Link same(net, {0.3, 0.5, 4}, {}, 9, 1);
+  const Link other(net, {0.3, 0.5, 4}, {}, 9, 2);
+  CHECK(link.memory() == 4);
+  int lost = 0;
+  int late = 0;
+  int different = 0;
+  for (int t = 1; t <= 10000; ++t) {
+    const Hop hop{t, t % 3, t % 4, (t + 1) % 4};
+    lost += link.fate(hop) == Link::Fate::lost ? 1 : 0;
+    late += link.fate(hop) == Link::Fate::late ? 1 : 0;
+    CHECK(link.fate(hop) == same.fate(hop));
+    different += link.fate(hop) != other.fate(hop) ? 1 : 0;
+  }
+  CHECK(std::abs(lost - 3000) < 200);
+  CHECK(std::abs(late - 3500) < 200);  // 0.7 * 0.5
+  CHECK(different > 1000);
+  CHECK(Link(net, {}, {}, 1, 0).perfect());
+  CHECK_THROWS_WITH_AS(Link(net, {-0.1, 0.0, 1}, {}, 1, 0), doctest::Contains("link.drop: got -0.1"),
+                       InvalidInput);
+  CHECK_THROWS_WITH_AS(Link(net, {0.0, kNaN, 1}, {}, 1, 0), doctest::Contains("link.delay: got nan"),
+                       InvalidInput);
+  CHECK_THROWS_WITH_AS(Link(net, {0.0, 0.0, 0}, {}, 1, 0), doctest::Contains("link.delay_rounds: got 0"),
+                       InvalidInput);
+  CHECK_THROWS_WITH_AS(Link(net, {}, {silence(Schedule(1, {4}))}, 1, 0), doctest::Contains("ids in 0..3"),
+                       InvalidInput);
+}
