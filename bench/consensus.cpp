@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "bench.hpp"
+#include "garrison/core/aligned.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/runtime/family.hpp"
 
@@ -19,14 +20,50 @@ constexpr int kWidth = 8;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, kWidth, Eigen::RowMajor>;
 using AnyRowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// The largest connected part of a network, its agents numbered in their old order.
+Network largest_part(const Network& net) {
+  std::vector<int> part(static_cast<std::size_t>(net.agents()), -1);
+  std::vector<int> sizes;
+  std::vector<int> stack;
+  for (int i = 0; i < net.agents(); ++i) {
+    if (part[static_cast<std::size_t>(i)] >= 0) continue;
+    const auto label = static_cast<int>(sizes.size());
+    sizes.push_back(0);
+    part[static_cast<std::size_t>(i)] = label;
+    stack.push_back(i);
+    while (!stack.empty()) {
+      const int k = stack.back();
+      stack.pop_back();
+      ++sizes.back();
+      for (const int j : net.neighbours(k))
+        if (part[static_cast<std::size_t>(j)] < 0) {
+          part[static_cast<std::size_t>(j)] = label;
+          stack.push_back(j);
+        }
+    }
+  }
+  const auto largest = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  std::vector<int> name(part.size(), -1);
+  int next = 0;
+  for (std::size_t i = 0; i < part.size(); ++i)
+    if (part[i] == largest) name[i] = next++;
+  std::vector<Edge> edges;
+  for (const auto& [a, b] : net.edges())
+    if (part[static_cast<std::size_t>(a)] == largest)
+      edges.emplace_back(name[static_cast<std::size_t>(a)], name[static_cast<std::size_t>(b)]);
+  return {next, edges};
+}
+
 /// All contenders on one random geometric network of mean degree 8, states of width 8.
 class Consensus {
  public:
   Consensus(int agents, int rounds, std::uint64_t seed)
       : rounds_(rounds),
-        network_(Network::random_geometric(agents, std::sqrt(8.0 / (std::numbers::pi * agents)), seed)),
+        network_(largest_part(
+            Network::random_geometric(agents, std::sqrt(8.0 / (std::numbers::pi * agents)), seed))),
         plan_(network_.offsets(), network_.lists()),
         alpha_(1.0 / (1.0 + network_.max_degree())) {
+    agents = network_.agents();
     std::vector<int> position(static_cast<std::size_t>(agents));
     for (int k = 0; k < agents; ++k)
       position[static_cast<std::size_t>(plan_.order()[static_cast<std::size_t>(k)])] = k;
@@ -48,7 +85,7 @@ class Consensus {
     x_ = RowMajor::NullaryExpr(agents, kWidth, [](Eigen::Index i, Eigen::Index k) {
       return std::sin(1.0 + 0.7 * static_cast<double>(i) + 1.3 * static_cast<double>(k));
     });
-    scratch_ = x_;
+    scratch_.resize(static_cast<std::size_t>(x_.size()));
     prepare_filter(agents);
   }
 
@@ -57,10 +94,11 @@ class Consensus {
   RowMajor start() const { return x_; }
 
   std::pair<double, RowMajor> ours() {
-    RowMajor x = x_;
+    Aligned<double> x(x_.data(), x_.data() + x_.size());  // as the engine keeps them
     const double begin = cpu_seconds();
     plan_.run(x.data(), scratch_.data(), kWidth, alpha_, {}, rounds_);
-    return {cpu_seconds() - begin, x};
+    const double seconds = cpu_seconds() - begin;
+    return {seconds, Eigen::Map<const RowMajor>(x.data(), x_.rows(), kWidth)};
   }
   std::pair<double, RowMajor> eigen_fixed() const {
     RowMajor x = x_;
@@ -98,37 +136,11 @@ class Consensus {
       row(0, i % kWidth) = 1.0;
       C.push_back(row);
     }
-    // The network may fall into parts; the filter wants one.
-    const Network joined = network_.connected() ? network_ : Network(agents, joined_edges());
-    const auto filter = make_filter(
-        "saturation",
-        {{"threshold", 0.5}, {"rounds", std::int64_t{rounds_}}, {"step", 1.0 / (1.0 + joined.max_degree())}});
-    runner_ = filter->prepare(Model(A, std::move(C)), joined)->runner(1);
+    const auto filter =
+        make_filter("saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{rounds_}}, {"step", alpha_}});
+    runner_ = filter->prepare(Model(A, std::move(C)), network_)->runner(1);
     runner_->reset(x_.transpose(), nullptr);
     y_.assign(static_cast<std::size_t>(agents), 0.3);
-  }
-
-  /// The edges of the network and one more to each part that agent 0 does not reach.
-  std::vector<Edge> joined_edges() const {
-    std::vector<Edge> edges = network_.edges();
-    std::vector<char> seen(static_cast<std::size_t>(network_.agents()), 0);
-    std::vector<int> stack;
-    for (int i = 0; i < network_.agents(); ++i) {
-      if (seen[static_cast<std::size_t>(i)]) continue;
-      if (i > 0) edges.emplace_back(i - 1, i);
-      seen[static_cast<std::size_t>(i)] = 1;
-      stack.push_back(i);
-      while (!stack.empty()) {
-        const int k = stack.back();
-        stack.pop_back();
-        for (const int j : network_.neighbours(k))
-          if (!seen[static_cast<std::size_t>(j)]) {
-            seen[static_cast<std::size_t>(j)] = 1;
-            stack.push_back(j);
-          }
-      }
-    }
-    return edges;
   }
 
   int rounds_;
@@ -138,7 +150,7 @@ class Consensus {
   Eigen::SparseMatrix<double, Eigen::RowMajor> W_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> given_;
   RowMajor x_;
-  RowMajor scratch_;
+  Aligned<double> scratch_;
   std::unique_ptr<Runner> runner_;
   std::vector<double> y_;
   std::int64_t t_ = 0;

@@ -93,6 +93,31 @@ py::dict from_record(Record&& r) {
   return d;
 }
 
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::string shape_of(const Array& a) { return py::str(a.attr("shape")).cast<std::string>(); }
+
+/// (samples, M), or (trials, samples, M); truth likewise.
+Log log_of(const Model& model, const Array& y, const std::optional<Array>& truth) {
+  const int M = model.total_outputs();
+  const py::ssize_t dims = y.ndim();
+  if ((dims != 2 && dims != 3) || y.shape(dims - 1) != M)
+    refuse("measurements", shape_of(y),
+           "(samples, " + std::to_string(M) + ") or (trials, samples, " + std::to_string(M) + ")",
+           "one column per row of the C_i, agent by agent; nan where a measurement is missing");
+  const py::ssize_t steps = y.shape(dims - 2);
+  if (truth) {
+    std::vector<py::ssize_t> expected(y.shape(), y.shape() + dims);
+    expected[static_cast<std::size_t>(dims) - 2] = steps + 1;
+    expected.back() = model.states();
+    if (!std::equal(expected.begin(), expected.end(), truth->shape(), truth->shape() + truth->ndim()))
+      refuse("truth", shape_of(*truth), py::str(py::tuple(py::cast(expected))).cast<std::string>(),
+             "one row per time, the first one before the first measurement");
+  }
+  return {y.data(), truth ? truth->data() : nullptr, dims == 2 ? 1 : static_cast<int>(y.shape(0)),
+          static_cast<int>(steps)};
+}
+
 /// What sense and fuse return in Python.
 struct Letter {
   std::shared_ptr<AnyMessage> message;
@@ -121,15 +146,16 @@ void bind_runtime(py::module_& m) {
       "Arrays of a simulated run; use garrison.simulate.");
   m.def(
       "replay",
-      [](const Model& model, const Network& network, const FilterHandle& filter, const Matrix& measurements,
-         const Matrix& truth, int trials, std::uint64_t seed, int threads, const std::optional<Matrix>& start,
-         const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
-         const py::object& progress) {
+      [](const Model& model, const Network& network, const FilterHandle& filter, const Array& measurements,
+         const std::optional<Array>& truth, int trials, std::uint64_t seed, int threads,
+         const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
+         const std::vector<std::string>& keep, const py::object& progress) {
         const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
+        const Log log = log_of(model, measurements, truth);
         Record record;
         {
           const py::gil_scoped_release no_gil;
-          record = replay(model, network, *filter.filter, measurements, truth, options);
+          record = replay(model, network, *filter.filter, log, options);
         }
         return from_record(std::move(record));
       },

@@ -32,9 +32,9 @@ py::dict from_params(const garrison::ParamMap& params);
 py::list from_infos(const std::vector<garrison::ParamInfo>& infos);
 
 /// A C-ordered array that owns its numbers.
-template <class T>
-py::array_t<T> owned(std::vector<T>&& numbers, std::vector<py::ssize_t> shape) {
-  auto* kept = new std::vector<T>(std::move(numbers));
-  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<T>*>(p); });
+template <class T, class Memory>
+py::array_t<T> owned(std::vector<T, Memory>&& numbers, std::vector<py::ssize_t> shape) {
+  auto* kept = new std::vector<T, Memory>(std::move(numbers));
+  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<T, Memory>*>(p); });
   return py::array_t<T>(std::move(shape), kept->data(), owner);
 }

@@ -7,8 +7,10 @@ results, plots and the command line.
 from garrison import attacks, filters
 from garrison._core import (
     Agent,
+    Attack,
     DesignInfeasible,
     Error,
+    Filter,
     InvalidInput,
     IoError,
     Message,
@@ -29,9 +31,11 @@ from garrison.run import Run, central_kalman, replay, simulate
 
 __all__ = [
     "Agent",
+    "Attack",
     "Check",
     "DesignInfeasible",
     "Error",
+    "Filter",
     "Fit",
     "InvalidInput",
     "IoError",

@@ -148,7 +148,7 @@ def replay(
     truth: ArrayLike | None = None,
     start: ArrayLike | None = None,
     attack: _core.Attack | Iterable[_core.Attack] = (),
-    trials: int = 1,
+    trials: int | None = None,
     seed: int = 0,
     link: Mapping[str, float] | None = None,
     keep: Iterable[str] = ("estimate", "report", "measurements"),
@@ -157,14 +157,18 @@ def replay(
 ) -> Run:
     """Feed recorded measurements, (samples, outputs), nan = missing; row r belongs to time r + 1.
 
-    truth: (samples + 1, n), from time 0, or None. Attacks come on top of the log. The rest as in simulate.
+    truth: (samples + 1, n), from time 0, or None. Both may have a leading axis of trials, one log per trial;
+    otherwise the one log serves all `trials` (default 1). Attacks come on top of the log. The rest as in simulate.
     """
+    y = np.asarray(measurements, dtype=float)
+    if trials is None:
+        trials = len(y) if y.ndim == 3 else 1
     data = _core.replay(
         model,
         network,
         filter,
-        measurements=np.asarray(measurements, dtype=float),
-        truth=np.empty((0, 0)) if truth is None else np.asarray(truth, dtype=float),
+        measurements=y,
+        truth=None if truth is None else np.asarray(truth, dtype=float),
         trials=trials,
         seed=seed,
         threads=threads,

@@ -5,16 +5,17 @@
 #include <cstdlib>
 #include <utility>
 
-#include "consensus_kernel.hpp"
 #include "garrison/runtime/ordering.hpp"
 
 namespace garrison {
 namespace {
 
 // Rows are sorted by degree inside windows of this many, so that inner loops keep their trip count.
-constexpr std::ptrdiff_t kWindow = 128;
-// Both buffers of the rows that are in flight should stay in half of a 1 MiB second-level cache.
-constexpr std::size_t kCache = 512 * 1024;
+constexpr std::int32_t kWindow = 256;
+// Networks whose rows fit a second-level cache gain nothing from fused rounds; the rows in flight of larger
+// ones should stay in a part of the third-level cache.
+constexpr std::size_t kFitsAnyway = std::size_t{1} << 20;
+constexpr std::size_t kInFlight = std::size_t{8} << 20;
 
 }  // namespace
 
@@ -23,66 +24,68 @@ ConsensusPlan::ConsensusPlan(std::span<const int> offsets, std::span<const int> 
   const auto degree = [&](int i) {
     return offsets[static_cast<std::size_t>(i) + 1] - offsets[static_cast<std::size_t>(i)];
   };
-  const auto N = static_cast<std::ptrdiff_t>(order_.size());
-  for (std::ptrdiff_t w = 0; w < N; w += kWindow)
+  const auto N = static_cast<std::int32_t>(order_.size());
+  for (std::int32_t w = 0; w < N; w += kWindow)
     std::stable_sort(order_.begin() + w, order_.begin() + std::min(w + kWindow, N),
                      [&](int a, int b) { return degree(a) < degree(b); });
   std::vector<std::int32_t> position(order_.size());
-  for (std::size_t k = 0; k < order_.size(); ++k)
-    position[static_cast<std::size_t>(order_[k])] = static_cast<std::int32_t>(k);
-  first_.push_back(0);
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const auto i = static_cast<std::size_t>(order_[k]);
-    for (int e = offsets[i]; e < offsets[i + 1]; ++e) {
+  for (std::int32_t k = 0; k < N; ++k)
+    position[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])] = k;
+  std::int32_t bandwidth = 0;
+  for (std::int32_t k = 0; k < N; ++k) {
+    const int i = order_[static_cast<std::size_t>(k)];
+    if (k % kWindow == 0) windows_.push_back(static_cast<std::int32_t>(runs_.size()));
+    if (k % kWindow == 0 || runs_.back().degree != degree(i))
+      runs_.push_back({k, k, degree(i), static_cast<std::int32_t>(neighbour_.size())});
+    runs_.back().end = k + 1;
+    for (int e = offsets[static_cast<std::size_t>(i)]; e < offsets[static_cast<std::size_t>(i) + 1]; ++e) {
       neighbour_.push_back(position[static_cast<std::size_t>(lists[static_cast<std::size_t>(e)])]);
-      bandwidth_ = std::max(bandwidth_, std::abs(neighbour_.back() - static_cast<std::int32_t>(k)));
+      bandwidth = std::max(bandwidth, std::abs(neighbour_.back() - k));
     }
-    first_.push_back(static_cast<std::int32_t>(neighbour_.size()));
   }
+  windows_.push_back(static_cast<std::int32_t>(runs_.size()));
+  reach_ = bandwidth / kWindow + 1;
 }
 
 int ConsensusPlan::rounds_in_flight(int width) const {
-  const auto row = static_cast<std::size_t>(width) * 2 * sizeof(double);
-  if (order_.size() * row <= kCache) return 1;
+  const std::size_t row = static_cast<std::size_t>(width) * 2 * sizeof(double);
+  if (order_.size() * row <= kFitsAnyway) return 1;
   return static_cast<int>(
-      std::min<std::size_t>(kCache / (row * static_cast<std::size_t>(bandwidth_ + 1)), 64));
+      std::min<std::size_t>(kInFlight / (row * kWindow * static_cast<std::size_t>(reach_)), 64));
 }
 
 void ConsensusPlan::run(double* x, double* scratch, int width, double alpha, std::span<const double> omega,
                         int rounds, Workers* workers) const {
   double* buffers[2] = {x, scratch};
-  const auto N = static_cast<std::int32_t>(order_.size());
-  const auto row_range = [&](int round, std::int32_t begin, std::int32_t end) {
+  const auto windows = static_cast<std::int64_t>(windows_.size()) - 1;
+  const auto average = [&](int round, std::int64_t begin, std::int64_t end) {
     const double weight = omega.empty() ? 1.0 : omega[static_cast<std::size_t>(round)];
-    kernel::average_rows({first_.data(), neighbour_.data(), buffers[round % 2], buffers[(round + 1) % 2],
-                          begin, end, alpha, weight},
-                         width);
+    kernel::average_runs({neighbour_.data(), buffers[round % 2], buffers[(round + 1) % 2], alpha, weight},
+                         runs_.data() + windows_[static_cast<std::size_t>(begin)],
+                         runs_.data() + windows_[static_cast<std::size_t>(end)], width);
   };
   const bool threaded = workers != nullptr && workers->threads() > 1;
   const int fused = threaded ? 1 : rounds_in_flight(width);
   if (fused < 2) {
     for (int round = 0; round < rounds; ++round) {
       if (threaded)
-        workers->split(N, [&](std::int64_t begin, std::int64_t end, int) {
-          row_range(round, static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end));
-        });
+        workers->split(windows,
+                       [&](std::int64_t begin, std::int64_t end, int) { average(round, begin, end); });
       else
-        row_range(round, 0, N);
+        average(round, 0, windows);
     }
   } else {
-    // Skewed tiles: round l works `bandwidth` rows behind round l-1, so its neighbours are ready, and round
+    // Skewed tiles: round l works `reach` windows behind round l-1, so its neighbours are ready, and round
     // l+1 overwrites only what round l no longer reads. The rows in flight stay in cache.
+    const std::int64_t reach = reach_;
     for (int base = 0; base < rounds; base += fused) {
       const int group = std::min(fused, rounds - base);
-      const std::int64_t block = std::max<std::int64_t>(bandwidth_ / 4, 64);
-      const std::int64_t end = N + static_cast<std::int64_t>(group - 1) * bandwidth_;
-      const auto clamp = [&](std::int64_t r) {
-        return static_cast<std::int32_t>(std::clamp<std::int64_t>(r, 0, N));
-      };
-      for (std::int64_t front = 0; front < end; front += block)
+      const std::int64_t end = windows + (group - 1) * reach;
+      for (std::int64_t front = 0; front < end; front += 2 * reach)
         for (int l = 0; l < group; ++l) {
-          const std::int64_t lag = static_cast<std::int64_t>(l) * bandwidth_;
-          row_range(base + l, clamp(front - lag), clamp(front + block - lag));
+          const std::int64_t from = std::clamp<std::int64_t>(front - l * reach, 0, windows);
+          const std::int64_t to = std::clamp<std::int64_t>(front + (2 - l) * reach, 0, windows);
+          average(base + l, from, to);
         }
     }
   }

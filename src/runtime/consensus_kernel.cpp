@@ -1,107 +1,129 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "consensus_kernel.hpp"
+#include "garrison/runtime/consensus_kernel.hpp"
 
 #include <cstddef>
 
-#include "../core/clones.hpp"
 #include "garrison/core/average.hpp"
+#include "garrison/core/block.hpp"
+#include "garrison/core/clones.hpp"
 
 namespace garrison::kernel {
 namespace {
 
-/// B doubles that are added and multiplied together; any alignment, any aliasing.
-template <int B>
-struct Block {
-  typedef double type __attribute__((vector_size(B * sizeof(double)), aligned(sizeof(double)), may_alias));
-};
+/// Adds the rows of `count` neighbours.
+template <int W, int count, class V>
+GARRISON_INLINE void add(const double* now, const std::int32_t* e, V* sum) {
+  constexpr int B = block_of(W);
+#pragma GCC unroll 4
+  for (int j = 0; j < count; ++j) {
+    const V* other = Block<B>::of(now + static_cast<std::ptrdiff_t>(e[j]) * W);
+#pragma GCC unroll 8
+    for (int k = 0; k < W / B; ++k) sum[k] += other[k];
+  }
+}
 
-/// Widest block that divides a row of W entries.
-constexpr int block_of(int W) { return W % 8 == 0 ? 8 : W % 4 == 0 ? 4 : W % 2 == 0 ? 2 : 1; }
-
-template <int W, bool plain>
-GARRISON_INLINE void rows(const RowJob& job) {
+/// `rest` = degree % 4: the loop over neighbours takes four at a time, and its trip count never changes.
+template <int W, bool plain, int rest>
+GARRISON_INLINE void rows(const Round& round, const Run& run) {
   constexpr int B = block_of(W);
   constexpr int blocks = W / B;
   using V = typename Block<B>::type;
-  for (std::int32_t i = job.begin; i < job.end; ++i) {
+  const auto degree = static_cast<double>(run.degree);
+  const std::int32_t* e = round.neighbour + run.edge;
+  for (std::int32_t i = run.begin; i < run.end; ++i) {
     V sum[blocks] = {};
-    const std::int32_t* e = job.neighbour + job.first[i];
-    const std::int32_t* const last = job.neighbour + job.first[i + 1];
-    const auto degree = static_cast<double>(last - e);
-    for (; e != last; ++e) {
-      const V* other = reinterpret_cast<const V*>(job.now + static_cast<std::ptrdiff_t>(*e) * W);
-#pragma GCC unroll 8
-      for (int k = 0; k < blocks; ++k) sum[k] += other[k];
-    }
-    const V* x = reinterpret_cast<const V*>(job.now + static_cast<std::ptrdiff_t>(i) * W);
-    V* next = reinterpret_cast<V*>(job.next + static_cast<std::ptrdiff_t>(i) * W);
+    for (int fours = run.degree / 4; fours > 0; --fours, e += 4) add<W, 4>(round.now, e, sum);
+    add<W, rest>(round.now, e, sum);
+    e += rest;
+    const V* x = Block<B>::of(round.now + static_cast<std::ptrdiff_t>(i) * W);
+    V* next = Block<B>::of(round.next + static_cast<std::ptrdiff_t>(i) * W);
 #pragma GCC unroll 8
     for (int k = 0; k < blocks; ++k)
-      next[k] = plain ? averaged_entry(x[k], sum[k], degree, job.alpha)
-                      : averaged_entry(x[k], sum[k], degree, job.alpha, job.omega, next[k]);
+      next[k] = plain ? averaged_entry(x[k], sum[k], degree, round.alpha)
+                      : averaged_entry(x[k], sum[k], degree, round.alpha, round.omega, next[k]);
   }
 }
 
-template <bool plain>
-GARRISON_INLINE void rows_of_any_width(const RowJob& job, int width) {
-  for (std::int32_t i = job.begin; i < job.end; ++i) {
-    const auto degree = static_cast<double>(job.first[i + 1] - job.first[i]);
-    for (int k = 0; k < width; ++k) {
-      double sum = 0.0;
-      for (std::int32_t e = job.first[i]; e < job.first[i + 1]; ++e)
-        sum += job.now[static_cast<std::ptrdiff_t>(job.neighbour[e]) * width + k];
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * width + k;
-      job.next[at] = plain ? averaged_entry(job.now[at], sum, degree, job.alpha)
-                           : averaged_entry(job.now[at], sum, degree, job.alpha, job.omega, job.next[at]);
+template <int W, bool plain>
+GARRISON_INLINE void runs(const Round& round, const Run* first, const Run* last) {
+  for (const Run* run = first; run != last; ++run) switch (run->degree % 4) {
+      case 0:
+        rows<W, plain, 0>(round, *run);
+        break;
+      case 1:
+        rows<W, plain, 1>(round, *run);
+        break;
+      case 2:
+        rows<W, plain, 2>(round, *run);
+        break;
+      default:
+        rows<W, plain, 3>(round, *run);
     }
+}
+
+template <bool plain>
+GARRISON_INLINE void runs_of_any_width(const Round& round, const Run* first, const Run* last, int width) {
+  for (const Run* run = first; run != last; ++run) {
+    const auto degree = static_cast<double>(run->degree);
+    const std::int32_t* e = round.neighbour + run->edge;
+    for (std::int32_t i = run->begin; i < run->end; ++i, e += run->degree)
+      for (int k = 0; k < width; ++k) {
+        double sum = 0.0;
+        for (std::int32_t j = 0; j < run->degree; ++j)
+          sum += round.now[static_cast<std::ptrdiff_t>(e[j]) * width + k];
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * width + k;
+        round.next[at] =
+            plain ? averaged_entry(round.now[at], sum, degree, round.alpha)
+                  : averaged_entry(round.now[at], sum, degree, round.alpha, round.omega, round.next[at]);
+      }
   }
 }
 
 template <bool plain>
-GARRISON_INLINE void dispatch(const RowJob& job, int width) {
+GARRISON_INLINE void dispatch(const Round& round, const Run* first, const Run* last, int width) {
   switch (width) {
     case 1:
-      return rows<1, plain>(job);
+      return runs<1, plain>(round, first, last);
     case 2:
-      return rows<2, plain>(job);
+      return runs<2, plain>(round, first, last);
     case 3:
-      return rows<3, plain>(job);
+      return runs<3, plain>(round, first, last);
     case 4:
-      return rows<4, plain>(job);
+      return runs<4, plain>(round, first, last);
     case 5:
-      return rows<5, plain>(job);
+      return runs<5, plain>(round, first, last);
     case 6:
-      return rows<6, plain>(job);
+      return runs<6, plain>(round, first, last);
     case 7:
-      return rows<7, plain>(job);
+      return runs<7, plain>(round, first, last);
     case 8:
-      return rows<8, plain>(job);
+      return runs<8, plain>(round, first, last);
     case 16:
-      return rows<16, plain>(job);  // from here on: eight trials side by side
+      return runs<16, plain>(round, first, last);  // from here on: eight trials side by side
     case 24:
-      return rows<24, plain>(job);
+      return runs<24, plain>(round, first, last);
     case 32:
-      return rows<32, plain>(job);
+      return runs<32, plain>(round, first, last);
     case 40:
-      return rows<40, plain>(job);
+      return runs<40, plain>(round, first, last);
     case 48:
-      return rows<48, plain>(job);
+      return runs<48, plain>(round, first, last);
     case 56:
-      return rows<56, plain>(job);
+      return runs<56, plain>(round, first, last);
     case 64:
-      return rows<64, plain>(job);
+      return runs<64, plain>(round, first, last);
     default:
-      return rows_of_any_width<plain>(job, width);
+      return runs_of_any_width<plain>(round, first, last, width);
   }
 }
 
 }  // namespace
 
-GARRISON_CLONES void average_rows(const RowJob& job, int width) {
-  if (job.omega == 1.0)
-    dispatch<true>(job, width);
+GARRISON_CLONES void average_runs(const Round& round, const Run* first, const Run* last, int width) {
+  if (round.omega == 1.0)
+    dispatch<true>(round, first, last, width);
   else
-    dispatch<false>(job, width);
+    dispatch<false>(round, first, last, width);
 }
 
 }  // namespace garrison::kernel

@@ -2,6 +2,7 @@
 #include "plant.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 
 namespace garrison::detail {
 namespace {
@@ -56,22 +57,23 @@ class Simulated final : public Source {
 
 class Recorded final : public Source {
  public:
-  Recorded(const Model& model, const MatrixRef& measurements, const MatrixRef& truth)
-      : measurements_(measurements), truth_(truth), states_(model.states()), x_(model.states()) {
-    if (truth_.size() != 0) x_ = truth_.row(0).transpose();
-  }
+  Recorded(const Model& model, const Log& log, std::size_t run)
+      : states_(model.states()),
+        y_(log.measurements + run * static_cast<std::size_t>(log.steps * model.total_outputs())),
+        x_(log.truth == nullptr ? nullptr
+                                : log.truth + run * static_cast<std::size_t>((log.steps + 1) * states_)) {}
   Vector start_shift() const override { return Vector::Zero(states_); }
-  const double* truth() const override { return truth_.size() == 0 ? nullptr : x_.data(); }
-  void next(std::int64_t t, std::span<double> y) override {
-    for (std::size_t k = 0; k < y.size(); ++k) y[k] = measurements_(t - 1, static_cast<Eigen::Index>(k));
-    if (truth_.size() != 0) x_ = truth_.row(t).transpose();
+  const double* truth() const override { return x_; }
+  void next(std::int64_t, std::span<double> y) override {
+    std::copy_n(y_, y.size(), y.begin());
+    y_ += y.size();
+    if (x_ != nullptr) x_ += states_;
   }
 
  private:
-  const MatrixRef& measurements_;
-  const MatrixRef& truth_;
   int states_;
-  Vector x_;
+  const double* y_;
+  const double* x_;
 };
 
 }  // namespace
@@ -151,9 +153,8 @@ std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law
   return std::make_unique<Simulated>(model, law, plant, seed, trial);
 }
 
-std::unique_ptr<Source> recorded_source(const Model& model, const MatrixRef& measurements,
-                                        const MatrixRef& truth) {
-  return std::make_unique<Recorded>(model, measurements, truth);
+std::unique_ptr<Source> recorded_source(const Model& model, const Log& log, std::uint32_t run) {
+  return std::make_unique<Recorded>(model, log, run);
 }
 
 }  // namespace garrison::detail

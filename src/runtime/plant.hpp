@@ -47,7 +47,6 @@ void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radi
 
 std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law, const PlantOptions& plant,
                                          std::uint64_t seed, std::uint32_t trial);
-std::unique_ptr<Source> recorded_source(const Model& model, const MatrixRef& measurements,
-                                        const MatrixRef& truth);
+std::unique_ptr<Source> recorded_source(const Model& model, const Log& log, std::uint32_t run);
 
 }  // namespace garrison::detail

@@ -206,6 +206,17 @@ Record simulate(const Model& model, const Network& network, const AnyFilter& fil
   });
 }
 
+Record replay(const Model& model, const Network& network, const AnyFilter& filter, const Log& log,
+              const RunOptions& options) {
+  if (log.steps < 1) refuse("measurements", std::to_string(log.steps) + " samples", "at least 1");
+  if (log.runs != 1 && log.runs != options.trials)
+    refuse("trials", std::to_string(options.trials), std::to_string(log.runs) + ", one per run of the log",
+           "a log of one run serves any number of trials");
+  return drive(model, network, filter, log.steps, log.truth != nullptr, options, [&](std::uint32_t trial) {
+    return detail::recorded_source(model, log, log.runs == 1 ? 0 : trial);
+  });
+}
+
 Record replay(const Model& model, const Network& network, const AnyFilter& filter,
               const MatrixRef& measurements, const MatrixRef& truth, const RunOptions& options) {
   const auto shape = [](const MatrixRef& m) {
@@ -218,8 +229,11 @@ Record replay(const Model& model, const Network& network, const AnyFilter& filte
     refuse("truth", shape(truth),
            std::to_string(measurements.rows() + 1) + " x " + std::to_string(model.states()),
            "one row per time, the first one before the first measurement");
-  return drive(model, network, filter, static_cast<int>(measurements.rows()), truth.size() != 0, options,
-               [&](std::uint32_t) { return detail::recorded_source(model, measurements, truth); });
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Rows y = measurements;
+  const Rows x = truth;
+  return replay(model, network, filter,
+                Log{y.data(), x.size() == 0 ? nullptr : x.data(), 1, static_cast<int>(y.rows())}, options);
 }
 
 }  // namespace garrison

@@ -20,10 +20,9 @@ Workers::~Workers() {
 }
 
 void Workers::run(int thread) {
-  const std::int64_t parts = threads();
-  const std::int64_t begin = count_ * thread / parts;
-  const std::int64_t end = count_ * (thread + 1) / parts;
-  if (begin < end) task_.call(task_.object, begin, end, thread);
+  const std::int64_t from = begin(count_, thread);
+  const std::int64_t to = begin(count_, thread + 1);
+  if (from < to) task_.call(task_.object, from, to, thread);
 }
 
 void Workers::loop(int thread) {

@@ -2,42 +2,62 @@
 // A set of agent ids that is united with others without allocating.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 namespace garrison {
 
-/// Subset of {0, ..., agents-1}, one bit each. `resize` allocates, nothing else does.
+/// Subset of {0, ..., agents-1}, one bit each. `resize` allocates, and assigning a set of another size.
+/// A single pointer: most filters keep no set, and states are read at every step.
 class AgentSet {
  public:
   AgentSet() = default;
   explicit AgentSet(int agents) { resize(agents); }
+  AgentSet(const AgentSet& other) { *this = other; }
+  AgentSet(AgentSet&&) noexcept = default;
+  AgentSet& operator=(AgentSet&&) noexcept = default;
+  AgentSet& operator=(const AgentSet& other) {
+    if (words() != other.words()) allocate(other.words());
+    if (data_ != nullptr) std::copy_n(other.data_.get(), 1 + words(), data_.get());
+    return *this;
+  }
+  ~AgentSet() = default;
 
-  void resize(int agents) { words_.assign((static_cast<std::size_t>(agents) + 63) / 64, 0); }
+  void resize(int agents) { allocate((static_cast<std::size_t>(agents) + 63) / 64); }
   /// Sized for no agents at all: the family keeps no such set.
-  bool empty() const { return words_.empty(); }
-  bool contains(int id) const { return (words_[word(id)] >> bit(id)) & 1U; }
-  void insert(int id) { words_[word(id)] |= std::uint64_t{1} << bit(id); }
+  bool empty() const { return data_ == nullptr; }
+  bool contains(int id) const { return (data_[word(id)] >> bit(id)) & 1U; }
+  void insert(int id) { data_[word(id)] |= std::uint64_t{1} << bit(id); }
   void clear() {
-    for (auto& w : words_) w = 0;
+    for (std::size_t k = 1; k <= words(); ++k) data_[k] = 0;
   }
   int size() const {
     int count = 0;
-    for (const auto w : words_) count += std::popcount(w);
+    for (std::size_t k = 1; k <= words(); ++k) count += std::popcount(data_[k]);
     return count;
   }
   /// Both sets must have been sized for the same number of agents.
   void unite(const AgentSet& other) {
-    for (std::size_t k = 0; k < words_.size(); ++k) words_[k] |= other.words_[k];
+    for (std::size_t k = 1; k <= words(); ++k) data_[k] |= other.data_[k];
   }
-  bool operator==(const AgentSet&) const = default;
+  bool operator==(const AgentSet& other) const {
+    return words() == other.words() &&
+           (data_ == nullptr || std::equal(data_.get(), data_.get() + 1 + words(), other.data_.get()));
+  }
 
  private:
-  static std::size_t word(int id) { return static_cast<std::size_t>(id) / 64; }
+  std::size_t words() const { return data_ == nullptr ? 0 : static_cast<std::size_t>(data_[0]); }
+  void allocate(std::size_t words) {
+    data_ = words == 0 ? nullptr : std::make_unique<std::uint64_t[]>(1 + words);
+    if (words != 0) data_[0] = words;
+  }
+  static std::size_t word(int id) { return 1 + static_cast<std::size_t>(id) / 64; }
   static unsigned bit(int id) { return static_cast<unsigned>(id) % 64; }
-  std::vector<std::uint64_t> words_;
+
+  std::unique_ptr<std::uint64_t[]> data_;  // the number of words, then the words
 };
 
 }  // namespace garrison

@@ -24,8 +24,9 @@ inline __attribute__((always_inline)) V averaged_entry(V x, V sum, double degree
 }
 
 /// One round of one agent, in place: x (n numbers) becomes its average with `count` neighbours, whose rows
-/// are `row(0) .. row(count-1)`; `previous` becomes the old x. Sums run in the order of the rows, entry by
-/// entry, so the bits do not depend on vector width. omega = 1 is a plain round.
+/// are `row(0) .. row(count-1)`; `previous` becomes the old x, null where no round is Chebyshev-filtered.
+/// Sums run in the order of the rows, entry by entry, so the bits do not depend on vector width. omega = 1
+/// is a plain round.
 template <int n, class Row>
 inline void average_round(int nn, double alpha, double omega, double* x, double* previous, std::size_t count,
                           const Row& row) noexcept {
@@ -33,7 +34,7 @@ inline void average_round(int nn, double alpha, double omega, double* x, double*
   const auto finish = [&](int k, double sum) {
     const double next = omega == 1.0 ? averaged_entry(x[k], sum, degree, alpha)
                                      : averaged_entry(x[k], sum, degree, alpha, omega, previous[k]);
-    previous[k] = x[k];
+    if (previous != nullptr) previous[k] = x[k];
     x[k] = next;
   };
   if constexpr (n == Dynamic) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "garrison/core/error.hpp"
+#include "garrison/runtime/consensus_kernel.hpp"
 #include "garrison/runtime/workers.hpp"
 
 namespace garrison {
@@ -32,9 +33,10 @@ class GARRISON_EXPORT ConsensusPlan {
   int rounds_in_flight(int width) const;
 
   std::vector<int> order_;
-  std::int32_t bandwidth_ = 0;
-  std::vector<std::int32_t> first_;
   std::vector<std::int32_t> neighbour_;  // positions, each row in order of public ids
+  std::vector<kernel::Run> runs_;
+  std::vector<std::int32_t> windows_;  // first run of each window of rows, and the end
+  std::int32_t reach_ = 1;             // windows that a row and its neighbours are apart at most
 };
 
 }  // namespace garrison

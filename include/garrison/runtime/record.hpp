@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "garrison/runtime/bulk.hpp"
 #include "garrison/runtime/link.hpp"
 
 namespace garrison {
@@ -19,15 +20,15 @@ struct GARRISON_EXPORT Record {
   int states = 0;
   std::vector<std::string> signal_names;
 
-  std::vector<double> truth;         ///< [trial][time][state]; empty when not known
-  std::vector<double> measurements;  ///< [trial][time 1..steps][measurement], as the filter received them
-  std::vector<double> estimate;      ///< [trial][time][agent][state]
-  std::vector<double> error;         ///< ||estimate - truth||; empty when the truth is not known
-  std::vector<double> bound;         ///< certified bound on the error; NaN when agents lie in messages
-  std::vector<double> statistic;
-  std::vector<double> threshold;
-  std::vector<std::uint8_t> verdict;  ///< values of Verdict
-  std::vector<double> signals;        ///< [trial][time][signal][agent]
+  Bulk<double> truth;         ///< [trial][time][state]; empty when not known
+  Bulk<double> measurements;  ///< [trial][time 1..steps][measurement], as the filter received them
+  Bulk<double> estimate;      ///< [trial][time][agent][state]
+  Bulk<double> error;         ///< ||estimate - truth||; empty when the truth is not known
+  Bulk<double> bound;         ///< certified bound on the error; NaN when agents lie in messages
+  Bulk<double> statistic;
+  Bulk<double> threshold;
+  Bulk<std::uint8_t> verdict;  ///< values of Verdict
+  Bulk<double> signals;        ///< [trial][time][signal][agent]
 
   /// The sets of agents believed to be attacked, whenever one of them changed (and at time 0).
   struct Accusation {

@@ -52,8 +52,21 @@ struct GARRISON_EXPORT PlantOptions {
 GARRISON_EXPORT Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
                                 const PlantOptions& plant, const RunOptions& options);
 
-/// Feeds recorded measurements, steps x total_outputs, row r belonging to time r+1; NaN = missing.
-/// `truth`: empty, or (steps+1) x n. Attacks apply on top of the log (trials differ in their chance).
+/// Recorded runs, C-ordered and not owned; row r of the measurements belongs to time r+1, NaN = missing.
+struct GARRISON_EXPORT Log {
+  const double* measurements = nullptr;  ///< [run][time 1..steps][Model::total_outputs()]
+  const double* truth = nullptr;         ///< [run][time 0..steps][state]; null = not known
+  int runs = 1;
+  int steps = 0;
+};
+
+/// Feeds a log to the filter: one run to every trial, or as many runs as trials, one to each. Attacks apply
+/// on top (trials of one run differ in their chance).
+/// @throws InvalidInput when something does not fit; run-time trouble is counted in the record.
+GARRISON_EXPORT Record replay(const Model& model, const Network& network, const AnyFilter& filter,
+                              const Log& log, const RunOptions& options);
+
+/// One run: measurements steps x total_outputs; `truth` empty, or (steps+1) x n.
 GARRISON_EXPORT Record replay(const Model& model, const Network& network, const AnyFilter& filter,
                               const MatrixRef& measurements, const MatrixRef& truth,
                               const RunOptions& options);

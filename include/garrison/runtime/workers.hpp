@@ -22,6 +22,8 @@ class GARRISON_EXPORT Workers {
   Workers& operator=(const Workers&) = delete;
 
   int threads() const { return static_cast<int>(pool_.size()) + 1; }
+  /// Where the part of `thread` begins in [0, count).
+  std::int64_t begin(std::int64_t count, int thread) const { return count * thread / threads(); }
   /// `part(begin, end, thread)` is called once per non-empty part; it must not throw.
   template <class Part>
   void split(std::int64_t count, const Part& part) {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "../../core/clones.hpp"
+#include "garrison/core/aligned.hpp"
+#include "garrison/core/block.hpp"
+#include "garrison/core/clones.hpp"
 #include "garrison/filters/saturation/filter.hpp"
 #include "garrison/runtime/consensus.hpp"
 
@@ -27,32 +29,28 @@ struct SenseJob {
 
 template <int n>
 GARRISON_INLINE void sense_all(const SenseJob& job) {
+  using Lanes = Block<kLanes>;
+  using V = Lanes::type;
+  const V beta = V{} + job.beta;
+  const V huge = V{} + kHuge;
   const double* c = job.C;
   for (int i = 0; i < job.agents; ++i) {
-    double* x = job.x + static_cast<std::ptrdiff_t>(i) * n * kL;
-    double prediction[n][kL];
-    for (int r = 0; r < n; ++r)
-      for (int l = 0; l < kL; ++l) prediction[r][l] = job.A[r] * x[l];
-    for (int k = 1; k < n; ++k)
-      for (int r = 0; r < n; ++r)
-        for (int l = 0; l < kL; ++l) prediction[r][l] += job.A[k * n + r] * x[k * kL + l];
-    for (int r = 0; r < n; ++r)
-      for (int l = 0; l < kL; ++l) x[r * kL + l] = prediction[r][l];
+    V* x = Lanes::of(job.x + static_cast<std::ptrdiff_t>(i) * n * kL);
+    V prediction[n];
+    for (int r = 0; r < n; ++r) {
+      prediction[r] = job.A[r] * x[0];
+      for (int k = 1; k < n; ++k) prediction[r] += job.A[k * n + r] * x[k];
+    }
+    for (int r = 0; r < n; ++r) x[r] = prediction[r];
     for (int o = 0; o < job.outputs[i]; ++o, c += n) {
-      const double* y = job.y + (job.first_output[i] + o) * kL;
-      double h[kL] = {};
-      for (int k = 0; k < n; ++k)
-        for (int l = 0; l < kL; ++l) h[l] += c[k] * prediction[k][l];
-      for (int l = 0; l < kL; ++l) {
-        const double innovation = y[l] - h[l];
-        const double low = innovation < -job.beta ? -job.beta : innovation;
-        const double clipped = low > job.beta ? job.beta : low;
-        // Missing, or used in full and so large that it would destroy the estimate: no update.
-        const bool lost = !(std::abs(innovation) <= kInfinity) || !(std::abs(clipped) < kHuge);
-        h[l] = lost ? 0.0 : clipped;
-      }
-      for (int k = 0; k < n; ++k)
-        for (int l = 0; l < kL; ++l) x[k * kL + l] += h[l] * c[k];
+      V expected = {};
+      for (int k = 0; k < n; ++k) expected += c[k] * prediction[k];
+      const V innovation = *Lanes::of(job.y + (job.first_output[i] + o) * kL) - expected;
+      const V low = innovation < -beta ? -beta : innovation;
+      const V clipped = low > beta ? beta : low;
+      // Missing, or used in full and so large that it would destroy the estimate (or NaN): no update.
+      const V injected = clipped < huge && clipped > -huge ? clipped : V{};
+      for (int k = 0; k < n; ++k) x[k] += injected * c[k];
     }
   }
 }
@@ -107,7 +105,7 @@ class SaturationLanes final : public LaneRunner {
   void step(const double* y) override {
     Saturation::advance_bounds(*gains_, clock_, clock_.t + 1);
     sense_lanes({model_.A().data(), rows_.data(), outputs_.data(), first_output_.data(), y, x_.data(),
-                 model_.agents(), clock_.beta},
+                 model_.agents(), Saturation::beta_now(*gains_, clock_)},
                 model_.states());
     plan_.run(x_.data(), scratch_.data(), model_.states() * kLanes, gains_->alpha, gains_->omega,
               gains_->rounds);
@@ -134,9 +132,9 @@ class SaturationLanes final : public LaneRunner {
   std::vector<int> outputs_;
   std::vector<int> first_output_;
   std::vector<double> rows_;
-  std::vector<double> x_;
-  std::vector<double> scratch_;
-  std::vector<double> public_;
+  Aligned<double> x_;
+  Aligned<double> scratch_;
+  Aligned<double> public_;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 const Model kModel(Matrix::Ones(1, 1), std::vector<Matrix>(3, Matrix::Ones(1, 1)));
 
 /// Measurements that the filter received, [trial][time 1..6][agent], when every true one is 1.
-std::vector<double> received(const std::vector<Attack>& attacks, int trials = 1, std::uint64_t seed = 1) {
+Bulk<double> received(const std::vector<Attack>& attacks, int trials = 1, std::uint64_t seed = 1) {
   RunOptions o;
   o.attacks = attacks;
   o.trials = trials;
@@ -41,7 +41,7 @@ TEST_CASE("the order of a list matters") {
 TEST_CASE("phases hand over and stop") {
   const Schedule moving(std::vector<Schedule::Phase>{{2, {0}}, {4, {1, 2}}}, 6);
   const auto y = received({ramp(moving, 1.0)});
-  CHECK(y == std::vector<double>{1, 1, 1, 2, 1, 1, 3, 1, 1, 1, 2, 2, 1, 3, 3, 1, 1, 1});
+  CHECK(y == Bulk<double>{1, 1, 1, 2, 1, 1, 3, 1, 1, 1, 2, 2, 1, 3, 3, 1, 1, 1});
 }
 
 TEST_CASE("equal recipes in one list and trials of one run have chances of their own") {
@@ -54,8 +54,8 @@ TEST_CASE("equal recipes in one list and trials of one run have chances of their
   CHECK(once[0] != once[1]);  // agents differ
   CHECK(once[0] != once[3]);  // times differ
   const auto trials = received({noise}, 2);
-  CHECK(std::vector<double>(trials.begin(), trials.begin() + 18) == once);
-  CHECK(std::vector<double>(trials.begin() + 18, trials.end()) != once);
+  CHECK(Bulk<double>(trials.begin(), trials.begin() + 18) == once);
+  CHECK(Bulk<double>(trials.begin() + 18, trials.end()) != once);
 }
 
 TEST_CASE("an attack on an agent without outputs or beyond the network") {
@@ -64,7 +64,7 @@ TEST_CASE("an attack on an agent without outputs or beyond the network") {
   o.attacks = {bias(Schedule(1, {1, 2}), 5.0)};
   const auto filter = make_filter("scalar_gain", {});
   const auto record = replay(relay, Network::path(3), *filter, Matrix::Ones(1, 3), Matrix(), o);
-  CHECK(record.measurements == std::vector<double>{1.0, 6.0, 6.0});
+  CHECK(record.measurements == Bulk<double>{1.0, 6.0, 6.0});
   o.attacks = {bias(Schedule(1, {3}), 5.0)};
   CHECK_THROWS_WITH_AS(replay(relay, Network::path(3), *filter, Matrix::Ones(1, 3), Matrix(), o),
                        doctest::Contains("ids in 0..2"), InvalidInput);

@@ -52,19 +52,19 @@ Setup setup(int n, int agents, std::uint64_t seed) {
   return {std::move(model), network, std::move(y)};
 }
 
-bool same(const std::vector<double>& a, const std::vector<double>& b) {
+bool same(const Bulk<double>& a, const Bulk<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 /// Estimates of agents that are driven by hand, [time][agent][state].
-std::vector<double> by_hand(const Setup& s, const AnyFilter& filter, const Vector& x0) {
+Bulk<double> by_hand(const Setup& s, const AnyFilter& filter, const Vector& x0) {
   const auto prepared = filter.prepare(s.model, s.network);
   std::vector<std::unique_ptr<AnyAgent>> agents;
   for (int i = 0; i < s.model.agents(); ++i) {
     agents.push_back(prepared->agent(i));
     agents.back()->reset(x0);
   }
-  std::vector<double> out;
+  Bulk<double> out;
   const auto note = [&] {
     for (const auto& agent : agents) {
       const Vector x = agent->estimate();
@@ -94,7 +94,7 @@ std::vector<double> by_hand(const Setup& s, const AnyFilter& filter, const Vecto
   return out;
 }
 
-bool all_finite(const std::vector<double>& values) {
+bool all_finite(const Bulk<double>& values) {
   for (const double v : values)
     if (!std::isfinite(v)) return false;
   return true;
@@ -153,6 +153,29 @@ TEST_CASE("any number of threads gives the same bits, and so do trials side by s
       CHECK(same(one.error, lanes.error));
     }
   }
+}
+
+TEST_CASE("a log of many runs replays each as its own trial") {
+  test::Rng rng(4);
+  const Model model = test::scalar_model(rng, 3, 6, 0.98, 0.02, 0.01);
+  const Network network = test::connected_network(rng, 6);
+  const auto filter = make_filter("saturation", {{"threshold", 0.5}});
+  RunOptions o = options_with(Vector::Zero(3), 11);
+  o.attacks = {denial(Schedule(5, {2}))};
+  const Record made = simulate(model, network, *filter, {20, Vector::Ones(3), 0.0, "uniform"}, o);
+  o.attacks.clear();
+  const Log log{made.measurements.data(), made.truth.data(), 11, 20};
+  const Record one_by_one = replay(model, network, *filter, log, o);
+  o.keep = {true, false, false, false};
+  const Record side_by_side = replay(model, network, *filter, log, o);
+  for (const Record* again : {&one_by_one, &side_by_side}) {
+    CHECK(same(again->estimate, made.estimate));
+    CHECK(same(again->error, made.error));
+    CHECK(again->missing == made.missing);
+  }
+  o.trials = 3;
+  CHECK_THROWS_WITH_AS(replay(model, network, *filter, log, o),
+                       doctest::Contains("trials: got 3, expected 11"), InvalidInput);
 }
 
 TEST_CASE("a large network gives the same bits on one thread and on three") {

@@ -13,7 +13,7 @@ using namespace garrison;
 
 namespace {
 
-bool same(const std::vector<double>& a, const std::vector<double>& b) {
+bool same(const Bulk<double>& a, const Bulk<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
@@ -33,21 +33,21 @@ Record two_agents(int rounds, int steps, const LinkFaults& faults,
 
 TEST_CASE("a late message is the sender's message of that many rounds ago") {
   const Record one = two_agents(1, 3, {0.0, 1.0, 1}, {});
-  CHECK(one.estimate == std::vector<double>{0, 8, 0, 8, 2, 6, 3, 5});
+  CHECK(one.estimate == Bulk<double>{0, 8, 0, 8, 2, 6, 3, 5});
   CHECK(one.link.lost == 2);  // nothing that old at the first round
   CHECK(one.link.late == 4);
   const Record two = two_agents(2, 2, {0.0, 1.0, 1}, {});
-  CHECK(two.estimate == std::vector<double>{0, 8, 2, 6, 3.75, 4.25});
+  CHECK(two.estimate == Bulk<double>{0, 8, 2, 6, 3.75, 4.25});
   CHECK(two.link.late == 6);
 }
 
 TEST_CASE("only the victims of a forged message see it") {
   const Record r = two_agents(1, 1, {}, {forge(Schedule(1, {0}), 4.0, true)});
-  CHECK(r.estimate == std::vector<double>{0, 8, 2, 7});
+  CHECK(r.estimate == Bulk<double>{0, 8, 2, 7});
   CHECK(r.link.forged == 1);
   CHECK(r.link.sent == 1);
   const Record withheld = two_agents(1, 1, {}, {silence(Schedule(1, {0}))});
-  CHECK(withheld.estimate == std::vector<double>{0, 8, 2, 8});
+  CHECK(withheld.estimate == Bulk<double>{0, 8, 2, 8});
   CHECK(withheld.link.lost == 1);
   const Record poison = two_agents(1, 1, {}, {forge(Schedule(1, {0}), kInfinity, true)});
   CHECK(poison.estimate == withheld.estimate);

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "garrison/core/average.hpp"
+#include "garrison/core/block.hpp"
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/filter.hpp"
 #include "garrison/core/lanes.hpp"
@@ -140,20 +141,18 @@ struct GARRISON_EXPORT Saturation {
 
   template <int n>
   struct State {
-    Vec<n> x;           // xhat_i(t)
-    Vec<n> prediction;  // A xhat_i(t-1)
-    Vec<n> previous;    // the estimate one round ago (Chebyshev)
-    double gain = 1.0;
-    double innovation = kNaN;
-    double beta = kInfinity;  // saturation level in force at t
-    double phi = kNaN;        // detection threshold in force at t
-    double rho = kNaN;        // rho or rhobar_i at t-1
-    double p = kNaN;          // p at t-1
-    int d = 0;                // |I_i(t-1)|
+    Vec<n> x;                  // xhat_i(t)
+    double innovation = kNaN;  // the largest of this agent's outputs
+    double level = kNaN;       // in force at t: phi_i of the detector, or the adaptive beta
+    double rho = kNaN;         // rho or rhobar_i at t-1
+    double p = kNaN;           // p at t-1
     std::int64_t t = 0;
+    int d = 0;           // |I_i(t-1)|
     bool intact = true;  // no message is missing or old behind this estimate
     Verdict verdict = Verdict::cleared;
-    AgentSet proved;  // I_i
+    AgentSet proved;                       // I_i
+    std::unique_ptr<double[]> prediction;  // room for A xhat_i(t-1) where n is not known when compiling
+    std::unique_ptr<double[]> previous;    // the estimate one round ago; Chebyshev only
   };
 
   template <int n>
@@ -187,7 +186,10 @@ struct GARRISON_EXPORT Saturation {
   template <int n>
   static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
     State<n> fresh;
-    fresh.x = fresh.prediction = fresh.previous = m.x = x0;
+    fresh.x = m.x = x0;
+    const auto nn = static_cast<std::size_t>(x0.size());
+    if constexpr (n == Dynamic) fresh.prediction = std::make_unique<double[]>(nn);
+    if (!g.omega.empty()) fresh.previous = std::make_unique<double[]>(nn);
     fresh.rho = g.bounded ? g.setting.eta0 : kNaN;
     fresh.p = 0.0;
     m.intact = true;
@@ -202,47 +204,44 @@ struct GARRISON_EXPORT Saturation {
                     Message<n>& m) noexcept {
     advance_bounds(g, s, t);
     const int nn = dimension<n>(l);
-    predict(l.A, s.x.data(), s.prediction.data(), nn);
-    s.x = s.prediction;
+    double on_stack[n == Dynamic ? 1 : n];
+    double* const prediction = n == Dynamic ? s.prediction.get() : on_stack;
+    multiply<n>(l.A, s.x.data(), prediction, nn);
+    for (int k = 0; k < nn; ++k) s.x[k] = prediction[k];
     const bool proved = g.detector && s.proved.contains(l.id);
-    const bool informed = g.detector && s.d >= g.setting.attacked;
+    const bool informed = knows_all(g, s);
+    const double beta = beta_now(g, s);
     int used = 0;
     int limited = 0;
     bool accused = false;
-    s.gain = 1.0;
     s.innovation = kNaN;
     for (int r = 0; r < l.outputs; ++r) {
       const double* c = l.C + static_cast<std::ptrdiff_t>(r) * nn;
       double expected_y = 0.0;
-      for (int k = 0; k < nn; ++k) expected_y += c[k] * s.prediction[k];
+      for (int k = 0; k < nn; ++k) expected_y += c[k] * prediction[k];
       const double h = y[r] - expected_y;
-      if (!(std::abs(s.innovation) >= std::abs(h))) s.innovation = h;
+      if (std::isnan(s.innovation) || std::abs(h) > std::abs(s.innovation)) s.innovation = h;
       double injected = 0.0;
       if (proved) {
-        s.gain = 0.0;  // (a) isolated
-      } else if (std::isnan(h) || (!(std::abs(h) < kHuge) && (informed || s.beta == kInfinity))) {
-        s.gain = 0.0;  // missing; or so large that using it in full would destroy the estimate
+        // (a) isolated
+      } else if (std::isnan(h) || (!(std::abs(h) < kHuge) && (informed || beta == kInfinity))) {
+        // missing; or so large that using it in full would destroy the estimate
         accused = accused || (g.detector && g.accuse_missing && !informed);
       } else if (informed) {
         injected = h;  // (b) all attackers are known, no test
         ++used;
-      } else if (g.detector && exceeds(std::abs(h), s.phi, std::abs(y[r]), std::abs(expected_y))) {
-        s.gain = 0.0;  // (c) proof (15)
-        accused = true;
+      } else if (g.detector && exceeds(std::abs(h), s.level, std::abs(y[r]), std::abs(expected_y))) {
+        accused = true;  // (c) proof (15)
       } else {
-        injected = std::clamp(h, -s.beta, s.beta);  // (d) = k h with k of (4), without 0/0
-        if (std::abs(h) > s.beta) {
-          s.gain = std::min(s.gain, s.beta / std::abs(h));
-          ++limited;
-        }
+        injected = std::clamp(h, -beta, beta);  // (d) = k h with k of (4), without 0/0
+        limited += std::abs(h) > beta ? 1 : 0;
         ++used;
       }
-      for (int k = 0; k < nn; ++k) s.x[k] += injected * c[k];
+      add_scaled<n>(injected, c, s.x.data(), nn);
     }
     if (accused) {
       // Nothing of an accused sensor is used, even if some of its outputs look harmless.
-      s.x = s.prediction;
-      s.gain = 0.0;
+      std::copy_n(prediction, nn, s.x.data());
       s.proved.insert(l.id);
     }
     s.verdict = proved || accused ? Verdict::attacked
@@ -257,7 +256,7 @@ struct GARRISON_EXPORT Saturation {
                    Message<n>& m) noexcept {
     const int nn = dimension<n>(l);
     const double omega = g.omega.empty() ? 1.0 : g.omega[static_cast<std::size_t>(round)];
-    average_round<n>(nn, g.alpha, omega, s.x.data(), s.previous.data(), inbox.size(),
+    average_round<n>(nn, g.alpha, omega, s.x.data(), s.previous.get(), inbox.size(),
                      [&](std::size_t k) { return inbox[k].x.data(); });
     // Estimates and sets travel in one message: the proof of "no false accusation" rests on it.
     if (inbox.size() < static_cast<std::size_t>(l.degree)) s.intact = false;
@@ -285,7 +284,7 @@ struct GARRISON_EXPORT Saturation {
     Report r;
     r.verdict = l.outputs == 0 ? Verdict::silent : s.verdict;
     r.statistic = std::abs(s.innovation);
-    r.threshold = g.detector ? s.phi : s.beta;
+    r.threshold = g.detector ? s.level : beta_now(g, s);
     if (g.bounded && s.intact && !(g.detector && s.proved.size() >= g.setting.attacked))
       r.bound = rho_now(g, s) + p_now(g, s);
     return r;
@@ -325,42 +324,36 @@ struct GARRISON_EXPORT Saturation {
   /// Values of signal_names() after a step: k_i, h_i, beta, phi_i, rho or rhobar_i at t, p(t), d_i(t).
   template <int n>
   static void signals(const Local&, const Gains& g, const State<n>& s, double* out) noexcept {
-    const double all[] = {s.gain,
+    const double all[] = {gain_now(g, s),
                           s.innovation,
-                          s.beta,
-                          s.phi,
+                          beta_now(g, s),
+                          g.detector ? s.level : kNaN,
                           rho_now(g, s),
                           p_now(g, s),
                           static_cast<double>(s.proved.size())};
     std::copy(std::begin(all), std::end(all), out);
   }
 
-  /// Moves rho and p to t-1 and sets the levels in force at t; data-free without the detector.
+  /// beta in force at t.
+  template <int n>
+  static double beta_now(const Gains& g, const State<n>& s) noexcept {
+    return g.adaptive ? s.level : g.beta;
+  }
+
+  /// Moves rho and p to t-1 and sets the level in force at t; data-free without the detector.
   template <int n>
   static void advance_bounds(const Gains& g, State<n>& s, std::int64_t t) noexcept {
     const double rho = rho_now(g, s);
     s.p = p_now(g, s);
     s.rho = rho;
     s.t = t;
-    s.beta = g.adaptive ? saturation::adaptive_threshold(g.setting, s.rho, s.p) : g.beta;
+    if (g.adaptive) s.level = saturation::adaptive_threshold(g.setting, s.rho, s.p);
     if (!g.detector) return;
     s.d = s.proved.size();
-    s.phi = saturation::detection_threshold(g.setting, s.rho, s.p);
+    s.level = saturation::detection_threshold(g.setting, s.rho, s.p);
   }
 
- private:
-  /// A x, column by column: every entry sums in the order k = 0..n-1 whatever the vector width.
-  static void predict(const double* A, const double* x, double* out, int nn) noexcept {
-    for (int i = 0; i < nn; ++i) out[i] = A[i] * x[0];
-    for (int k = 1; k < nn; ++k)
-      for (int i = 0; i < nn; ++i) out[i] += A[static_cast<std::ptrdiff_t>(k) * nn + i] * x[k];
-  }
-
-  /// h > phi (15) beyond rounding: for n = 1 the bound (16) is attained, a bare ">" accuses honest sensors.
-  static bool exceeds(double h, double phi, double y, double expected_y) noexcept {
-    return std::isinf(h) || h > phi + 1e-12 * (phi + y + expected_y);
-  }
-
+  /// Writes the message that this agent sends before the given round.
   template <int n>
   static void send(const State<n>& s, int round, Message<n>& m) noexcept {
     m.x = s.x;
@@ -368,6 +361,25 @@ struct GARRISON_EXPORT Saturation {
     m.round = round;
     m.intact = s.intact;
     m.proved = s.proved;
+  }
+
+ private:
+  /// As many sensors are proved as can be attacked: the others need no test.
+  template <int n>
+  static bool knows_all(const Gains& g, const State<n>& s) noexcept {
+    return g.detector && s.d >= g.setting.attacked;
+  }
+  /// k_i of (4), the least of this agent's outputs; 0 when nothing was used.
+  template <int n>
+  static double gain_now(const Gains& g, const State<n>& s) noexcept {
+    if (s.verdict == Verdict::attacked || s.verdict == Verdict::silent) return 0.0;
+    const double h = std::abs(s.innovation);
+    return s.verdict == Verdict::suspected && h > beta_now(g, s) ? beta_now(g, s) / h : 1.0;
+  }
+
+  /// h > phi (15) beyond rounding: for n = 1 the bound (16) is attained, a bare ">" accuses honest sensors.
+  static bool exceeds(double h, double phi, double y, double expected_y) noexcept {
+    return std::isinf(h) || h > phi + 1e-12 * (phi + y + expected_y);
   }
 
   /// rho(t) of (7), rhobar_i(t) of (14) or rho_t of the adaptive threshold, from the values at t-1.
@@ -383,7 +395,7 @@ struct GARRISON_EXPORT Saturation {
   template <int n>
   static double p_now(const Gains& g, const State<n>& s) noexcept {
     if (!g.bounded || s.t == 0) return s.p;
-    return saturation::disagreement_next(g.setting, s.p, s.beta);
+    return saturation::disagreement_next(g.setting, s.p, beta_now(g, s));
   }
 };
 
