@@ -214,8 +214,11 @@ class Engine final : public Runner {
       plan_.run(average_.data(), scratch_.data(), model_.states(), alpha, omega, F::rounds(*gains_),
                 &workers_);
       workers_.split(N, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+        // Backwards: the last rows are still in the cache, and the next step begins with the first ones.
+        for (auto k = static_cast<std::size_t>(end); k-- > static_cast<std::size_t>(begin);) {
+          __builtin_prefetch(F::template averaged<n>(states_[k < kAhead ? 0 : k - kAhead]), 1);
           std::copy_n(average_.data() + k * nn, nn, F::template averaged<n>(states_[k]));
+        }
       });
       return;
     }
