@@ -2,8 +2,6 @@
 // Exact lambda_0 by branch and bound with leverage pruning. Internal.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,6 +10,7 @@
 
 #include "garrison/analysis/subsets.hpp"
 #include "row_groups.hpp"
+#include "symmetric_eigen.hpp"
 
 namespace garrison::detail {
 
@@ -30,7 +29,8 @@ class BranchAndBound {
         start_(std::chrono::steady_clock::now()) {}
 
   SubsetBound run() {
-    Square S = C_ * C_.transpose();
+    Square S = Square::Zero(C_.rows(), C_.rows());
+    for (Eigen::Index i = 0; i < C_.cols(); ++i) S += C_.col(i) * C_.col(i).transpose();
     scale_ = std::max(S.trace(), 1e-300);
     best_ = kInfinity;
     heuristic(S);
@@ -64,10 +64,15 @@ class BranchAndBound {
   double target() const { return best_ - kRounding * scale_; }
 
   static double least(const Square& S, Column* direction = nullptr) {
-    const Eigen::SelfAdjointEigenSolver<Square> eigen(
-        S, direction == nullptr ? Eigen::EigenvaluesOnly : Eigen::ComputeEigenvectors);
-    if (direction != nullptr) *direction = eigen.eigenvectors().col(0);
-    return eigen.eigenvalues()(0);
+    Column values(S.cols());
+    if (direction == nullptr) {
+      symmetric_eigen(S.data(), S.cols(), values.data());
+    } else {
+      Square vectors(S.rows(), S.cols());
+      symmetric_eigen(S.data(), S.cols(), values.data(), vectors.data());
+      *direction = vectors.col(0);
+    }
+    return values(0);
   }
 
   void offer(double value, const std::vector<int>& removed) {
@@ -79,9 +84,10 @@ class BranchAndBound {
   /// From each start direction: remove the rows most aligned with it, turn to the weakest direction of the
   /// rest.
   void heuristic(const Square& S) {
-    const Eigen::SelfAdjointEigenSolver<Square> eigen(S);
-    for (Eigen::Index k = 0; k < eigen.eigenvectors().cols(); ++k)
-      improve(S, eigen.eigenvectors().col(k), {}, s_);
+    Column values(S.cols());
+    Square vectors(S.rows(), S.cols());
+    symmetric_eigen(S.data(), S.cols(), values.data(), vectors.data());
+    for (Eigen::Index k = 0; k < vectors.cols(); ++k) improve(S, vectors.col(k), {}, s_);
     for (const auto& members : groups_.members) {
       const Column c = C_.col(members.front());
       if (c.norm() > 0.0) improve(S, c.normalized(), {}, s_);
@@ -123,17 +129,32 @@ class BranchAndBound {
     return stopped_;
   }
 
+  /// B = L L' in place, in the lower triangle; false when B is not positive definite.
+  static bool cholesky(Square& B) {
+    for (Eigen::Index k = 0; k < B.cols(); ++k) {
+      if (!(B(k, k) > 0.0)) return false;
+      B(k, k) = std::sqrt(B(k, k));
+      for (Eigen::Index i = k + 1; i < B.cols(); ++i) B(i, k) /= B(k, k);
+      for (Eigen::Index j = k + 1; j < B.cols(); ++j)
+        for (Eigen::Index i = j; i < B.cols(); ++i) B(i, j) -= B(i, k) * B(j, k);
+    }
+    return true;
+  }
+
   /// Leverages of the candidates under S - level I; false when that is not positive definite.
   bool leverages(const Square& S, double level, const std::vector<int>& candidates,
                  std::vector<double>& out) const {
-    const Square B = S - level * Square::Identity(S.rows(), S.cols());
-    const Eigen::LLT<Square> factor(B);
-    if (factor.info() != Eigen::Success) return false;
-    const Square inverse = factor.solve(Square::Identity(S.rows(), S.cols()));
+    Square L = S;
+    L.diagonal().array() -= level;
+    if (!cholesky(L)) return false;
     out.resize(candidates.size());
     for (std::size_t k = 0; k < candidates.size(); ++k) {
-      const Column c = C_.col(candidates[k]);
-      out[k] = c.dot(inverse * c);
+      Column z = C_.col(candidates[k]);  // becomes L^-1 c
+      for (Eigen::Index i = 0; i < z.size(); ++i) {
+        z(i) /= L(i, i);
+        for (Eigen::Index j = i + 1; j < z.size(); ++j) z(j) -= L(j, i) * z(i);
+      }
+      out[k] = z.squaredNorm();
     }
     return true;
   }

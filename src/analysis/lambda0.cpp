@@ -47,8 +47,7 @@ SubsetBound planar_sweep(const MatrixRef& C, int s) {
     Eigen::Matrix2d S = Eigen::Matrix2d::Zero();
     for (auto i = static_cast<std::size_t>(s); i < order.size(); ++i)
       S += C.row(order[i]).transpose() * C.row(order[i]);
-    const double value =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(S, Eigen::EigenvaluesOnly).eigenvalues()(0);
+    const double value = detail::eigenvalues<2>(S)(0);
     ++best.nodes;
     if (value >= best.upper) continue;
     best.upper = value;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // varpi and tau_0: all removals where they can be enumerated, else a certified interval.
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "garrison/analysis/subsets.hpp"
 #include "garrison/core/dispatch.hpp"
 #include "row_groups.hpp"
+#include "symmetric_eigen.hpp"
 
 namespace garrison {
 namespace {
@@ -84,12 +83,17 @@ class Enumeration {
   std::vector<std::size_t> capacity_;  // how many rows they have
 };
 
+/// Root of the largest eigenvalue of a positive semidefinite matrix.
+template <class Square>
+double root_of_largest(const Square& S) {
+  const auto values = detail::eigenvalues<Square::ColsAtCompileTime>(S);
+  return std::sqrt(std::max(values(values.size() - 1), 0.0));
+}
+
 template <class M>
 double spectral_norm(const M& m) {
-  using Square = Eigen::Matrix<double, M::ColsAtCompileTime, M::ColsAtCompileTime>;
-  const Square gram = m.transpose() * m;
-  const auto values = Eigen::SelfAdjointEigenSolver<Square>(gram, Eigen::EigenvaluesOnly).eigenvalues();
-  return std::sqrt(std::max(values(values.size() - 1), 0.0));
+  const Mat<M::ColsAtCompileTime> gram = m.transpose() * m;
+  return root_of_largest(gram);
 }
 
 void require_square(const MatrixRef& A, const MatrixRef& C) {
@@ -139,11 +143,7 @@ SubsetBound tau0(const MatrixRef& C, const MatrixRef& A, int s, const SubsetLimi
   const double N = static_cast<double>(C.rows());
   // (1/N) ||[C_i'C_i A]_M|| = (1/N) sqrt(lambda_max(sum over M of |C_i A|^2 C_i'C_i)), note 15.
   const Vector weight = (C * A).rowwise().squaredNorm();
-  const auto value = [&](const auto& S) {
-    using Square = std::decay_t<decltype(S)>;
-    const auto values = Eigen::SelfAdjointEigenSolver<Square>(S, Eigen::EigenvaluesOnly).eigenvalues();
-    return std::sqrt(std::max(values(values.size() - 1), 0.0)) / N;
-  };
+  const auto value = [&](const auto& S) { return root_of_largest(S) / N; };
   if (too_many(groups, s, limits)) {
     SubsetBound b;
     b.upper = value(Matrix(C.transpose() * weight.asDiagonal() * C));  // removing rows only lowers it
