@@ -11,9 +11,8 @@ namespace garrison::kernel {
 namespace {
 
 /// Adds the rows of `count` neighbours.
-template <int W, int count, class V>
+template <int W, int B, int count, class V>
 GARRISON_INLINE void add(const double* now, const std::int32_t* e, V* sum) {
-  constexpr int B = block_of(W);
 #pragma GCC unroll 4
   for (int j = 0; j < count; ++j) {
     const V* other = Block<B>::of(now + static_cast<std::ptrdiff_t>(e[j]) * W);
@@ -23,17 +22,17 @@ GARRISON_INLINE void add(const double* now, const std::int32_t* e, V* sum) {
 }
 
 /// `rest` = degree % 4: the loop over neighbours takes four at a time, and its trip count never changes.
-template <int W, bool plain, int rest>
+template <int W, int most, bool plain, int rest>
 GARRISON_INLINE void rows(const Round& round, const Run& run) {
-  constexpr int B = block_of(W);
+  constexpr int B = block_of(W, most);
   constexpr int blocks = W / B;
   using V = typename Block<B>::type;
   const auto degree = static_cast<double>(run.degree);
   const std::int32_t* e = round.neighbour + run.edge;
   for (std::int32_t i = run.begin; i < run.end; ++i) {
     V sum[blocks] = {};
-    for (int fours = run.degree / 4; fours > 0; --fours, e += 4) add<W, 4>(round.now, e, sum);
-    add<W, rest>(round.now, e, sum);
+    for (int fours = run.degree / 4; fours > 0; --fours, e += 4) add<W, B, 4>(round.now, e, sum);
+    add<W, B, rest>(round.now, e, sum);
     e += rest;
     const V* x = Block<B>::of(round.now + static_cast<std::ptrdiff_t>(i) * W);
     V* next = Block<B>::of(round.next + static_cast<std::ptrdiff_t>(i) * W);
@@ -44,20 +43,20 @@ GARRISON_INLINE void rows(const Round& round, const Run& run) {
   }
 }
 
-template <int W, bool plain>
+template <int W, int most, bool plain>
 GARRISON_INLINE void runs(const Round& round, const Run* first, const Run* last) {
   for (const Run* run = first; run != last; ++run) switch (run->degree % 4) {
       case 0:
-        rows<W, plain, 0>(round, *run);
+        rows<W, most, plain, 0>(round, *run);
         break;
       case 1:
-        rows<W, plain, 1>(round, *run);
+        rows<W, most, plain, 1>(round, *run);
         break;
       case 2:
-        rows<W, plain, 2>(round, *run);
+        rows<W, most, plain, 2>(round, *run);
         break;
       default:
-        rows<W, plain, 3>(round, *run);
+        rows<W, most, plain, 3>(round, *run);
     }
 }
 
@@ -79,51 +78,58 @@ GARRISON_INLINE void runs_of_any_width(const Round& round, const Run* first, con
   }
 }
 
-template <bool plain>
+template <int most, bool plain>
 GARRISON_INLINE void dispatch(const Round& round, const Run* first, const Run* last, int width) {
   switch (width) {
     case 1:
-      return runs<1, plain>(round, first, last);
+      return runs<1, most, plain>(round, first, last);
     case 2:
-      return runs<2, plain>(round, first, last);
+      return runs<2, most, plain>(round, first, last);
     case 3:
-      return runs<3, plain>(round, first, last);
+      return runs<3, most, plain>(round, first, last);
     case 4:
-      return runs<4, plain>(round, first, last);
+      return runs<4, most, plain>(round, first, last);
     case 5:
-      return runs<5, plain>(round, first, last);
+      return runs<5, most, plain>(round, first, last);
     case 6:
-      return runs<6, plain>(round, first, last);
+      return runs<6, most, plain>(round, first, last);
     case 7:
-      return runs<7, plain>(round, first, last);
+      return runs<7, most, plain>(round, first, last);
     case 8:
-      return runs<8, plain>(round, first, last);
+      return runs<8, most, plain>(round, first, last);
     case 16:
-      return runs<16, plain>(round, first, last);  // from here on: eight trials side by side
+      return runs<16, most, plain>(round, first, last);  // from here on: eight trials side by side
     case 24:
-      return runs<24, plain>(round, first, last);
+      return runs<24, most, plain>(round, first, last);
     case 32:
-      return runs<32, plain>(round, first, last);
+      return runs<32, most, plain>(round, first, last);
     case 40:
-      return runs<40, plain>(round, first, last);
+      return runs<40, most, plain>(round, first, last);
     case 48:
-      return runs<48, plain>(round, first, last);
+      return runs<48, most, plain>(round, first, last);
     case 56:
-      return runs<56, plain>(round, first, last);
+      return runs<56, most, plain>(round, first, last);
     case 64:
-      return runs<64, plain>(round, first, last);
+      return runs<64, most, plain>(round, first, last);
     default:
       return runs_of_any_width<plain>(round, first, last, width);
   }
 }
 
+struct AverageRuns {
+  template <int most>
+  GARRISON_INLINE static void run(const Round& round, const Run* first, const Run* last, int width) {
+    if (round.omega == 1.0)
+      dispatch<most, true>(round, first, last, width);
+    else
+      dispatch<most, false>(round, first, last, width);
+  }
+};
+
 }  // namespace
 
-GARRISON_CLONES void average_runs(const Round& round, const Run* first, const Run* last, int width) {
-  if (round.omega == 1.0)
-    dispatch<true>(round, first, last, width);
-  else
-    dispatch<false>(round, first, last, width);
+void average_runs(const Round& round, const Run* first, const Run* last, int width) {
+  run_widest<AverageRuns, const Round&>(round, first, last, width);
 }
 
 }  // namespace garrison::kernel

@@ -2,6 +2,8 @@
 // A few doubles that are added and multiplied together, entry by entry.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "garrison/core/types.hpp"
@@ -9,7 +11,7 @@
 namespace garrison {
 
 /// B doubles of a longer array, at any address. Operations are entry by entry, so the bits are those of a
-/// loop; the compiler lowers them to whatever registers the machine has.
+/// loop. B must not be wider than a register: see run_widest.
 template <int B>
 struct Block {
   typedef double type __attribute__((vector_size(B * sizeof(double)), aligned(sizeof(double)), may_alias));
@@ -18,8 +20,8 @@ struct Block {
   static type* of(double* p) { return reinterpret_cast<type*>(p); }
 };
 
-/// Widest block that divides a row of W entries.
-constexpr int block_of(int W) { return W % 8 == 0 ? 8 : W % 4 == 0 ? 4 : W % 2 == 0 ? 2 : 1; }
+/// Widest block of at most `most` (a power of two) that divides a row of W entries.
+constexpr int block_of(int W, int most) { return W % most == 0 ? most : block_of(W, most / 2); }
 
 /// out = A x for a matrix stored column by column; every entry sums in the order of the columns.
 template <int n>
@@ -29,24 +31,19 @@ inline void multiply(const double* A, const double* x, double* out, int nn) noex
     for (int k = 1; k < nn; ++k)
       for (int i = 0; i < nn; ++i) out[i] += A[static_cast<std::ptrdiff_t>(k) * nn + i] * x[k];
   } else {
-    constexpr int B = block_of(n);
-    for (int i = 0; i < n; i += B) {
-      auto sum = *Block<B>::of(A + i) * x[0];
-      for (int k = 1; k < n; ++k) sum += *Block<B>::of(A + k * n + i) * x[k];
-      *Block<B>::of(out + i) = sum;
-    }
+    std::array<double, n> sum;
+    for (std::size_t i = 0; i < n; ++i) sum[i] = A[i] * x[0];
+    for (std::size_t k = 1; k < n; ++k)
+      for (std::size_t i = 0; i < n; ++i) sum[i] += A[k * n + i] * x[k];
+    std::copy_n(sum.data(), n, out);
   }
 }
 
 /// x += factor c
 template <int n>
 inline void add_scaled(double factor, const double* c, double* x, int nn) noexcept {
-  if constexpr (n == Dynamic) {
-    for (int k = 0; k < nn; ++k) x[k] += factor * c[k];
-  } else {
-    constexpr int B = block_of(n);
-    for (int k = 0; k < n; k += B) *Block<B>::of(x + k) += factor * *Block<B>::of(c + k);
-  }
+  const int count = n == Dynamic ? nn : n;
+  for (int k = 0; k < count; ++k) x[k] += factor * c[k];
 }
 
 }  // namespace garrison

@@ -1,13 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
-// One kernel source, compiled for several instruction sets, picked when the program is loaded.
+// One kernel source, compiled for several instruction sets, picked when the program runs.
 #pragma once
+
+#include <utility>
 
 #define GARRISON_INLINE __attribute__((always_inline)) inline
 
-// Sanitizers instrument the resolver, which runs before they are ready.
+#if defined(__x86_64__) && defined(__GNUC__)
+#define GARRISON_TARGET(isa) __attribute__((target(isa)))
+#else
+#define GARRISON_TARGET(isa)
+#endif
+
+// For loops that the compiler vectorises itself. Sanitizers instrument the resolver, which runs before they
+// are ready.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__linux__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define GARRISON_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define GARRISON_CLONES
 #endif
+
+namespace garrison {
+
+namespace detail {
+template <class Kernel, class... Args>
+GARRISON_TARGET("avx512f")
+void run_eight(Args... args) {
+  Kernel::template run<8>(args...);
+}
+template <class Kernel, class... Args>
+GARRISON_TARGET("avx2")
+void run_four(Args... args) {
+  Kernel::template run<4>(args...);
+}
+
+/// Doubles in the widest register of this machine that we have kernels for.
+inline int register_doubles() {
+#if defined(__x86_64__) && defined(__GNUC__)
+  static const int doubles = __builtin_cpu_supports("avx512f") ? 8 : __builtin_cpu_supports("avx2") ? 4 : 2;
+  return doubles;
+#else
+  return 2;
+#endif
+}
+}  // namespace detail
+
+/// Kernel::run<B>(args...), which must be GARRISON_INLINE, with B doubles per vector as this machine has
+/// them. Explicit vectors must not be wider: gcc splits those into parts that it takes to be aligned.
+template <class Kernel, class... Args>
+void run_widest(Args... args) {
+  switch (detail::register_doubles()) {
+    case 8:
+      return detail::run_eight<Kernel>(args...);
+    case 4:
+      return detail::run_four<Kernel>(args...);
+    default:
+      return Kernel::template run<2>(args...);
+  }
+}
+
+}  // namespace garrison

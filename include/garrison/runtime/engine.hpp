@@ -24,8 +24,9 @@ namespace garrison {
 /// A family whose rounds only average estimates as long as all agents carry the same side information:
 /// the engine then averages the whole network at once, with the same bits.
 template <class F, int n>
-concept Averages = requires(const typename F::Gains& g, typename F::template State<n>& s,
-                            typename F::template Message<n>& m) {
+concept Averages = requires(const Local& l, const typename F::Gains& g, typename F::template State<n>& s,
+                            typename F::template Message<n>& m, const double* y, std::int64_t t) {
+  F::template update<n>(l, g, s, y, t);
   F::averaging(g).alpha;
   { F::template averaged<n>(s) } -> std::same_as<double*>;
   { F::template same_side_information<n>(s, s) } -> std::same_as<bool>;
@@ -164,10 +165,9 @@ class Engine final : public Runner {
     bool finite;
     bool alike;
   };
-  /// Agents begin..end-1 sense, and their estimates go to `average_`; `scrap` takes messages nobody reads.
+  /// Agents begin..end-1 sense, and their estimates go to `average_`.
   GARRISON_CLONES __attribute__((flatten)) Sensed sense_part(std::int64_t t, const double* y,
-                                                             std::size_t begin, std::size_t end,
-                                                             Message& scrap) {
+                                                             std::size_t begin, std::size_t end) {
     const auto nn = static_cast<std::size_t>(dimension<n>(local(begin)));
     std::array<double, n == Dynamic ? 1 : n> zeros{};  // turns into NaN when an entry is not finite
     bool finite = true;
@@ -179,7 +179,7 @@ class Engine final : public Runner {
       for (std::size_t line = 0; line < sizeof(State); line += 64)
         __builtin_prefetch(reinterpret_cast<const char*>(&states_[ahead]) + line, 1);
       State& s = states_[k];
-      F::template sense<n>(local(k), *gains_, s, y + places_[k].first_output, t, scrap);
+      F::template update<n>(local(k), *gains_, s, y + places_[k].first_output, t);
       alike = alike && F::template same_side_information<n>(states_[begin], s);
       const double* x = F::template averaged<n>(s);
       if constexpr (n == Dynamic)
@@ -196,12 +196,11 @@ class Engine final : public Runner {
   void step_at_once(std::int64_t t, const double* y) {
     const auto N = static_cast<std::int64_t>(states_.size());
     const auto nn = static_cast<std::size_t>(dimension<n>(local(0)));
-    Message* out = mail_.outgoing();
     std::atomic<bool> finite{true};
     std::atomic<bool> alike{true};
     workers_.split(N, [&](std::int64_t begin, std::int64_t end, int) {
       const auto first = static_cast<std::size_t>(begin);
-      const Sensed sensed = sense_part(t, y, first, static_cast<std::size_t>(end), out[first]);
+      const Sensed sensed = sense_part(t, y, first, static_cast<std::size_t>(end));
       if (!sensed.finite) finite = false;
       if (!sensed.alike) alike = false;
     });

@@ -27,54 +27,63 @@ struct SenseJob {
   double beta;
 };
 
-template <int n>
-GARRISON_INLINE void sense_all(const SenseJob& job) {
-  using Lanes = Block<kLanes>;
+/// The B lanes from `lane` on.
+template <int n, int B>
+GARRISON_INLINE void sense_part(const SenseJob& job, int lane) {
+  using Lanes = Block<B>;
   using V = Lanes::type;
   const V beta = V{} + job.beta;
   const V huge = V{} + kHuge;
   const double* c = job.C;
   for (int i = 0; i < job.agents; ++i) {
-    V* x = Lanes::of(job.x + static_cast<std::ptrdiff_t>(i) * n * kL);
+    double* const x = job.x + static_cast<std::ptrdiff_t>(i) * n * kL + lane;
     V prediction[n];
     for (int r = 0; r < n; ++r) {
-      prediction[r] = job.A[r] * x[0];
-      for (int k = 1; k < n; ++k) prediction[r] += job.A[k * n + r] * x[k];
+      prediction[r] = job.A[r] * *Lanes::of(x);
+      for (int k = 1; k < n; ++k) prediction[r] += job.A[k * n + r] * *Lanes::of(x + k * kL);
     }
-    for (int r = 0; r < n; ++r) x[r] = prediction[r];
+    for (int r = 0; r < n; ++r) *Lanes::of(x + r * kL) = prediction[r];
     for (int o = 0; o < job.outputs[i]; ++o, c += n) {
       V expected = {};
       for (int k = 0; k < n; ++k) expected += c[k] * prediction[k];
-      const V innovation = *Lanes::of(job.y + (job.first_output[i] + o) * kL) - expected;
+      const V innovation = *Lanes::of(job.y + (job.first_output[i] + o) * kL + lane) - expected;
       const V low = innovation < -beta ? -beta : innovation;
       const V clipped = low > beta ? beta : low;
       // Missing, or used in full and so large that it would destroy the estimate (or NaN): no update.
       const V injected = clipped < huge && clipped > -huge ? clipped : V{};
-      for (int k = 0; k < n; ++k) x[k] += injected * c[k];
+      for (int k = 0; k < n; ++k) *Lanes::of(x + k * kL) += injected * c[k];
     }
   }
 }
 
-GARRISON_CLONES void sense_lanes(const SenseJob& job, int n) {
-  switch (n) {
-    case 1:
-      return sense_all<1>(job);
-    case 2:
-      return sense_all<2>(job);
-    case 3:
-      return sense_all<3>(job);
-    case 4:
-      return sense_all<4>(job);
-    case 5:
-      return sense_all<5>(job);
-    case 6:
-      return sense_all<6>(job);
-    case 7:
-      return sense_all<7>(job);
-    default:
-      return sense_all<8>(job);
-  }
+template <int n, int B>
+GARRISON_INLINE void sense_all(const SenseJob& job) {
+  for (int lane = 0; lane < kLanes; lane += B) sense_part<n, B>(job, lane);
 }
+
+struct SenseLanes {
+  template <int B>
+  GARRISON_INLINE static void run(const SenseJob& job, int n) {
+    switch (n) {
+      case 1:
+        return sense_all<1, B>(job);
+      case 2:
+        return sense_all<2, B>(job);
+      case 3:
+        return sense_all<3, B>(job);
+      case 4:
+        return sense_all<4, B>(job);
+      case 5:
+        return sense_all<5, B>(job);
+      case 6:
+        return sense_all<6, B>(job);
+      case 7:
+        return sense_all<7, B>(job);
+      default:
+        return sense_all<8, B>(job);
+    }
+  }
+};
 
 class SaturationLanes final : public LaneRunner {
  public:
@@ -104,9 +113,15 @@ class SaturationLanes final : public LaneRunner {
 
   void step(const double* y) override {
     Saturation::advance_bounds(*gains_, clock_, clock_.t + 1);
-    sense_lanes({model_.A().data(), rows_.data(), outputs_.data(), first_output_.data(), y, x_.data(),
-                 model_.agents(), Saturation::beta_now(*gains_, clock_)},
-                model_.states());
+    const SenseJob job{model_.A().data(),
+                       rows_.data(),
+                       outputs_.data(),
+                       first_output_.data(),
+                       y,
+                       x_.data(),
+                       model_.agents(),
+                       Saturation::beta_now(*gains_, clock_)};
+    run_widest<SenseLanes, const SenseJob&>(job, model_.states());
     plan_.run(x_.data(), scratch_.data(), model_.states() * kLanes, gains_->alpha, gains_->omega,
               gains_->rounds);
     publish();

@@ -37,15 +37,16 @@ std::vector<double> at_once(const Network& net, const std::vector<double>& x, in
                             const std::vector<double>& omega, int rounds, int threads) {
   const ConsensusPlan plan(net.offsets(), net.lists());
   const auto w = static_cast<std::ptrdiff_t>(width);
-  std::vector<double> inner(x.size());
-  std::vector<double> scratch(x.size());
+  std::vector<double> memory(1 + x.size());
+  std::vector<double> scratch(1 + x.size());
   std::vector<double> out(x.size());
+  double* const inner = memory.data() + 1;  // on no boundary that a vector register would like
   for (std::size_t k = 0; k < plan.order().size(); ++k)
-    std::copy_n(x.begin() + plan.order()[k] * w, w, inner.begin() + static_cast<std::ptrdiff_t>(k) * w);
+    std::copy_n(x.begin() + plan.order()[k] * w, w, inner + static_cast<std::ptrdiff_t>(k) * w);
   Workers workers(threads);
-  plan.run(inner.data(), scratch.data(), width, alpha, omega, rounds, &workers);
+  plan.run(inner, scratch.data() + 1, width, alpha, omega, rounds, &workers);
   for (std::size_t k = 0; k < plan.order().size(); ++k)
-    std::copy_n(inner.begin() + static_cast<std::ptrdiff_t>(k) * w, w, out.begin() + plan.order()[k] * w);
+    std::copy_n(inner + static_cast<std::ptrdiff_t>(k) * w, w, out.begin() + plan.order()[k] * w);
   return out;
 }
 

@@ -202,6 +202,13 @@ struct GARRISON_EXPORT Saturation {
   template <int n>
   static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
                     Message<n>& m) noexcept {
+    update(l, g, s, y, t);
+    send(s, 0, m);
+  }
+
+  /// `sense` without its message, for drivers that average the whole network at once.
+  template <int n>
+  static void update(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t) noexcept {
     advance_bounds(g, s, t);
     const int nn = dimension<n>(l);
     double on_stack[n == Dynamic ? 1 : n];
@@ -248,7 +255,6 @@ struct GARRISON_EXPORT Saturation {
                 : used == 0       ? Verdict::silent
                 : limited > 0     ? Verdict::suspected
                                   : Verdict::cleared;
-    send(s, 0, m);
   }
 
   template <int n>
