@@ -10,18 +10,6 @@
 using namespace garrison;
 using namespace garrison::saturation::cases;
 
-namespace {
-
-Matrix matrix(const Json& rows) {
-  Matrix m(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows.at(0).size()));
-  for (Eigen::Index i = 0; i < m.rows(); ++i)
-    for (Eigen::Index j = 0; j < m.cols(); ++j)
-      m(i, j) = number(rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
-  return m;
-}
-
-}  // namespace
-
 TEST_CASE("the table of subset searches") {
   const Json table = load("07_lambda0_table");
   const Json& items = table["inputs"]["items"];

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// The exact step against reference solutions, and its optimality conditions on random problems.
+#include "garrison/filters/rdkf/step.hpp"
+
+#include <doctest/doctest.h>
+
+#include <iostream>
+
+#include "../../cases.hpp"
+#include "../../random_system.hpp"
+
+using namespace garrison;
+using namespace garrison::cases;
+using namespace garrison::rdkf;
+using namespace garrison::test;
+
+namespace {
+
+struct Solution {
+  Vector x;
+  Vector u;  // V'u
+  Step step;
+};
+
+Solution solved(const StepFactors& f, double lambda, const Vector& y, const Vector& x0) {
+  Solution s{x0, Vector::Zero(f.d.size()), {}};
+  s.step = solve(f, lambda, y.data(), s.x.data(), s.u.data());
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("single problems of every kind have the reference solution") {
+  const Json file = load_case("rdkf/dutta_rdkf_single_steps.json");
+  REQUIRE(file["inputs"].size() > 20);
+  for (std::size_t k = 0; k < file["inputs"].size(); ++k) {
+    const Json& in = file["inputs"][k];
+    const Json& out = file["expected"][k];
+    CAPTURE(in["tag"].get<std::string>());
+    const Matrix Q = matrix(in["Q"]);
+    const Vector x0 = vector(in["x0"]);
+    const Vector b = vector(in["b"]);
+    const Matrix M = matrix(in["M"], x0.size());
+    const double lambda = number(in["lam"]);
+    const Matrix root = Matrix::Identity(b.size(), b.size());
+    const Solution norm = solved(step_factors(root, M, Q, Penalty::norm), lambda, b, x0);
+    const Solution huber = solved(step_factors(root, M, Q, Penalty::huber), lambda, b, x0);
+    CHECK(agree_entries(norm.x, vector(out["x"])));
+    CHECK(agree_entries(huber.x, vector(out["x_huber"])));
+    const double mu = number(out["mu"]);
+    const double size = b.norm() + (M * x0).norm();
+    if (std::isinf(mu)) {
+      CHECK(std::isinf(norm.step.mu));
+    } else {
+      CHECK(std::abs(norm.step.mu - mu) <= 1e-9 * mu + 1e-12 * size / lambda);
+    }
+    const double residual = (b - M * norm.x).norm();
+    const double expected = number(out["residual_norm"]);
+    CHECK(std::abs(residual - expected) <= 1e-9 * expected + 1e-12 * size);
+  }
+}
+
+TEST_CASE("3000 random problems over 12 decades fulfil the optimality conditions") {
+  Rng rng(20261124);
+  double worst_residual = 0.0;
+  double worst_gradient = 0.0;
+  int most = 0;
+  long total = 0;
+  int saturated = 0;
+  for (int instance = 0; instance < 3000; ++instance) {
+    const int n = whole(rng, 1, 12);
+    const int q = whole(rng, 1, 15);  // also q > n
+    Matrix M = normal_matrix(rng, q, n);
+    const int kind = instance % 6;
+    if (kind == 1 && q > 1) M.row(q - 1) = M.row(0);  // dependent rows
+    if (kind == 2) M.row(0).setZero();
+    const Matrix root = normal_matrix(rng, n, n);
+    const Matrix Q = root * root.transpose() + 0.1 * Matrix::Identity(n, n);
+    const Vector x0 = normal_matrix(rng, n, 1);
+    const double size = std::pow(10.0, uniform(rng, -6, 6));
+    Vector b = M * x0 + size * normal_matrix(rng, q, 1);
+    if (kind == 3) b = M * (x0 + size * normal_matrix(rng, n, 1));  // residual 0 is within reach
+    if (kind == 4) b = M * x0;                                      // zero residual at once
+    double lambda = std::pow(10.0, uniform(rng, -6, 6));
+    const Penalty penalty = instance % 2 == 0 ? Penalty::norm : Penalty::huber;
+    const StepFactors f = step_factors(Matrix::Identity(q, q), M, Q, penalty);
+    if (kind == 5) {  // at the edge between saturated and not
+      const Vector rho = f.R * (b - M * x0);
+      const double edge = (rho.array() / (f.d.array() + 1e-300)).matrix().norm();
+      if (std::isfinite(edge) && edge < 1e200) lambda = edge * (1.0 + uniform(rng, -1e-9, 1e-9));
+    }
+    const Solution s = solved(f, lambda, b, x0);
+    CAPTURE(instance);
+    CHECK((f.K.transpose() * f.K - M.transpose() * M).norm() <= 1e-12 * M.squaredNorm());
+    // Residual plus the penalty's own part: V'(b - M x) = mu u (+ u/2 for huber).
+    const Vector residual = f.R * b - f.K * s.x;
+    const double own = penalty == Penalty::huber ? 0.5 : 0.0;
+    const double scale = b.norm() + (M * x0).norm() + 1e-300;
+    worst_residual = std::max(worst_residual, (residual - (s.step.mu + own) * s.u).norm() / scale);
+    const Vector push = f.K.transpose() * s.u;
+    const Vector gradient = 2.0 * (Q * (s.x - x0)) - push;
+    const double weight = push.norm() + 2.0 * Q.norm() * (s.x.norm() + x0.norm());
+    worst_gradient = std::max(worst_gradient, gradient.norm() / weight);
+    CHECK(s.u.norm() <= lambda * (1.0 + 1e-12));
+    if (s.step.mu > 1e-9) CHECK(s.u.norm() >= lambda * (1.0 - 1e-12));
+    most = std::max(most, s.step.iterations);
+    total += s.step.iterations;
+    saturated += s.step.mu > 0.0 ? 1 : 0;
+  }
+  std::cout << "rdkf step: 3000 problems from seed 20261124, " << saturated
+            << " saturated, optimality residual " << worst_residual << " and " << worst_gradient
+            << ", iterations at most " << most << ", mean "
+            << static_cast<double>(total) / std::max(saturated, 1) << "\n";
+  CHECK(worst_residual <= 1e-12);
+  CHECK(worst_gradient <= 1e-12);
+}
+
+TEST_CASE("huge and degenerate data stay finite") {
+  const Matrix M = Matrix::Identity(2, 2);
+  const StepFactors f = step_factors(Matrix::Identity(2, 2), M, Matrix::Identity(2, 2), Penalty::norm);
+  const Vector x0 = Vector::Zero(2);
+  for (const double v : {0.0, 1e-300, 1e-160, 1e154, 1e200, 1e300}) {
+    const Solution s = solved(f, 1.0, Vector{{v, -v}}, x0);
+    CAPTURE(v);
+    CHECK(s.x.allFinite());
+    CHECK(s.x.norm() <= 0.5 * (1.0 + 1e-12));  // lambda / 2 |Q^-1 M'|
+  }
+  CHECK(solved(f, 0.0, Vector{{3.0, 4.0}}, x0).x == x0);
+  const StepFactors nothing = step_factors(Matrix(0, 0), Matrix(0, 2), Matrix::Identity(2, 2), Penalty::norm);
+  CHECK(solved(nothing, 1.0, Vector(0), x0).x == x0);
+  CHECK_THROWS_WITH_AS(step_factors(M, M, -M, Penalty::norm), doctest::Contains("not positive definite"),
+                       InvalidInput);
+}
