@@ -1,22 +1,16 @@
 """Monte Carlo: 100 trials x 500 samples x 30 agents, n = 4, L = 10, the same measurements for everybody."""
 
-import time
 from collections.abc import Callable
 from typing import Any
 
 import garrison as gr
 import numpy as np
+from timing import Rows, Tasks, interleaved, summary, wall
 
 TRIALS, STEPS, AGENTS, STATES, ROUNDS, BETA = 100, 500, 30, 4, 10, 0.5
 
 
-def _wall(run: Callable[[], Any]) -> float:
-    start = time.perf_counter()
-    run()
-    return time.perf_counter() - start
-
-
-def monte_carlo(repeats: int, interleaved: Any, summary: Any) -> list[dict[str, Any]]:
+def monte_carlo(repeats: int) -> Rows:
     rng = np.random.default_rng(0)
     net = next(n for n in (gr.Network.random_geometric(AGENTS, 0.3, s) for s in range(100)) if n.connected)
     C = rng.normal(size=(AGENTS, STATES))
@@ -75,11 +69,11 @@ def monte_carlo(repeats: int, interleaved: Any, summary: Any) -> list[dict[str, 
     assert right(numpy_agents()) and right(numpy_batched()), "a NumPy peer disagrees"
     assert np.array_equal(ours(1).estimate, given.estimate), "replay and simulation disagree"
     rows: dict[str, Callable[[], float]] = {
-        "ours, one thread": lambda: _wall(lambda: ours(1)),
-        "ours, all cores": lambda: _wall(lambda: ours(0)),
-        "ours, one thread, with own plant, noise and attack": lambda: _wall(lambda: end_to_end(1)),
-        "numpy vectorised over agents": lambda: _wall(numpy_agents),
-        "numpy batched over trials, W^L": lambda: _wall(numpy_batched),
+        "ours, one thread": lambda: wall(lambda: ours(1)),
+        "ours, all cores": lambda: wall(lambda: ours(0)),
+        "ours, one thread, with own plant, noise and attack": lambda: wall(lambda: end_to_end(1)),
+        "numpy vectorised over agents": lambda: wall(numpy_agents),
+        "numpy batched over trials, W^L": lambda: wall(numpy_batched),
     }
     rows |= _jax_rows(y, A, C, W, WL, right)
     return summary(interleaved(rows, repeats), "ours, all cores")
@@ -116,5 +110,9 @@ def _jax_rows(
         compiled = program(jnp.asarray(M), times)
         got = np.asarray(compiled(y))
         assert right(np.concatenate([np.zeros((TRIALS, 1, AGENTS, STATES)), got], axis=1)), "JAX disagrees"
-        rows[f"JAX vmap + scan, {name}"] = lambda c=compiled: _wall(lambda: c(y).block_until_ready())
+        rows[f"JAX vmap + scan, {name}"] = lambda c=compiled: wall(lambda: c(y).block_until_ready())
     return rows
+
+
+def tasks(repeats: int) -> Tasks:
+    return {"monte carlo 100 x 500 x 30": lambda: monte_carlo(repeats)}
