@@ -2,8 +2,6 @@
 // A few doubles that are added and multiplied together, entry by entry.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 
 #include "garrison/core/types.hpp"
@@ -23,6 +21,9 @@ struct Block {
 /// Widest block of at most `most` (a power of two) that divides a row of W entries.
 constexpr int block_of(int W, int most) { return W % most == 0 ? most : block_of(W, most / 2); }
 
+/// Doubles per block in the functions below: every machine has registers of two.
+constexpr int pair_of(int n) { return block_of(n, 2); }
+
 /// out = A x for a matrix stored column by column; every entry sums in the order of the columns.
 template <int n>
 inline void multiply(const double* A, const double* x, double* out, int nn) noexcept {
@@ -31,19 +32,24 @@ inline void multiply(const double* A, const double* x, double* out, int nn) noex
     for (int k = 1; k < nn; ++k)
       for (int i = 0; i < nn; ++i) out[i] += A[static_cast<std::ptrdiff_t>(k) * nn + i] * x[k];
   } else {
-    std::array<double, n> sum;
-    for (std::size_t i = 0; i < n; ++i) sum[i] = A[i] * x[0];
-    for (std::size_t k = 1; k < n; ++k)
-      for (std::size_t i = 0; i < n; ++i) sum[i] += A[k * n + i] * x[k];
-    std::copy_n(sum.data(), n, out);
+    constexpr int B = pair_of(n);
+    for (int i = 0; i < n; i += B) {
+      auto sum = *Block<B>::of(A + i) * x[0];
+      for (int k = 1; k < n; ++k) sum += *Block<B>::of(A + k * n + i) * x[k];
+      *Block<B>::of(out + i) = sum;
+    }
   }
 }
 
 /// x += factor c
 template <int n>
 inline void add_scaled(double factor, const double* c, double* x, int nn) noexcept {
-  const int count = n == Dynamic ? nn : n;
-  for (int k = 0; k < count; ++k) x[k] += factor * c[k];
+  if constexpr (n == Dynamic) {
+    for (int k = 0; k < nn; ++k) x[k] += factor * c[k];
+  } else {
+    constexpr int B = pair_of(n);
+    for (int k = 0; k < n; k += B) *Block<B>::of(x + k) += factor * *Block<B>::of(c + k);
+  }
 }
 
 }  // namespace garrison

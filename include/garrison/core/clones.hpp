@@ -12,15 +12,6 @@
 #define GARRISON_TARGET(isa)
 #endif
 
-// For loops that the compiler vectorises itself. Sanitizers instrument the resolver, which runs before they
-// are ready.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__linux__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define GARRISON_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define GARRISON_CLONES
-#endif
-
 namespace garrison {
 
 namespace detail {

@@ -11,7 +11,6 @@
 
 #include "garrison/core/aligned.hpp"
 #include "garrison/core/block.hpp"
-#include "garrison/core/clones.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/runtime/consensus.hpp"
@@ -166,8 +165,8 @@ class Engine final : public Runner {
     bool alike;
   };
   /// Agents begin..end-1 sense, and their estimates go to `average_`.
-  GARRISON_CLONES __attribute__((flatten)) Sensed sense_part(std::int64_t t, const double* y,
-                                                             std::size_t begin, std::size_t end) {
+  __attribute__((flatten)) Sensed sense_part(std::int64_t t, const double* y, std::size_t begin,
+                                             std::size_t end) {
     const auto nn = static_cast<std::size_t>(dimension<n>(local(begin)));
     std::array<double, n == Dynamic ? 1 : n> zeros{};  // turns into NaN when an entry is not finite
     bool finite = true;
