@@ -49,7 +49,10 @@ void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_valu
 }  // namespace
 
 Check Saturation::check(const Params& p, const Model& model, const Network& network) {
+  saturation::detail::require_parameters(p, model);
   Check c;
+  c.conditions.push_back({"network undirected", network.directed() ? 0.0 : 1.0, "= 1", !network.directed(),
+                          "averaging keeps the mean of the estimates"});
   c.conditions.push_back({"network connected", network.connected() ? 1.0 : 0.0, "= 1", network.connected(),
                           "estimates of all agents can agree"});
   if (network.directed() || !network.connected()) return c;
@@ -64,7 +67,11 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   const bool unit = scalar_unit_rows(model);
   c.conditions.push_back({"one output of unit length per agent", unit ? 1.0 : 0.0, "= 1", unit,
                           "assumption of all bounds; see normalise_rows and split_outputs", bound_asked});
-  if (!unit || p.attacked > model.agents()) return c;
+  const bool noise_known =
+      !std::isnan(model.noise().process_bound) && model.noise().measurement_bound.size() > 0;
+  c.conditions.push_back({"noise bounds known", noise_known ? 1.0 : 0.0, "= 1", noise_known,
+                          "process_bound and measurement_bound of the model, for all bounds", bound_asked});
+  if (!unit) return c;
   const auto facts = saturation::detail::facts(model, p.attacked, true);
   const Matrix C = saturation::detail::sensor_rows(model);
   c.quantities.push_back({"||A||", facts.a, "largest growth of an error per step"});
@@ -92,7 +99,6 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   c.quantities.push_back(
       {"minimal rounds", least ? static_cast<double>(*least) : kNaN,
        least ? "fewest rounds for which some threshold satisfies (9)" : "no number of rounds is enough"});
-  const bool noise_known = !std::isnan(setting.b_w) && !std::isnan(setting.b_v);
   if (std::isnan(p.initial_error) || !noise_known) {
     c.quantities.push_back({"asymptotic bound", kNaN, "needs initial_error and both noise bounds"});
     return c;

@@ -12,6 +12,24 @@ namespace {
 constexpr double kCleanGamma = 1e-14;  // complete graphs: rounding leaves 1e-17 where gamma is 0
 }
 
+void require_parameters(const Saturation::Params& p, const Model& model) {
+  if (std::isnan(p.threshold) && !p.adaptive)
+    refuse("saturation.threshold", "nothing", "a number > 0 (inf = never saturate)",
+           "or set adaptive = true");
+  if (!std::isnan(p.threshold) && p.adaptive)
+    refuse("saturation.threshold", text(p.threshold), "nothing together with adaptive = true",
+           "the adaptive threshold follows from the noise bounds and initial_error");
+  if (p.adaptive && p.detector)
+    refuse("saturation.detector", "true", "false together with adaptive = true",
+           "with the adaptive threshold, an innovation above it already proves an attack");
+  if (p.attacked > model.agents())
+    refuse("saturation.attacked", std::to_string(p.attacked),
+           "at most the number of agents, " + std::to_string(model.agents()));
+  if ((p.detector || p.adaptive) && std::isnan(p.initial_error))
+    refuse("saturation.initial_error", "nothing", "a number > 0",
+           std::string(p.detector ? "the detector" : "the adaptive threshold") + " needs error bounds");
+}
+
 Rates rates(const Network& network, double step, int rounds, bool chebyshev) {
   Rates r;
   const auto [lambda2, lambda_max] = network.laplacian_spectrum();

@@ -12,6 +12,9 @@
 
 namespace garrison::saturation::detail {
 
+/// Refuses parameters that contradict each other or the model.
+void require_parameters(const Saturation::Params& p, const Model& model);
+
 /// Consensus: step, weights and contraction.
 struct Rates {
   double alpha = 0.0;

@@ -12,24 +12,6 @@ namespace {
 
 using saturation::detail::Facts;
 
-void require_parameters(const Saturation::Params& p, const Model& model) {
-  if (std::isnan(p.threshold) && !p.adaptive)
-    refuse("saturation.threshold", "nothing", "a number > 0 (inf = never saturate)",
-           "or set adaptive = true");
-  if (!std::isnan(p.threshold) && p.adaptive)
-    refuse("saturation.threshold", text(p.threshold), "nothing together with adaptive = true",
-           "the adaptive threshold follows from the noise bounds and initial_error");
-  if (p.adaptive && p.detector)
-    refuse("saturation.detector", "true", "false together with adaptive = true",
-           "with the adaptive threshold, an innovation above it already proves an attack");
-  if (p.attacked > model.agents())
-    refuse("saturation.attacked", std::to_string(p.attacked),
-           "at most the number of agents, " + std::to_string(model.agents()));
-  if ((p.detector || p.adaptive) && std::isnan(p.initial_error))
-    refuse("saturation.initial_error", "nothing", "a number > 0",
-           std::string(p.detector ? "the detector" : "the adaptive threshold") + " needs error bounds");
-}
-
 /// What every run-time bound rests on; the first thing that is missing is named.
 void require_bound_assumptions(const Model& model) {
   const Noise& noise = model.noise();
@@ -52,7 +34,7 @@ void require_bound_assumptions(const Model& model) {
 }  // namespace
 
 Saturation::Gains Saturation::design(const Params& p, const Model& model, const Network& network) {
-  require_parameters(p, model);
+  saturation::detail::require_parameters(p, model);
   if (network.directed())
     refuse("network", "a directed one", "an undirected one",
            "averaging keeps the mean only on undirected graphs");

@@ -81,8 +81,8 @@ inline Step secular(const double* rho, const double* d, Eigen::Index q, double l
   return {mu, iterations};
 }
 
-/// Solves one step. y: q numbers, finite. x: n numbers, x0 on entry and the minimiser on return. u: room for q
-/// numbers; returns V'u, the least-norm dual solution.
+/// Solves one step. y: q numbers, finite. x: n numbers, x0 on entry and the minimiser on return. u: room for
+/// q numbers; returns V'u, the least-norm dual solution.
 inline Step solve(const StepFactors& f, double lambda, const double* y, double* x, double* u) noexcept {
   const Eigen::Index q = f.d.size();
   const Eigen::Index n = f.W.rows();

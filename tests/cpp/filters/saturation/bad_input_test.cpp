@@ -112,6 +112,24 @@ TEST_CASE("an agent driven by hand refuses a wrong order of calls and strange me
   CHECK_THROWS_AS(prepared->agent(3), InvalidInput);
 }
 
+TEST_CASE("a check refuses what design refuses, and says which assumption of the bounds is missing") {
+  const Network net = Network::path(3);
+  const auto too_many =
+      make_filter("saturation", {{"threshold", 1.0}, {"attacked", std::int64_t{4}}, {"initial_error", 1.0}});
+  CHECK_THROWS_WITH_AS(too_many->check(kModel, net), doctest::Contains("saturation.attacked: got 4"),
+                       InvalidInput);
+  CHECK_THROWS_AS(make_filter("saturation", {})->check(kModel, net), InvalidInput);
+  const Model no_noise(kModel.A(), {kModel.C(0), kModel.C(1), kModel.C(2)});
+  const Check c =
+      make_filter("saturation", {{"threshold", 1.0}, {"initial_error", 1.0}})->check(no_noise, net);
+  CHECK(!c.holds());
+  const auto noise = std::find_if(c.conditions.begin(), c.conditions.end(),
+                                  [](const Condition& one) { return one.name == "noise bounds known"; });
+  REQUIRE(noise != c.conditions.end());
+  CHECK(!noise->holds);
+  CHECK(noise->required);
+}
+
 TEST_CASE("several outputs, relays and gaps are ordinary") {
   Matrix two(2, 2);
   two << 1, 0, 0, 1;
