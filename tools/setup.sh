@@ -26,6 +26,7 @@ need() { # PACKAGE TEST...
 need g++ have g++
 need cmake have cmake
 need ninja-build have ninja
+need ccache have ccache
 need make have make
 need pkg-config have pkg-config
 need libeigen3-dev installed libeigen3-dev

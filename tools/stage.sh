@@ -5,6 +5,8 @@ name=$1
 shift
 cd "$(dirname "$0")/.."
 mkdir -p build/log
+# The Python module, the tests and the benchmarks compile the same library: with ccache only once.
+export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-$(command -v ccache)}
 log=build/log/${name//[^[:alnum:]]/-}.log
 printf '== %s ... ' "$name"
 start=$SECONDS
