@@ -20,3 +20,4 @@ inline double cpu_seconds() {
 void bind_limits(py::module_& m);
 void bind_consensus(py::module_& m);
 void bind_lambda0(py::module_& m);
+void bind_structure(py::module_& m);

@@ -6,4 +6,5 @@ PYBIND11_MODULE(garrison_bench, m) {
   bind_limits(m);
   bind_consensus(m);
   bind_lambda0(m);
+  bind_structure(m);
 }

@@ -19,12 +19,13 @@ import lambda0
 import montecarlo
 import numpy as np
 import scipy
+import structure
 from rich.console import Console
 from rich.table import Table
 
 HERE = Path(__file__).parent
 #: modules with tasks(repeats)
-TOPICS = (consensus, montecarlo, lambda0)
+TOPICS = (consensus, montecarlo, lambda0, structure)
 
 
 def limits() -> dict[str, float]:

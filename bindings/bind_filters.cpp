@@ -6,6 +6,7 @@
 #include "garrison/filters/lfre.hpp"
 #include "garrison/filters/saturation/filter.hpp"
 #include "garrison/filters/scalar_gain.hpp"
+#include "garrison/filters/structural/filter.hpp"
 
 using namespace garrison;
 
@@ -70,6 +71,7 @@ void bind_filters(py::module_& m) {
   bind_family<Saturation>(m, "Saturation");
   bind_family<ScalarGain>(m, "ScalarGain");
   bind_family<Lfre>(m, "Lfre");
+  bind_family<Structural>(m, "Structural");
 
   m.def(
       "lfre_parents",

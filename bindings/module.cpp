@@ -11,4 +11,6 @@ PYBIND11_MODULE(_core, m) {
   bind_runtime(m);
   bind_analysis(m);
   bind_fit(m);
+  bind_structure(m);
+  bind_structural(m);
 }

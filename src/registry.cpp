@@ -9,9 +9,10 @@ namespace garrison {
 FamilyInfo saturation_family();
 FamilyInfo scalar_gain_family();
 FamilyInfo lfre_family();
+FamilyInfo structural_family();
 
 std::span<const FamilyInfo> families() {
-  static const std::array all{saturation_family(), scalar_gain_family(), lfre_family()};
+  static const std::array all{saturation_family(), scalar_gain_family(), lfre_family(), structural_family()};
   return all;
 }
 

@@ -24,9 +24,12 @@ from garrison._core import (
     s_sparse_observable,
     saturation,
     split_outputs,
+    structural,
+    structure,
 )
 from garrison.checks import Check, check
 from garrison.fitting import Fit, fit
+from garrison.mitigation import Mitigated, replay_mitigated
 from garrison.run import Run, central_kalman, replay, simulate
 
 __all__ = [
@@ -40,6 +43,7 @@ __all__ = [
     "InvalidInput",
     "IoError",
     "Message",
+    "Mitigated",
     "Model",
     "Network",
     "Run",
@@ -54,8 +58,11 @@ __all__ = [
     "observable",
     "one_step_sparse_observable",
     "replay",
+    "replay_mitigated",
     "s_sparse_observable",
     "saturation",
     "simulate",
     "split_outputs",
+    "structural",
+    "structure",
 ]

@@ -322,6 +322,49 @@ def _cmd_fit(args: argparse.Namespace) -> int:
     return OK
 
 
+# --- structure ---------------------------------------------------------------------------------------------------
+
+
+def _cmd_structure(args: argparse.Namespace) -> int:
+    from garrison.sensors import anatomy_figure, read_anatomy, states_text, table_rows
+
+    anatomy = read_anatomy(args.source, args.measured)
+    report = anatomy.report()
+    if args.output:
+        target = Path(args.output)
+        if target.exists() and not args.force:
+            raise _core.IoError(f"{target}: exists already; choose another name, or replace it with --force")
+        anatomy_figure(anatomy).savefig(target, dpi=120)
+    if args.json:
+        _json(report)
+    else:
+        console = _console()
+        contractions = "; ".join(states_text(c) for c in report["contractions"]) or "none"
+        parents = "; ".join(states_text(c) for c in report["parent_components"][:20])
+        facts = [
+            ["states", str(report["states"])],
+            ["structural rank", str(report["structural_rank"])],
+            ["contractions (overlapping ones joined)", contractions],
+            [f"parent components ({len(report['parent_components'])})", parents],
+        ]
+        if "observable" in report:
+            unstable = len(report["unstable_modes_nobody_sees"])
+            facts += [
+                ["structurally observable", "yes" if report["observable"] else "no"],
+                ["every state reaches a sensor", "yes" if report["output_connected"] else "no"],
+                ["rank of [A; C] is full", "yes" if report["rank_condition"] else "no"],
+                ["unstable modes that nobody sees", str(unstable)],
+            ]
+        _table(anatomy.title, ["structure", ""], facts, console)
+        if "agents" in report:
+            console.print()
+            head = ["agent", "measures", "class", "necessary", "substitutes", "could lie unseen"]
+            _table("", head, table_rows(report), console)
+        if args.output:
+            console.print(f"\nwritten to {args.output}")
+    return OK if report.get("observable", True) else NO
+
+
 # --- main --------------------------------------------------------------------------------------------------------
 
 
@@ -369,7 +412,18 @@ def _parser() -> argparse.ArgumentParser:
     fit_.add_argument("-o", "--output", help="model file to write (JSON); default: standard output")
     fit_.add_argument("--force", action="store_true", help="replace an existing model file")
     fit_.set_defaults(do=_cmd_fit)
-    for command in (run, check_, list_, verify_, fit_):
+
+    structure_ = commands.add_parser(
+        "structure", help="who is indispensable: classes, necessary sensors, substitutes; exit 1 if not observable"
+    )
+    structure_.add_argument("source", help="scenario file (TOML), or a CSV file with the matrix A")
+    structure_.add_argument(
+        "--measured", type=int, nargs="*", metavar="STATE", help="with a CSV file: the state of each sensor, from 0"
+    )
+    structure_.add_argument("-o", "--output", help="picture to write (.png, .svg, .pdf)")
+    structure_.add_argument("--force", action="store_true", help="replace an existing picture")
+    structure_.set_defaults(do=_cmd_structure)
+    for command in (run, check_, list_, verify_, fit_, structure_):
         command.add_argument("--json", action="store_true", help="print the result for machines")
     return parser
 

@@ -21,6 +21,7 @@ def test_hijacked_wind_is_as_the_readme_says(wind: Path) -> None:
     assert detector["false_alarms"] == 0
     assert rows["saturation with detector", False]["detected"] == {}
     assert rows["saturation", True]["mean_error"] < signal
+    assert rows["structural, isolating", True]["mean_error"] < signal
     assert rows["central Kalman filter", True]["mean_error"] > 4 * signal
     assert rows["consensus, unprotected", True]["mean_error"] > 4 * signal
     for row in rows.values():

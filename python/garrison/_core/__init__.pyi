@@ -8,6 +8,8 @@ import numpy
 import numpy.typing
 import typing
 from . import saturation
+from . import structure
+from . import structural
 
 __all__: list[str] = [
     "Agent",
@@ -24,6 +26,7 @@ __all__: list[str] = [
     "Network",
     "Saturation",
     "ScalarGain",
+    "Structural",
     "SubsetBound",
     "attack_infos",
     "central_kalman",
@@ -44,6 +47,8 @@ __all__: list[str] = [
     "saturation",
     "simulate",
     "split_outputs",
+    "structural",
+    "structure",
     "tau0",
     "varpi",
 ]
@@ -260,6 +265,46 @@ class Lfre(Filter):
         *,
         faulty: typing.SupportsInt | typing.SupportsIndex = 1,
         poles: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+    ) -> None: ...
+
+class Structural(Filter):
+    """
+    Single-time-scale estimator with exact residual tests.
+
+    Source: Doostmohammadian et al., IEEE TNSE 2022
+
+    design: how the gains are found; auto: riccati, else kalman, else h2
+    share: whose measurements an agent uses besides its own
+    self_weight: weight of an agent's own estimate, the rest spread evenly over its neighbours; left out: 1/(degree + 1). Small ones stabilise more [1], >= 0, <= 1
+    weights: N*N mixing weights row by row, instead of self_weight [1], >= 0
+    sharing: N*N numbers 0 or 1 row by row, instead of share [1], >= 0, <= 1
+    gain: N*n*n numbers, K_i row by row, agent by agent, instead of design [1]
+    false_alarm: probability per sample of an alarm without an attack [1], > 0, <= 1
+    test: what is tested: y - c'x after the update, or before it (innovation)
+    window: 1: a test per sample; more: chi-square over so many residuals, exact covariance [samples], >= 1, <= 1000
+    alarm_after: tests in a row above the threshold before the verdict [samples], >= 1, <= 1e+06
+    clear_after: tests in a row below it before the verdict is taken back [samples], >= 1, <= 1e+06
+    settle: samples without a test after the start or a loss; -1: until rho^k < 0.01 [samples], >= -1, <= 1e+06
+    isolate: leave the own measurement out while the alarm lasts
+    accuse_missing: a missing own measurement counts as an alarm
+    """
+    def __init__(
+        self,
+        *,
+        design: str = "auto",
+        share: str = "neighbours",
+        self_weight: typing.SupportsFloat | typing.SupportsIndex = ...,
+        weights: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        sharing: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        gain: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        false_alarm: typing.SupportsFloat | typing.SupportsIndex = 0.01,
+        test: str = "residual",
+        window: typing.SupportsInt | typing.SupportsIndex = 1,
+        alarm_after: typing.SupportsInt | typing.SupportsIndex = 1,
+        clear_after: typing.SupportsInt | typing.SupportsIndex = 5,
+        settle: typing.SupportsInt | typing.SupportsIndex = -1,
+        isolate: bool = False,
+        accuse_missing: bool = False,
     ) -> None: ...
 
 class Attack:

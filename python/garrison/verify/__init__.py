@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from garrison._core import IoError
-from garrison.verify import saturation
+from garrison.verify import saturation, structural
 from garrison.verify.bad import judge
 from garrison.verify.compare import FieldResult, compare
 
 #: name of the paper in a case file -> module that recomputes its cases
-FAMILIES = {"he_secure": saturation}
+FAMILIES = {"he_secure": saturation, "doost_structural": structural}
 
 
 @dataclass
@@ -37,6 +37,8 @@ def _family(case: dict[str, Any], path: Path) -> str:
     if isinstance(case.get("paper"), str):
         return str(case["paper"])
     inputs = case.get("inputs", {})
+    if isinstance(inputs, list) and inputs:
+        inputs = inputs[0]
     for name, module in FAMILIES.items():
         if isinstance(inputs, dict) and module.recognises(inputs):
             return name

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// Structural analysis: patterns, matchings, components, classes of agents, substitutes.
+#include "bindings.hpp"
+#include "garrison/analysis/modes.hpp"
+#include "garrison/analysis/structure/strong_subgraph.hpp"
+#include "garrison/analysis/structure/substitution.hpp"
+
+using namespace garrison;
+using namespace garrison::structure;
+
+namespace {
+
+using Edges = std::vector<std::pair<int, int>>;
+using Ints = py::array_t<int, py::array::c_style | py::array::forcecast>;
+
+std::vector<int> sorted(std::vector<int> v) {
+  std::sort(v.begin(), v.end());
+  return v;
+}
+
+py::array_t<int> numbers(std::vector<int> v) {
+  const auto size = static_cast<py::ssize_t>(v.size());
+  return owned(std::move(v), {size});
+}
+
+/// measured: per agent a state, None, or a list of states.
+Sensors sensors_from(const py::iterable& measured) {
+  Sensors all;
+  for (const auto& one : measured) {
+    if (one.is_none())
+      all.emplace_back();
+    else if (py::isinstance<py::sequence>(one) || py::isinstance<py::array>(one))
+      all.push_back(one.cast<std::vector<int>>());
+    else
+      all.push_back({one.cast<int>()});
+  }
+  return all;
+}
+
+std::vector<int> states_from(const py::iterable& measured) {
+  std::vector<int> all;
+  for (const auto& one : measured) all.push_back(one.is_none() ? -1 : one.cast<int>());
+  return all;
+}
+
+py::object state_or_none(int state) { return state < 0 ? py::none() : py::object(py::int_(state)); }
+
+AgentClass class_from(const std::string& name) {
+  for (const AgentClass c : {AgentClass::alpha, AgentClass::beta, AgentClass::gamma})
+    if (name == name_of(c)) return c;
+  refuse("types", name, "alpha, beta or gamma");
+}
+
+std::vector<std::string> names_of(const std::vector<AgentClass>& types) {
+  std::vector<std::string> all;
+  for (const AgentClass c : types) all.emplace_back(name_of(c));
+  return all;
+}
+
+std::vector<bool> bools(const std::vector<char>& flags) { return {flags.begin(), flags.end()}; }
+
+py::dict from_observability(const Observability& o) {
+  return py::dict(py::arg("observable") = o.holds(), py::arg("output_connected") = o.output_connected,
+                  py::arg("rank_condition") = o.rank_condition);
+}
+
+py::object from_picks(const Picks& p) {
+  if (!p.exists) return py::none();
+  py::list picks;
+  for (const Pick& one : p.picks)
+    picks.append(one.group < 0 ? py::object(py::make_tuple(one.agent, one.state))
+                               : py::object(py::make_tuple(one.agent, one.state, one.group)));
+  return py::dict(py::arg("cost") = p.cost, py::arg("picks") = picks);
+}
+
+void bind_pattern(py::module_& s) {
+  py::class_<Pattern>(s, "Pattern", "Zero pattern of a matrix: which entries are not zero. Immutable.")
+      .def(py::init(
+               [](int rows, int columns, const Edges& entries) { return Pattern(rows, columns, entries); }),
+           py::arg("rows"), py::arg("columns"), py::arg("entries"),
+           "entries: (column, row) pairs; of a system matrix, (j, i) is the link j -> i.")
+      .def_static("of", &Pattern::of, py::arg("matrix"), py::arg("tolerance") = 0.0,
+                  "Entries with |value| > tolerance of a dense matrix.")
+      .def_static(
+          "csc",
+          [](int rows, const Ints& indptr, const Ints& indices) {
+            return Pattern(rows, std::vector<int>(indptr.data(), indptr.data() + indptr.size()),
+                           std::vector<int>(indices.data(), indices.data() + indices.size()));
+          },
+          py::arg("rows"), py::arg("indptr"), py::arg("indices"),
+          "Compressed columns (scipy.sparse.csc_array's indptr and indices), without doubles.")
+      .def_property_readonly("rows", &Pattern::rows)
+      .def_property_readonly("columns", &Pattern::columns)
+      .def_property_readonly("entries", &Pattern::entries)
+      .def("transposed", &Pattern::transposed);
+  s.def(
+      "maximum_matching",
+      [](const Pattern& p) {
+        const auto m = [&] {
+          const py::gil_scoped_release no_gil;
+          return maximum_matching(p);
+        }();
+        return py::make_tuple(m.size, numbers(m.row_of), numbers(m.column_of));
+      },
+      py::arg("pattern"), "(size, row of each column, column of each row); -1 = unmatched.");
+  s.def(
+      "strong_components",
+      [](const Pattern& p) {
+        auto c = [&] {
+          const py::gil_scoped_release no_gil;
+          return strong_components(p);
+        }();
+        return py::make_tuple(c.count, numbers(std::move(c.of)));
+      },
+      py::arg("pattern"), "(count, component of each vertex) of the digraph with links column -> row.");
+  s.def(
+      "dulmage_mendelsohn",
+      [](const Pattern& p) {
+        auto d = [&] {
+          const py::gil_scoped_release no_gil;
+          return dulmage_mendelsohn(p);
+        }();
+        return py::dict(py::arg("structural_rank") = d.structural_rank(),
+                        py::arg("hor_rows") = numbers(std::move(d.hor_rows)),
+                        py::arg("hor_cols") = numbers(std::move(d.hor_cols)),
+                        py::arg("sq_rows") = numbers(std::move(d.sq_rows)),
+                        py::arg("sq_cols") = numbers(std::move(d.sq_cols)),
+                        py::arg("ver_rows") = numbers(std::move(d.ver_rows)),
+                        py::arg("ver_cols") = numbers(std::move(d.ver_cols)),
+                        py::arg("block_start") = numbers(std::move(d.block_start)));
+      },
+      py::arg("pattern"),
+      "Coarse parts, and the square part in fine blocks (block_start); see the C++ header.");
+}
+
+void bind_system(py::module_& s) {
+  py::class_<System>(
+      s, "System",
+      "Structure of a system matrix, worked out once. `measured`: per agent the state that it\n"
+      "measures, a list of states, or None. States from 0; a pattern entry (j, i) is j -> i.")
+      .def(py::init<Pattern>(), py::arg("pattern"))
+      .def_property_readonly("states", &System::states)
+      .def_property_readonly("structural_rank", [](const System& x) { return x.parts().structural_rank(); })
+      .def_property_readonly(
+          "parts",
+          [](const System& x) {
+            const auto& d = x.parts();
+            return py::dict(
+                py::arg("hor_rows") = sorted(d.hor_rows), py::arg("hor_cols") = sorted(d.hor_cols),
+                py::arg("ver_rows") = sorted(d.ver_rows), py::arg("ver_cols") = sorted(d.ver_cols),
+                py::arg("sq_rows") = sorted(d.sq_rows), py::arg("sq_cols") = sorted(d.sq_cols));
+          },
+          "Coarse Dulmage-Mendelsohn parts, sorted.")
+      .def_property_readonly("contraction_union", &System::contraction_union)
+      .def_property_readonly(
+          "contraction_components",
+          [](const System& x) { return contraction_components(x.pattern(), x.parts()); },
+          "Overlapping contractions joined; does not depend on the matching.")
+      .def_property_readonly("components", [](const System& x) { return x.components().lists(); })
+      .def_property_readonly("parent_components", &System::parent_components,
+                             "Components that no link leaves.")
+      .def(
+          "in_contraction",
+          [](const System& x, int state) {
+            if (state < 0 || state >= x.states())
+              refuse("state", std::to_string(state), "a state of the system");
+            return x.in_contraction(state);
+          },
+          py::arg("state"))
+      .def(
+          "in_parent",
+          [](const System& x, int state) {
+            if (state < 0 || state >= x.states())
+              refuse("state", std::to_string(state), "a state of the system");
+            return x.in_parent(state);
+          },
+          py::arg("state"))
+      .def(
+          "observability",
+          [](const System& x, const py::iterable& m) {
+            return from_observability(x.observability(sensors_from(m)));
+          },
+          py::arg("measured"), "Structural observability and its two conditions.")
+      .def(
+          "classes",
+          [](const System& x, const py::iterable& m) { return names_of(x.classes(sensors_from(m))); },
+          py::arg("measured"), "alpha, beta or gamma per agent.")
+      .def(
+          "necessary",
+          [](const System& x, const py::iterable& m) { return bools(x.necessary(sensors_from(m))); },
+          py::arg("measured"), "Structurally observable, but not without this one agent.")
+      .def(
+          "substitutes",
+          [](const System& x, const py::iterable& m) { return x.substitutes(sensors_from(m)); },
+          py::arg("measured"), "Per agent, every state that it could measure instead.")
+      .def(
+          "contraction_of_measured",
+          [](const System& x, const py::iterable& m) { return x.contraction_of_measured(sensors_from(m)); },
+          py::arg("measured"))
+      .def(
+          "class_candidates",
+          [](const System& x, const py::iterable& m, int agent, const std::string& type) {
+            const auto measured = states_from(m);
+            if (agent < 0 || agent >= static_cast<int>(measured.size()))
+              refuse("agent", std::to_string(agent), "0.." + std::to_string(measured.size() - 1));
+            return x.class_candidates(measured, static_cast<std::size_t>(agent), class_from(type));
+          },
+          py::arg("measured"), py::arg("agent"), py::arg("type"), "Other states of the agent's class.")
+      .def(
+          "mitigate",
+          [](const System& x, const py::iterable& m, const std::vector<int>& alarms,
+             const std::optional<std::vector<std::string>>& types, const std::string& choice,
+             const std::optional<Matrix>& cost) {
+            if (choice != "class" && choice != "exact") refuse("choice", choice, "class or exact");
+            std::vector<AgentClass> kinds = x.classes(sensors_from(m));
+            if (types) {
+              kinds.clear();
+              for (const auto& t : *types) kinds.push_back(class_from(t));
+            }
+            const auto done =
+                mitigate(x, states_from(m), kinds, alarms,
+                         choice == "class" ? Choice::by_class : Choice::exact, cost.value_or(Matrix()));
+            py::list now;
+            for (const int state : done.measured) now.append(state_or_none(state));
+            py::list log;
+            for (const auto& l : done.log)
+              log.append(py::make_tuple(l.agent, std::string(name_of(l.type)), state_or_none(l.before),
+                                        state_or_none(l.after)));
+            return py::make_tuple(now, log);
+          },
+          py::arg("measured"), py::arg("alarms"), py::arg("types") = py::none(), py::arg("choice") = "exact",
+          py::arg("cost") = py::none(),
+          "Algorithm 1: (new measured states, log of (agent, type, before, after)); see the C++ header.");
+}
+
+void bind_networks(py::module_& s) {
+  s.def(
+      "distributed_observability",
+      [](const Pattern& A, const py::iterable& m, const Matrix& W, const Matrix& U) {
+        return from_observability(distributed_observability(A, sensors_from(m), W, U));
+      },
+      py::arg("A"), py::arg("measured"), py::arg("W"), py::arg("U"),
+      "Structural observability of the pattern pair (W kron A, D_C).");
+  s.def(
+      "cheapest_per_class",
+      [](const MatrixRef& cost, const std::vector<std::vector<int>>& classes) {
+        return from_picks(cheapest_per_class(cost, classes));
+      },
+      py::arg("cost"), py::arg("classes"),
+      "Remark 9: {cost, picks (agent, state, class)} of one agent per class; None when there is none.");
+  s.def(
+      "cheapest_rank_sensors",
+      [](const Pattern& A, const MatrixRef& cost) { return from_picks(cheapest_rank_sensors(A, cost)); },
+      py::arg("A"), py::arg("cost"),
+      "{cost, picks (agent, state)} of the cheapest sensors that restore the rank; None when there are "
+      "none.");
+  s.def(
+      "cheapest_strong_subgraph",
+      [](int agents, const Edges& edges, const std::vector<double>& weights, long long max_nodes) {
+        const auto found = cheapest_strong_subgraph(agents, edges, weights, max_nodes);
+        return py::dict(py::arg("exists") = found.exists, py::arg("edges") = found.edges,
+                        py::arg("cost") = found.cost, py::arg("lower_bound") = found.lower_bound,
+                        py::arg("exact") = found.exact);
+      },
+      py::arg("agents"), py::arg("edges"), py::arg("weights"), py::arg("max_nodes") = 2'000'000,
+      "Cheapest strongly connected network from (from, to) edges; see the C++ header.");
+  s.def("unseen_modes", &unseen_modes, py::arg("A"), py::arg("C"), py::arg("least") = 0.0,
+        py::arg("tolerance") = 1e-9,
+        "Eigenvalues of modulus >= least that the rows of C do not show (PBH test).");
+  s.def("undetectable_agents", &undetectable_agents, py::arg("model"), py::arg("tolerance") = 1e-9,
+        "Agents whose sensor alone can lie along an unstable mode that nobody else sees.");
+}
+
+}  // namespace
+
+void bind_structure(py::module_& m) {
+  auto s =
+      m.def_submodule("structure", "Structural analysis: what follows from the zeros of a system alone.");
+  bind_pattern(s);
+  bind_system(s);
+  bind_networks(s);
+}

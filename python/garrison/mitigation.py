@@ -1,0 +1,110 @@
+"""Detection and mitigation in one run: Algorithm 1 of the structural paper goes on through the switch of sensors."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from garrison import _core
+from garrison._core import structure
+from garrison.run import Run, replay
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Switch:
+    """One sensor given up: at `time` (samples) `agent`'s alarm made it measure `after` instead (None: nothing)."""
+
+    time: int
+    agent: int
+    kind: str
+    before: int | None
+    after: int | None
+
+
+@dataclass
+class Mitigated:
+    """What came out: estimates (time, agent, n) and errors (time, agent) over all segments, time 0 first.
+
+    segments: (first sample, measured states, run) between switches; each is designed anew.
+    """
+
+    estimate: Array
+    error: Array
+    switches: list[Switch] = field(default_factory=list)
+    segments: list[tuple[int, list[int | None], Run]] = field(default_factory=list)
+
+
+def _model(A: Array, E: Array, R: Array, measured: Sequence[int | None]) -> _core.Model:
+    n = len(A)
+    C = [np.zeros((0, n)) if s is None else np.eye(n)[[s]] for s in measured]
+    covariances = [np.zeros((0, 0)) if s is None else np.array([[R[i]]]) for i, s in enumerate(measured)]
+    return _core.Model(A, C, process_covariance=E, measurement_covariance=covariances)
+
+
+def replay_mitigated(
+    network: _core.Network,
+    *,
+    A: ArrayLike,
+    process_covariance: ArrayLike,
+    measurement_variance: ArrayLike,
+    measured: Sequence[int | None],
+    truth: ArrayLike,
+    noise: ArrayLike,
+    attack: ArrayLike,
+    start: ArrayLike | None = None,
+    choice: str = "exact",
+    cost: ArrayLike | None = None,
+    **params: Any,
+) -> Mitigated:
+    """Run the structural filter; whenever an agent raises an alarm, replace its sensor, redesign and go on.
+
+    measured: state that each agent measures (None: a relay). truth: (samples + 1, n). noise and attack: (samples, N);
+    an attack sits on the first sensor of its agent and is left behind with it. choice: "exact" (any substitute that
+    keeps the system observable, the cheapest by `cost`, agents x states) or "class" (Algorithm 1 as printed). params:
+    of the Structural filter, without weights, sharing and gain, which are designed for every segment.
+    Raises DesignInfeasible when no stabilising gain is left, InvalidInput when something does not fit.
+    """
+    x, v, tau = (np.asarray(a, dtype=float) for a in (truth, noise, attack))
+    A_, E = np.asarray(A, dtype=float), np.asarray(process_covariance, dtype=float)
+    R = np.broadcast_to(np.asarray(measurement_variance, dtype=float), (len(measured),))
+    if x.ndim != 2 or v.shape != (len(x) - 1, len(measured)) or tau.shape != v.shape:
+        raise _core.InvalidInput(
+            f"truth, noise, attack: got shapes {x.shape}, {v.shape}, {tau.shape}, "
+            f"expected (samples + 1, n) and twice (samples, {len(measured)})"
+        )
+    system = structure.System(structure.Pattern.of(A_))
+    filter = _core.Structural(**params)
+    now: list[int | None] = list(measured)
+    kinds = system.classes([[] if s is None else [s] for s in now])
+    begin = np.zeros((len(now), len(A_))) if start is None else np.asarray(start, dtype=float)
+    begin = np.broadcast_to(begin, (len(now), len(A_)))
+    out = Mitigated(np.empty((len(x), *begin.shape)), np.empty((len(x), len(now))))
+    out.estimate[0] = begin
+    out.error[0] = np.linalg.norm(x[0] - begin, axis=1)
+    original = [True] * len(now)
+    t = 0
+    while t < len(x) - 1:
+        sensing = [i for i, s in enumerate(now) if s is not None]
+        columns = [x[t + 1 :, now[i]] + v[t:, i] + tau[t:, i] * original[i] for i in sensing]
+        y = np.column_stack(columns or [np.empty((len(x) - 1 - t, 0))])
+        run = replay(filter, _model(A_, E, R, now), network, measurements=y, truth=x[t:], start=out.estimate[t])
+        assert run.estimate is not None and run.error is not None
+        alarmed = next(((k, sets) for _, k, sets in run.accusations if any(sets)), None)
+        until = len(x) - 1 - t if alarmed is None else alarmed[0]
+        out.estimate[t + 1 : t + until + 1] = run.estimate[0, 1 : until + 1]
+        out.error[t + 1 : t + until + 1] = run.error[0, 1 : until + 1]
+        out.segments.append((t, list(now), run))
+        t += until
+        if alarmed is None:
+            break
+        for agent in sorted({a for s in alarmed[1] for a in s}):
+            new, log = system.mitigate(now, [agent], types=kinds, choice=choice, cost=cost)
+            for who, kind, before, after in log:
+                out.switches.append(Switch(t, who, kind, before, after))
+                original[who] = False
+            now = new
+    return out

@@ -1,0 +1,129 @@
+"""The structural family from Python: analysis, command line, mitigation through the switch."""
+
+import json
+from pathlib import Path
+
+import garrison as gr
+import numpy as np
+import pytest
+from garrison import structural as theory
+from garrison import structure
+from garrison.cli import main
+from scipy.sparse import coo_array, csc_array
+from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
+EDGES = [(0, 1), (1, 2), (2, 0), (1, 0), (3, 6), (3, 2), (4, 5), (5, 5), (5, 3), (6, 8), (6, 9), (6, 1), (7, 3), (8, 7)]
+EDGES += [(8, 4), (9, 3)]
+
+
+def paper_matrix() -> np.ndarray:
+    A = np.zeros((10, 10))
+    for k, (j, i) in enumerate(EDGES):
+        A[i, j] = 0.5 + 0.03 * k
+    return A
+
+
+def test_ranks_and_components_are_scipys_on_1000_patterns() -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(1000):
+        rows, columns = rng.integers(1, 60, 2)
+        count = rng.integers(0, 3 * max(rows, columns))
+        i, j = rng.integers(0, rows, count), rng.integers(0, columns, count)
+        matrix = csc_array(coo_array((np.ones(count), (i, j)), shape=(rows, columns)))
+        matrix.sum_duplicates()
+        pattern = structure.Pattern.csc(rows, matrix.indptr, matrix.indices)
+        matched = maximum_bipartite_matching(matrix.tocsr())
+        assert structure.maximum_matching(pattern)[0] == (matched >= 0).sum()
+        n = min(rows, columns)
+        square = csc_array(matrix[:n, :n])
+        count = connected_components(square.T, connection="strong")[0]
+        assert structure.strong_components(structure.Pattern.csc(n, square.indptr, square.indices))[0] == count
+
+
+def test_structure_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "A.csv"
+    np.savetxt(file, paper_matrix(), delimiter=",")
+    picture = tmp_path / "A.png"
+    arguments = ["structure", str(file), "--measured", "0", "5", "6", "9", "-o", str(picture)]
+    assert main([*arguments, "--json"]) == 0
+    out = json.loads(capsys.readouterr().out)
+    assert [a["class"] for a in out["agents"]] == ["beta", "alpha", "gamma", "alpha"]
+    assert [a["necessary"] for a in out["agents"]] == [True, True, False, True]
+    assert out["agents"][1]["substitutes"] == [4, 7]
+    assert picture.stat().st_size > 10_000
+    assert main(arguments) == 2  # the picture exists
+    assert "exists already" in capsys.readouterr().err
+    assert main(["structure", str(file), "--measured", "0"]) == 1
+    assert main(["structure", str(file)]) == 0
+    assert "structural rank" in capsys.readouterr().out
+
+
+def test_structure_command_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "A.csv"
+    for text, words in (("1,2\n3", "expected a square matrix"), ("1,x\n2,3", "expected numbers"), ("", "square")):
+        file.write_text(text)
+        assert main(["structure", str(file)]) == 2
+        assert words in capsys.readouterr().err
+    file.write_text("1,0\n0,1")
+    assert main(["structure", str(file), "--measured", "5"]) == 2
+    assert "a state in 0..1" in capsys.readouterr().err
+    assert main(["structure", str(tmp_path / "none.csv")]) == 2
+
+
+def test_structure_of_a_scenario(wind: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["structure", str(wind / "hijacked.toml"), "--json"]) == 0
+    out = json.loads(capsys.readouterr().out)
+    assert len(out["agents"]) == 12
+    assert not any(a["necessary"] for a in out["agents"])  # twelve stations see the one state
+
+
+def test_mitigation_goes_on_through_the_switch() -> None:
+    A = paper_matrix()
+    A *= 0.95 / np.abs(np.linalg.eigvals(A)).max()
+    rng = np.random.default_rng(2)
+    steps = 400
+    x = np.zeros((steps + 1, 10))
+    for k in range(steps):
+        x[k + 1] = A @ x[k] + 0.1 * rng.normal(size=10)
+    noise = 0.1 * rng.normal(size=(steps, 4))
+    attack = np.zeros((steps, 4))
+    attack[100:, 1] = 5.0
+    given = {
+        "A": A,
+        "process_covariance": 0.01 * np.eye(10),
+        "measurement_variance": 0.01,
+        "measured": [0, 5, 6, 9],
+        "truth": x,
+        "noise": noise,
+        "attack": attack,
+        "false_alarm": 1e-7,
+    }
+    done = gr.replay_mitigated(gr.Network.complete(4), **given)
+    assert [(s.agent, s.before) for s in done.switches] == [(1, 5)]
+    assert done.switches[0].after in (4, 7)
+    assert 100 < done.switches[0].time < 110
+    assert [first for first, _, _ in done.segments] == [0, done.switches[0].time]
+    quiet = done.error[50:100].mean()
+    assert done.error[200:].mean() < 2 * quiet  # as before the attack
+    cheap = np.ones((4, 10))
+    cheap[1, 4] = 9.0
+    assert gr.replay_mitigated(gr.Network.complete(4), **given, cost=cheap).switches[0].after == 7
+    with pytest.raises(gr.InvalidInput, match="expected"):
+        gr.replay_mitigated(gr.Network.complete(4), **(given | {"noise": noise[:-1]}))
+
+
+def test_an_attack_along_a_mode_that_one_agent_sees_alone() -> None:
+    A = np.array([[1.1, 0.0], [0.0, 0.5]])
+    model = gr.Model(A, [[[1.0, 0.0]], [[0.0, 1.0]]])
+    assert structure.undetectable_agents(model) == [0]
+    assert structure.undetectable_agents(gr.Model(A, [[[1.0, 0.0]], [[1.0, 1.0]]])) == []
+    assert structure.unseen_modes(A, np.array([[0.0, 1.0]]), 1.0) == [1.1 + 0j]
+
+
+def test_exposure_says_what_a_constant_attack_can_do() -> None:
+    one = np.array([[1.0]])
+    setting = theory.Setting(A=0.9 * one, C=one, W=one, U=one, E=one, R=one)
+    K = theory.design_gains(setting)["K"]
+    found = theory.exposure(setting, K, false_alarm=0.01, detection=0.9)[0]
+    assert found["seen_by"] == 0
+    assert found["largest_harm"] == pytest.approx(found["harm_per_unit"] * found["smallest_seen"])
