@@ -6,5 +6,7 @@ PYBIND11_MODULE(garrison_bench, m) {
   bind_limits(m);
   bind_consensus(m);
   bind_lambda0(m);
+  bind_rdkf_peers(m);
   bind_structure(m);
+  bind_partial_sharing(m);
 }

@@ -18,6 +18,9 @@ import garrison_bench as peers
 import lambda0
 import montecarlo
 import numpy as np
+import partial_sharing
+import platoon
+import rdkf
 import scipy
 import structure
 from rich.console import Console
@@ -25,7 +28,7 @@ from rich.table import Table
 
 HERE = Path(__file__).parent
 #: modules with tasks(repeats)
-TOPICS = (consensus, montecarlo, lambda0, structure)
+TOPICS = (consensus, montecarlo, lambda0, rdkf, partial_sharing, structure, platoon)
 
 
 def limits() -> dict[str, float]:

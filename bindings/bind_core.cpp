@@ -41,14 +41,30 @@ Vector bound_per_agent(const py::object& given, std::size_t agents) {
   return Eigen::Map<const Vector>(array.data(), array.size());
 }
 
+/// One n x n matrix for all, or one per agent.
+void set_process_covariance(Noise& noise, const py::object& given) {
+  const auto all = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  if (!all || all.ndim() < 2 || all.ndim() > 3) {
+    PyErr_Clear();
+    refuse("process_covariance", "something else", "n x n numbers, or one n x n matrix per agent");
+  }
+  using Rows = Eigen::Matrix<double, -1, -1, Eigen::RowMajor>;
+  const auto rows = all.shape(all.ndim() - 2);
+  const auto columns = all.shape(all.ndim() - 1);
+  if (all.ndim() == 2) noise.process_covariance = Eigen::Map<const Rows>(all.data(), rows, columns);
+  for (py::ssize_t i = 0; all.ndim() == 3 && i < all.shape(0); ++i)
+    noise.agent_process_covariance.emplace_back(
+        Eigen::Map<const Rows>(all.data() + i * rows * columns, rows, columns));
+}
+
 Model make_model(const Matrix& A, const py::object& C, double process_bound,
-                 const py::object& measurement_bound, const std::optional<Matrix>& process_covariance,
+                 const py::object& measurement_bound, const py::object& process_covariance,
                  const std::optional<py::object>& measurement_covariance) {
   std::vector<Matrix> rows = rows_per_agent(C, A.cols());
   Noise noise;
   noise.process_bound = process_bound;
   noise.measurement_bound = bound_per_agent(measurement_bound, rows.size());
-  if (process_covariance) noise.process_covariance = *process_covariance;
+  if (!process_covariance.is_none()) set_process_covariance(noise, process_covariance);
   if (measurement_covariance) {
     for (const auto& one : *measurement_covariance) {
       const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(one);
@@ -159,7 +175,9 @@ void bind_core(py::module_& m) {
       "The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.\n\n"
       "A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.\n"
       "process_bound: ||w|| <= it, >= 0, nan = not known. measurement_bound: |v_i| <= it, a number or\n"
-      "one per agent. Covariances: (n, n), and one (m_i, m_i) array per agent.\n"
+      "one per agent. Covariances: (n, n), or (N, n, n) where each agent takes another one for w (no noise "
+      "is\n"
+      "simulated from those), and one (m_i, m_i) array per agent.\n"
       "Raises InvalidInput when shapes do not fit or a number is not finite.")
       .def(py::init(&make_model), py::arg("A"), py::arg("C"), py::kw_only(), py::arg("process_bound") = kNaN,
            py::arg("measurement_bound") = py::none(), py::arg("process_covariance") = py::none(),
@@ -219,6 +237,8 @@ void bind_core(py::module_& m) {
       .def("max_degree_weights", &Network::max_degree_weights, "I - Laplacian / (1 + largest degree)")
       .def_static("ring", &Network::ring, py::arg("agents"))
       .def_static("path", &Network::path, py::arg("agents"))
+      .def_static("band", &Network::band, py::arg("agents"), py::arg("range"),
+                  "i and j hear each other when |i - j| <= range.")
       .def_static("star", &Network::star, py::arg("agents"))
       .def_static("complete", &Network::complete, py::arg("agents"))
       .def_static("grid", &Network::grid, py::arg("rows"), py::arg("columns"))

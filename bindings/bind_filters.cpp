@@ -4,6 +4,10 @@
 
 #include "bindings.hpp"
 #include "garrison/filters/lfre.hpp"
+#include "garrison/filters/partial_sharing/filter.hpp"
+#include "garrison/filters/platoon/baseline.hpp"
+#include "garrison/filters/platoon/filter.hpp"
+#include "garrison/filters/rdkf/filter.hpp"
 #include "garrison/filters/saturation/filter.hpp"
 #include "garrison/filters/scalar_gain.hpp"
 #include "garrison/filters/structural/filter.hpp"
@@ -32,21 +36,25 @@ template <class F>
 struct HandleOf : FilterHandle {};
 
 template <class F, class... T, std::size_t... I>
-void bind_filter(py::module_& m, const char* name, const std::tuple<Field<typename F::Params, T>...>& fields,
+void bind_filter(py::module_& m, const char* name,
+                 [[maybe_unused]] const std::tuple<Field<typename F::Params, T>...>& fields,
                  std::index_sequence<I...>) {
   const static std::string doc = class_doc<F>();
-  py::class_<HandleOf<F>, FilterHandle>(m, name, doc.c_str())
-      .def(py::init([](T... given) {
-             typename F::Params p;
-             const auto all = F::Params::fields();
-             ((p.*(std::get<I>(all).member) = std::move(given)), ...);
-             HandleOf<F> handle;
-             handle.filter = make_filter(std::string(F::name), values(p));
-             return handle;
-           }),
-           py::kw_only(),
-           (py::arg(std::get<I>(fields).info.name.c_str()) =
-                typename F::Params{}.*(std::get<I>(fields).member))...);
+  py::class_<HandleOf<F>, FilterHandle> bound(m, name, doc.c_str());
+  const auto make = [](T... given) {
+    typename F::Params p;
+    [[maybe_unused]] const auto all = F::Params::fields();
+    ((p.*(std::get<I>(all).member) = std::move(given)), ...);
+    HandleOf<F> handle;
+    handle.filter = make_filter(std::string(F::name), values(p));
+    return handle;
+  };
+  if constexpr (sizeof...(T) == 0)
+    bound.def(py::init(make));
+  else
+    bound.def(py::init(make), py::kw_only(),
+              (py::arg(std::get<I>(fields).info.name.c_str()) =
+                   typename F::Params{}.*(std::get<I>(fields).member))...);
 }
 
 template <class F>
@@ -65,13 +73,21 @@ void bind_filters(py::module_& m) {
       .def_property_readonly(
           "signal_names", [](const FilterHandle& f) { return f.filter->signal_names(); },
           "Names of the signals that a run can keep.")
+      .def_property_readonly(
+          "detail_names", [](const FilterHandle& f) { return f.filter->detail_names(); },
+          "Names of the lists (sets, gains) that a run can keep.")
       .def("__repr__", [](const FilterHandle& f) {
         return f.filter->name() + py::repr(from_params(f.filter->params())).cast<std::string>();
       });
   bind_family<Saturation>(m, "Saturation");
   bind_family<ScalarGain>(m, "ScalarGain");
   bind_family<Lfre>(m, "Lfre");
+  bind_family<Rdkf>(m, "Rdkf");
+  bind_family<Dkf>(m, "Dkf");
   bind_family<Structural>(m, "Structural");
+  bind_family<PartialSharing>(m, "PartialSharing");
+  bind_family<Platoon>(m, "Platoon");
+  bind_family<PlatoonBaseline>(m, "PlatoonBaseline");
 
   m.def(
       "lfre_parents",

@@ -20,8 +20,11 @@ void bind_attacks(py::module_& m);
 void bind_runtime(py::module_& m);
 void bind_analysis(py::module_& m);
 void bind_fit(py::module_& m);
+void bind_rdkf(py::module_& m);
 void bind_structure(py::module_& m);
 void bind_structural(py::module_& m);
+void bind_partial_sharing(py::module_& m);
+void bind_platoon(py::module_& m);
 
 /// A filter as Python holds it; every family has a class of its own derived from this one.
 struct FilterHandle {

@@ -11,6 +11,9 @@ PYBIND11_MODULE(_core, m) {
   bind_runtime(m);
   bind_analysis(m);
   bind_fit(m);
+  bind_rdkf(m);
   bind_structure(m);
   bind_structural(m);
+  bind_partial_sharing(m);
+  bind_platoon(m);
 }

@@ -9,10 +9,17 @@ namespace garrison {
 FamilyInfo saturation_family();
 FamilyInfo scalar_gain_family();
 FamilyInfo lfre_family();
+FamilyInfo rdkf_family();
+FamilyInfo dkf_family();
+FamilyInfo partial_sharing_family();
 FamilyInfo structural_family();
+FamilyInfo platoon_family();
+FamilyInfo platoon_baseline_family();
 
 std::span<const FamilyInfo> families() {
-  static const std::array all{saturation_family(), scalar_gain_family(), lfre_family(), structural_family()};
+  static const std::array all{saturation_family(), scalar_gain_family(), lfre_family(),
+                              rdkf_family(),       dkf_family(),         partial_sharing_family(),
+                              structural_family(), platoon_family(),     platoon_baseline_family()};
   return all;
 }
 

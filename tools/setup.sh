@@ -32,7 +32,8 @@ need pkg-config have pkg-config
 need libeigen3-dev installed libeigen3-dev
 need doctest-dev installed doctest-dev
 need nlohmann-json3-dev installed nlohmann-json3-dev
-if [[ " $* " == *" bench "* ]]; then need libsuitesparse-dev installed libsuitesparse-dev; fi
+need libsuitesparse-dev installed libsuitesparse-dev
+if [[ " $* " == *" bench "* ]]; then need coinor-libipopt-dev installed coinor-libipopt-dev; fi
 need python3 have "$python"
 need python3-venv "$python" -c 'import venv, ensurepip'
 need python3-dev python_has_headers

@@ -5,7 +5,9 @@ name=$1
 shift
 cd "$(dirname "$0")/.."
 mkdir -p build/log
-# The Python module, the tests and the benchmarks compile the same library: with ccache only once.
+# The Python module, the tests and the benchmarks compile the same library: with ccache only once, if all of them
+# call the compiler by the same name.
+export CXX=${CXX:-g++}
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-$(command -v ccache)}
 log=build/log/${name//[^[:alnum:]]/-}.log
 printf '== %s ... ' "$name"

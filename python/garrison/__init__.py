@@ -21,6 +21,8 @@ from garrison._core import (
     lambda0,
     observable,
     one_step_sparse_observable,
+    partial_sharing,
+    platoon,
     s_sparse_observable,
     saturation,
     split_outputs,
@@ -30,6 +32,7 @@ from garrison._core import (
 from garrison.checks import Check, check
 from garrison.fitting import Fit, fit
 from garrison.mitigation import Mitigated, replay_mitigated
+from garrison.resilience import Resilience, resilience_per_byte
 from garrison.run import Run, central_kalman, replay, simulate
 
 __all__ = [
@@ -46,6 +49,7 @@ __all__ = [
     "Mitigated",
     "Model",
     "Network",
+    "Resilience",
     "Run",
     "SubsetBound",
     "__version__",
@@ -57,8 +61,11 @@ __all__ = [
     "lambda0",
     "observable",
     "one_step_sparse_observable",
+    "partial_sharing",
+    "platoon",
     "replay",
     "replay_mitigated",
+    "resilience_per_byte",
     "s_sparse_observable",
     "saturation",
     "simulate",

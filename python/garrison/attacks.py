@@ -37,6 +37,29 @@ def make(
     return _core.make_attack(name, phases, stop, probability, params)
 
 
+def worst_covariance(
+    filter: _core.Filter,
+    model: _core.Model,
+    network: _core.Network,
+    agents: Iterable[int],
+    *,
+    energy: float,
+    kind: str = "steady",
+    start: int = 1,
+    stop: int | None = None,
+) -> _core.partial_sharing.WorstAttack:
+    """The coordinated Gaussian attack of `agents` that hurts a PartialSharing filter most, trace(covariance) <= energy.
+
+    kind: "steady" maximises the network's MSE over a cycle of the periodic steady state; "one_step" the next step
+    alone, (37) of the paper. Attacks from sample `start` on, until `stop` (excluded). The result also has covariance,
+    form, direction and gain. Raises InvalidInput for another filter, a bad agent or energy, or an unstable filter.
+    """
+    if filter.name != "partial_sharing":
+        raise _core.InvalidInput(f"filter: got {filter.name}, expected partial_sharing; (37) is about its gains")
+    analysis = _core.partial_sharing.Analysis(filter, model, network)
+    return _core.partial_sharing.worst_covariance(analysis, list(agents), energy, kind, start, stop)
+
+
 def _camel(name: str) -> str:
     return "".join(part.capitalize() for part in name.split("_"))
 
@@ -61,4 +84,4 @@ def __getattr__(name: str) -> Callable[..., Attack]:
 
 
 def __dir__() -> list[str]:
-    return ["make", *_INFOS]
+    return ["make", "worst_covariance", *_INFOS]

@@ -39,7 +39,11 @@ class Row:
             accused = [self.run.first_accused(k) for k in range(len(self.run.bound))]  # type: ignore[arg-type]
             out["detected"] = {scenario.names[a]: int(t) for a, t in sorted(accused[0].items(), key=lambda x: x[1])}
             out["false_alarms"] = sum(a in honest or not self.attacked for found in accused for a in found)
+        if self.run is not None and self.run.verdict is not None:
+            share = self.run.limited(start=start)
+            out["limited"] = {scenario.names[a]: float(v) for a, v in enumerate(share) if v > 0}
         if self.run is not None:
+            out["warnings"] = self.run.warnings
             out["counters"] = {k: v for k, v in self.run.counters.items() if v and k != "sent"}
         return out
 
@@ -85,6 +89,8 @@ def _run(scenario: Scenario, filter: Any, attacked: bool, progress: Callable[[in
     options |= {"attack": scenario.attacks if attacked else [], "progress": progress}
     options["link"] = scenario.link
     model, net = scenario.model, scenario.network
+    if filter.detail_names:  # sets over time, for the pictures
+        options["keep"] = ("estimate", "report", "measurements", "signals", "details")
     if scenario.measurements is not None:
         return replay(filter, model, net, measurements=scenario.measurements, truth=scenario.truth, **options)
     options |= {k: scenario.run[k] for k in ("x0", "start_error") if k in scenario.run}

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from garrison.job import Row
+    from garrison.resilience import Resilience
     from garrison.run import Run
     from garrison.scenario import Scenario
 
@@ -36,6 +37,10 @@ def _axes(figure: Any, *place: int) -> Any:
     ax.grid(True, color="#dddddd", linewidth=0.6)
     ax.set_axisbelow(True)
     return ax
+
+
+#: axes as all figures of the package have them
+string_axes = _axes
 
 
 def _times(scenario: Scenario, samples: NDArray[np.int64]) -> Any:
@@ -229,4 +234,24 @@ def run_figure(run: Run, trial: int = 0) -> Figure:
         ax.set_xlabel("sample")
         ax.set_ylabel("|innovation| per agent")
         ax.legend(frameon=False, fontsize=9)
+    return figure
+
+
+def resilience_figure(found: list[Resilience], title: str = "resilience per byte") -> Figure:
+    """Bytes per sample against errors, with and without the worst attack (see garrison.resilience_per_byte)."""
+    figure = Figure(figsize=(7, 4), layout="constrained")
+    ax = _axes(figure, 1, 1, 1)
+    stable = [r for r in found if np.isfinite(r.mse)]
+    bytes_per_step = [r.bytes_per_step for r in stable]
+    ax.plot(bytes_per_step, [r.mse for r in stable], color="#0072B2", marker="o", label="no attack")
+    ax.plot(
+        bytes_per_step, [r.mse_attacked for r in stable], color="#D55E00", marker="X", linestyle="--", label="attacked"
+    )
+    for r in stable:
+        ax.annotate(
+            f"l = {r.shared}", (r.bytes_per_step, r.mse_attacked), textcoords="offset points", xytext=(0, 6), fontsize=8
+        )
+    ax.set(xlabel="bytes per sample, all messages", ylabel="mean squared error", title=title)
+    ax.margins(y=0.12)
+    ax.legend(frameon=False, fontsize=9)
     return figure

@@ -1,7 +1,9 @@
 """The report of a run: one self-contained HTML page (extra: plot)."""
 
+import base64
 import html
 import io
+import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -10,6 +12,7 @@ from garrison import _core
 from garrison.checks import check, verdict
 from garrison.job import Row, attack_facts, signal_size
 from garrison.plots import error_figure, innovation_figure, map_figure
+from garrison.run import Run
 from garrison.scenario import Scenario
 
 _STYLE = """
@@ -141,6 +144,9 @@ _TABLE_NOTE = (
     "a certified error bound (an agent that knows all attackers no longer tests, and reports none). Inside it: how "
     "often the error was below. Proved attacked: when the network first knew.</p>"
 )
+_STRING_NOTE = (
+    "First trial. The bounds and the least gaps are certified at run time: they hold whatever the attackers send."
+)
 _MAP_NOTE = (
     "Lines join stations that exchange estimates. The marker says what the network believes, the ring who was hijacked."
 )
@@ -150,8 +156,26 @@ _ERROR_NOTE = (
 )
 
 
+def _limited_table(scenario: Scenario, main: Row) -> str:
+    """Who was being pulled: how often each sensor's measurement was limited."""
+    limited = main.summary(scenario).get("limited", {})
+    if not limited:
+        return ""
+    cells = [[name, f"{share:.1%}"] for name, share in sorted(limited.items(), key=lambda x: -x[1])]
+    head = ["sensor", "samples at which its measurement was limited"]
+    return "<h2>Who is being held back</h2>" + _html_table(head, cells)
+
+
 def _figure(figure: Any, note: str = "") -> str:
     return f"<figure>{_svg(figure)}<figcaption>{note}</figcaption></figure>"
+
+
+def _animation(run: Run) -> str:
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "string.gif"
+        run.animate(file)
+        data = base64.b64encode(file.read_bytes()).decode()
+    return f'<figure><img alt="the string over time" src="data:image/gif;base64,{data}"></figure>'
 
 
 def write_report(path: Path, scenario: Scenario, rows: list[Row]) -> None:
@@ -161,13 +185,19 @@ def write_report(path: Path, scenario: Scenario, rows: list[Row]) -> None:
     head, cells = table_rows(scenario, rows)
     sections = [f"<h1>{title}</h1>", f'<p class="lead">{html.escape(_lead(scenario, rows))}</p>']
     sections += ["<h2>Who did how well</h2>", _html_table(head, cells, 2), _TABLE_NOTE]
-    if main.run is not None:
+    for row in rows:
+        for warning in row.run.warnings if row.run is not None else []:
+            sections.append(f'<p class="no">{html.escape(row.label)}: {html.escape(warning)}</p>')
+    sections.append(_limited_table(scenario, main))
+    if main.run is not None and main.run.truth is not None and main.run.truth.ndim == 4:
+        sections += ["<h2>The string</h2>", _figure(main.run.plot(), _STRING_NOTE), _animation(main.run)]
+    elif main.run is not None:
         sections += ["<h2>The network at the end</h2>", _figure(map_figure(scenario, main.run), _MAP_NOTE)]
     if any(row.error is not None for row in rows):
         figure = error_figure(scenario, rows, signal_size(scenario))
         sections += ["<h2>Errors over time</h2>", _figure(figure, _ERROR_NOTE)]
     if main.run is not None:
-        sections += ["<h2>Innovations against thresholds</h2>", _figure(innovation_figure(scenario, main.run))]
+        sections += ["<h2>Statistics against thresholds</h2>", _figure(innovation_figure(scenario, main.run))]
         sections += ["<h2>What theory says before the run</h2>", _check_table(scenario, main.run.filter)]
     sections += ["<h2>Model and reference</h2>", f"<p>{html.escape(_model_text(scenario))}</p>"]
     sections.append(f"<footer>garrison {_core.__version__}, scenario {html.escape(scenario.path.name)}</footer>")

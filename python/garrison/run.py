@@ -18,8 +18,9 @@ VERDICTS = ("cleared", "suspected", "attacked", "silent")
 class Run:
     """Arrays of a finished run, indexed [trial, time, agent, ...]; time 0 is the start, nan = does not exist.
 
-    truth (trial, time, n); estimate (trial, time, agent, n); error, bound, statistic, threshold (trial, time,
-    agent); verdict (trial, time, agent): index into garrison.run.VERDICTS; measurements (trial, time 1.., output),
+    truth (trial, time, n), or (trial, time, agent, n) of agents with states of their own; estimate (trial, time, agent,
+    n); error, bound, statistic, threshold (trial, time, agent); verdict (trial, time, agent): index into
+    garrison.run.VERDICTS; measurements (trial, time 1.., output; from time 0 in families with a sample at the start),
     as the filter received them; signals: name -> (trial, time, agent). An array that was not kept, or that cannot
     exist (errors without truth), is None.
     """
@@ -42,8 +43,21 @@ class Run:
         )
         #: (trial, time, sets): what each agent believes to be attacked, whenever one of the sets changed
         self.accusations: list[tuple[int, int, list[list[int]]]] = data["accusations"]
+        #: (trial, time, agent, name, values): lists of the family (sets, gains), whenever one of them changed
+        self.details: list[tuple[int, int, int, str, list[float]]] = data["details"]
         #: lost, late, forged and refused messages, missing and non-finite measurements, overflows
         self.counters: dict[str, int] = data["counters"]
+        #: what the filter's family has to say of this run, for people (needs keep "report")
+        self.warnings: list[str] = data["warnings"]
+        #: payload of all messages of one sample, when none is lost
+        self.bytes_per_step: int = data["bytes_per_step"]
+
+    def limited(self, trial: int = 0, start: int = 1) -> Array:
+        """Share of the samples from `start` on at which each agent's measurement was limited (suspected)."""
+        if self.verdict is None:
+            raise _core.InvalidInput('limited: got a run without verdicts, expected keep to contain "report"')
+        suspected = self.verdict[trial, start:] == VERDICTS.index("suspected")
+        return np.asarray(suspected.mean(axis=0), dtype=float)
 
     def first_accused(self, trial: int = 0) -> dict[int, int]:
         """Agent -> first time at which some agent believed it to be attacked."""
@@ -63,16 +77,30 @@ class Run:
 
     def plot(self, trial: int = 0) -> Any:
         """Errors with their bounds, and statistics against thresholds, as a matplotlib figure (extra: plot)."""
+        if self.truth is not None and self.truth.ndim == 4 and self.bound is not None:
+            from garrison.vehicles import string_figure
+
+            return string_figure(self, trial)
         from garrison.plots import run_figure
 
         return run_figure(self, trial)
+
+    def animate(self, path: str | Path, trial: int = 0) -> None:
+        """Write a GIF of vehicles in a string (extra: plot); keep "details" and "measurements" for it."""
+        if self.truth is None or self.truth.ndim != 4 or self.measurements is None:
+            raise _core.InvalidInput("animate: got a run without vehicles or measurements, expected one of a platoon")
+        from garrison.vehicles import animate
+
+        animate(self, path, trial)
 
     def to_xarray(self) -> Any:
         """An xarray.Dataset of all arrays, with named dimensions (extra: xarray)."""
         import xarray as xr
 
         dims = {
-            "truth": ("trial", "time", "state"),
+            "truth": ("trial", "time", "state")
+            if self.truth is None or self.truth.ndim == 3
+            else ("trial", "time", "agent", "state"),
             "estimate": ("trial", "time", "agent", "state"),
             "measurements": ("trial", "sample", "output"),
         }
@@ -104,7 +132,7 @@ def simulate(
     x0: ArrayLike | None = None,
     start: ArrayLike | None = None,
     start_error: float = 0.0,
-    noise: str = "auto",
+    noise: str | ArrayLike = "auto",
     link: Mapping[str, float] | None = None,
     keep: Iterable[str] = ("estimate", "report", "measurements"),
     threads: int = 0,
@@ -114,8 +142,11 @@ def simulate(
 
     steps: samples >= 1. attack: one or more, applied in order. x0: (n,) true initial state, default 0. start: (n,)
     common initial estimate, or (N, n) one per agent, default 0; start_error moves it by a random vector of at most
-    that length per trial. noise: "uniform" within the model's bounds, "extreme" at them, "normal", "none", "auto".
-    link: drop and delay (probabilities), delay_rounds. keep: of "estimate", "report", "signals", "measurements".
+    that length per trial. noise: "uniform" within the model's bounds, "extreme" at them, "normal", "none", "auto";
+    families whose agents drive plants of their own have laws of their own, x0 (N, n), default: where they should be,
+    and take recorded disturbances, one row per time 0..steps, in place of a law (garrison.platoon).
+    link: drop and delay (probabilities), delay_rounds. keep: of "estimate", "report", "signals", "measurements",
+    "details" (lists such as sets).
     threads: 0 = all cores; the result does not depend on it. progress(done, total) is called now and then.
     Same arguments, same bits. Raises InvalidInput when something does not fit.
     """
@@ -124,9 +155,10 @@ def simulate(
         network,
         filter,
         steps=steps,
-        x0=np.zeros(model.states) if x0 is None else np.asarray(x0, dtype=float),
+        x0=np.zeros(0) if x0 is None else np.asarray(x0, dtype=float).ravel(),
         start_error=start_error,
-        noise=noise,
+        noise=noise if isinstance(noise, str) else "auto",
+        disturbances=np.zeros((0, 0)) if isinstance(noise, str) else np.atleast_2d(np.asarray(noise, dtype=float)),
         trials=trials,
         seed=seed,
         threads=threads,
@@ -157,6 +189,7 @@ def replay(
 ) -> Run:
     """Feed recorded measurements, (samples, outputs), nan = missing; row r belongs to time r + 1.
 
+    In families with a sample at the start (platoon) row r belongs to time r, and truth is (samples, N, n).
     truth: (samples + 1, n), from time 0, or None. Both may have a leading axis of trials, one log per trial;
     otherwise the one log serves all `trials` (default 1). Attacks come on top of the log. The rest as in simulate.
     """

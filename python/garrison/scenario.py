@@ -25,7 +25,9 @@ _EARTH_KM_PER_DEGREE = 111.2
 _TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run"]
 _FIT_KEYS = ["fit", "from", "to", "factors", "harmonics", "period", "root", "factor"]
 _MODEL_KEYS = ["A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_covariance"]
+_VEHICLE_KEYS = ["vehicles", "period", "inputs"]
 _GENERATORS = {
+    "band": ["agents", "range"],
     "ring": ["agents"],
     "path": ["agents"],
     "star": ["agents"],
@@ -113,10 +115,15 @@ def _model(table: Table, folder: Path) -> tuple[_core.Model, Fit | None]:
         options = {k: v for k, v in table.items() if k not in ("fit", "from", "to")}
         fitted = fit(records, **options)
         return fitted.model, fitted
-    _only("[model]", table, [*_MODEL_KEYS, "fit"])
+    if "vehicles" in table:
+        _only("[model]", table, _VEHICLE_KEYS)
+        if "period" not in table:
+            raise _refuse("[model]", "got vehicles without a period, expected the sampling time in s")
+        return _core.platoon.model(**table), None
+    _only("[model]", table, [*_MODEL_KEYS, "fit", "vehicles"])
     for key in ("A", "C"):
         if key not in table:
-            raise _refuse("[model]", f'got no {key}, expected A and C, or fit = "records.csv"')
+            raise _refuse("[model]", f'got no {key}, expected A and C, fit = "records.csv", or vehicles and period')
     values = {k: _array(f"[model].{k}", v, folder) for k, v in table.items()}
     rest = {k: v for k, v in values.items() if k not in ("A", "C")}
     A = np.atleast_2d(np.asarray(values["A"], dtype=float))

@@ -35,7 +35,7 @@ class Pointwise final : public AttackPlan {
       const std::int64_t since = plan_.schedule().since(s.t);
       for (const int i : plan_.schedule().agents(s.t)) {
         if (!plan_.schedule().strikes(random_, s.t, i, salt_)) continue;
-        for (int r = 0; r < model_.outputs(i); ++r) {
+        for (int r = 0; r < model_.exposed(i); ++r) {
           double& y = s.y[static_cast<std::size_t>(model_.offset(i) + r)];
           y = plan_.change_(y, Spot{s.t, since, i, r}, random_, salt_);
         }

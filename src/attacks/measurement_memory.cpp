@@ -39,7 +39,7 @@ class Stateful : public MeasurementAttack {
   void each(std::int64_t t, const Change& change) const {
     for (const int i : schedule_.agents(t))
       if (schedule_.strikes(random_, t, i, salt_))
-        for (int r = 0; r < model_.outputs(i); ++r)
+        for (int r = 0; r < model_.exposed(i); ++r)
           change(i, r, static_cast<std::size_t>(model_.offset(i) + r));
   }
 

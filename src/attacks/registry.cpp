@@ -3,6 +3,7 @@
 #include "garrison/attacks/registry.hpp"
 
 #include <array>
+#include <cmath>
 
 namespace garrison {
 namespace {
@@ -139,6 +140,35 @@ struct EquivocateParams {
   }
 };
 
+struct CoordinatedParams {
+  std::vector<double> covariance;
+  static auto fields() {
+    return std::make_tuple(field(&CoordinatedParams::covariance,
+                                 {.name = "covariance",
+                                  .unit = "state^2",
+                                  .doc = "of the perturbations of all attacked agents together, agents in "
+                                         "ascending order, one number per "
+                                         "state: a square matrix, row by row; may be singular"}));
+  }
+};
+struct PerturbParams {
+  int width = 0;
+  std::vector<double> deltas;
+  static auto fields() {
+    return std::make_tuple(
+        field(&PerturbParams::width, {.name = "width",
+                                      .unit = "numbers",
+                                      .doc = "numbers per sample: attacked agents times states",
+                                      .required = true,
+                                      .least = 1}),
+        field(&PerturbParams::deltas, {.name = "deltas",
+                                       .unit = "state",
+                                       .doc = "what is added, sample by sample from the start on; agents in "
+                                              "ascending order, one number per "
+                                              "state"}));
+  }
+};
+
 double number_from(const std::string& words) {
   std::size_t used = 0;
   try {
@@ -179,6 +209,25 @@ std::shared_ptr<const MessageAttack> build(Schedule s, const EquivocateParams& p
   return equivocate(std::move(s), p.size);
 }
 
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+std::shared_ptr<const MessageAttack> build(Schedule s, const CoordinatedParams& p) {
+  const auto size =
+      static_cast<Eigen::Index>(std::llround(std::sqrt(static_cast<double>(p.covariance.size()))));
+  if (size == 0 || static_cast<std::size_t>(size * size) != p.covariance.size())
+    refuse("coordinated.covariance", std::to_string(p.covariance.size()) + " numbers",
+           "a square matrix, row by row: (agents x states)^2 numbers");
+  return coordinated(std::move(s), Matrix(Eigen::Map<const Rows>(p.covariance.data(), size, size)));
+}
+std::shared_ptr<const MessageAttack> build(Schedule s, const PerturbParams& p) {
+  const auto width = static_cast<std::size_t>(p.width);
+  if (width == 0 || p.deltas.size() % width != 0)
+    refuse("perturb.deltas", std::to_string(p.deltas.size()) + " numbers",
+           "a multiple of width = " + std::to_string(p.width));
+  const auto samples = static_cast<Eigen::Index>(p.deltas.size() / width);
+  return perturb(std::move(s), Matrix(Eigen::Map<const Rows>(p.deltas.data(), samples, p.width)));
+}
+
 template <class P>
 AttackInfo on_measurements(const char* name, const char* doc) {
   return {name, "measurement", doc, describe<P>(), [](Schedule s, const ParamMap& given) -> AnyAttack {
@@ -211,6 +260,8 @@ std::span<const AttackInfo> attack_infos() {
                                       "stays inside the threshold that the agent applies (closed loop)"),
       on_messages<ForgeParams>("forge", "the agent sends a false estimate to all neighbours"),
       on_messages<EquivocateParams>("equivocate", "the agent tells each neighbour another lie"),
+      on_messages<CoordinatedParams>("coordinated", "the agents add Gaussian noise that they draw together"),
+      on_messages<PerturbParams>("perturb", "the agents add given numbers"),
       AttackInfo{"silence",
                  "message",
                  "the agent sends nothing",

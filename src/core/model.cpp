@@ -27,7 +27,7 @@ void require_covariance(const std::string& which, const Matrix& m, Eigen::Index 
     refuse(which, "a matrix that is not symmetric", "a symmetric one", "use (M + M') / 2");
   const double least = Eigen::SelfAdjointEigenSolver<Matrix>(m, Eigen::EigenvaluesOnly).eigenvalues()(0);
   if (least < -1e-12 * scale)
-    refuse(which, "least eigenvalue " + text(least), "a positive semidefinite matrix", "check its sign");
+    refuse(which, "least eigenvalue " + text(least), "a positive semidefinite covariance", "check its sign");
 }
 
 void require_bound(const std::string& which, double value) {
@@ -37,8 +37,8 @@ void require_bound(const std::string& which, double value) {
 
 }  // namespace
 
-Model::Model(Matrix A, std::vector<Matrix> C, Noise noise)
-    : A_(std::move(A)), C_(std::move(C)), noise_(std::move(noise)) {
+Model::Model(Matrix A, std::vector<Matrix> C, Noise noise, std::vector<int> exposed)
+    : A_(std::move(A)), C_(std::move(C)), noise_(std::move(noise)), exposed_(std::move(exposed)) {
   const auto n = A_.rows();
   if (n < 1 || A_.cols() != n) refuse("A", shape(A_), "a square matrix with at least one row");
   require_finite("A", A_);
@@ -52,6 +52,13 @@ Model::Model(Matrix A, std::vector<Matrix> C, Noise noise)
     require_finite(which, C_[i]);
     offsets_.push_back(offsets_.back() + static_cast<int>(C_[i].rows()));
   }
+  if (!exposed_.empty() && exposed_.size() != C_.size())
+    refuse("exposed", std::to_string(exposed_.size()) + " numbers",
+           "one per agent (" + std::to_string(agents()) + ")");
+  for (std::size_t i = 0; i < exposed_.size(); ++i)
+    if (exposed_[i] < 0 || exposed_[i] > C_[i].rows())
+      refuse("exposed[" + std::to_string(i) + "]", std::to_string(exposed_[i]),
+             "0.." + std::to_string(C_[i].rows()) + ", the rows of C[" + std::to_string(i) + "]");
   if (!std::isnan(noise_.process_bound)) require_bound("process_bound", noise_.process_bound);
   if (noise_.measurement_bound.size() != 0 && noise_.measurement_bound.size() != agents())
     refuse("measurement_bound", std::to_string(noise_.measurement_bound.size()) + " numbers",
@@ -60,6 +67,12 @@ Model::Model(Matrix A, std::vector<Matrix> C, Noise noise)
     require_bound("measurement_bound[" + std::to_string(i) + "]", noise_.measurement_bound(i));
   if (noise_.process_covariance.size() != 0)
     require_covariance("process_covariance", noise_.process_covariance, n);
+  const auto& Sw = noise_.agent_process_covariance;
+  if (!Sw.empty() && Sw.size() != C_.size())
+    refuse("process_covariance", std::to_string(Sw.size()) + " matrices",
+           "one for all, or one per agent (" + std::to_string(agents()) + ")");
+  for (std::size_t i = 0; i < Sw.size(); ++i)
+    require_covariance("process_covariance[" + std::to_string(i) + "]", Sw[i], n);
   const auto& Sv = noise_.measurement_covariance;
   if (!Sv.empty() && Sv.size() != C_.size())
     refuse("measurement_covariance", std::to_string(Sv.size()) + " matrices",

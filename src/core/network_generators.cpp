@@ -22,6 +22,14 @@ Network Network::path(int agents) {
   return {agents, edges};
 }
 
+Network Network::band(int agents, int range) {
+  if (range < 1) refuse("range", std::to_string(range), "at least 1");
+  std::vector<Edge> edges;
+  for (int i = 0; i < agents; ++i)
+    for (int j = i + 1; j < agents && j - i <= range; ++j) edges.emplace_back(i, j);
+  return {agents, edges};
+}
+
 Network Network::star(int agents) {
   std::vector<Edge> edges;
   for (int i = 1; i < agents; ++i) edges.emplace_back(0, i);

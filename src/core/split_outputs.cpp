@@ -23,6 +23,8 @@ SplitSystem split_outputs(const Model& model, const Network& network) {
   std::vector<Matrix> C;
   for (std::size_t k = 0; k < owner.size(); ++k) {
     const int i = owner[k];
+    if (!old.agent_process_covariance.empty())
+      noise.agent_process_covariance.push_back(old.agent_process_covariance[static_cast<std::size_t>(i)]);
     const int r = static_cast<int>(k) - first[static_cast<std::size_t>(i)];
     const bool senses = model.outputs(i) > 0;
     C.push_back(senses ? Matrix(model.C(i).row(r)) : Matrix(0, model.states()));

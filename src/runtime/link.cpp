@@ -46,13 +46,14 @@ Link::Fate Link::fate(const Hop& hop) const {
 bool Link::rewrite(const Hop& hop, std::span<double> values, bool& changed) const {
   const Random random(seed_, trial_, Purpose::attack);
   std::uint32_t salt = 0x40000000U;
+  Hop told = hop;
   for (const auto& attack : attacks_) {
-    ++salt;
+    told.salt = ++salt;
     const auto agents = attack->schedule().agents(hop.t);
     if (!std::binary_search(agents.begin(), agents.end(), hop.sender)) continue;
     if (!attack->schedule().strikes(random, hop.t, hop.sender, salt)) continue;
     changed = true;
-    if (!attack->rewrite(hop, random, values)) return false;
+    if (!attack->rewrite(told, random, values)) return false;
   }
   return true;
 }

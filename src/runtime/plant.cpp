@@ -28,10 +28,10 @@ class Simulated final : public Source {
         w_(Vector::Zero(model.states())),
         next_(model.states()) {}
 
-  Vector start_shift() const override {
+  Matrix start(const Matrix& given) const override {
     Vector shift(model_.states());
     ball(start_, 0, 0, start_error_, false, shift);
-    return shift;
+    return given.colwise() + shift;
   }
   const double* truth() const override { return x_.data(); }
   void next(std::int64_t t, std::span<double> y) override {
@@ -57,23 +57,43 @@ class Simulated final : public Source {
 
 class Recorded final : public Source {
  public:
-  Recorded(const Model& model, const Log& log, std::size_t run)
-      : states_(model.states()),
-        y_(log.measurements + run * static_cast<std::size_t>(log.steps * model.total_outputs())),
+  Recorded(const Model& model, const Log& log, std::size_t run, int width, int first_sample)
+      : width_(width),
+        y_(log.measurements + run * static_cast<std::size_t>(log.steps + 1 - first_sample) *
+                                  static_cast<std::size_t>(model.total_outputs())),
         x_(log.truth == nullptr ? nullptr
-                                : log.truth + run * static_cast<std::size_t>((log.steps + 1) * states_)) {}
-  Vector start_shift() const override { return Vector::Zero(states_); }
+                                : log.truth + run * static_cast<std::size_t>(log.steps + 1) *
+                                                  static_cast<std::size_t>(width)) {}
+  Matrix start(const Matrix& given) const override { return given; }
   const double* truth() const override { return x_; }
-  void next(std::int64_t, std::span<double> y) override {
+  void next(std::int64_t t, std::span<double> y) override {
     std::copy_n(y_, y.size(), y.begin());
     y_ += y.size();
-    if (x_ != nullptr) x_ += states_;
+    if (x_ != nullptr && t > 0) x_ += width_;
   }
 
  private:
-  int states_;
+  int width_;
   const double* y_;
   const double* x_;
+};
+
+class Driven final : public Source {
+ public:
+  Driven(std::unique_ptr<World> world, int agents)
+      : world_(std::move(world)), control_(static_cast<std::size_t>(agents)) {}
+  Matrix start(const Matrix&) const override { return world_->start(); }
+  void meet(const Runner& runner) override { runner_ = &runner; }
+  const double* truth() const override { return world_->truth().data(); }
+  void next(std::int64_t t, std::span<double> y) override {
+    if (t > 0) runner_->control(control_.data());
+    world_->next(t, control_, y);
+  }
+
+ private:
+  std::unique_ptr<World> world_;
+  std::vector<double> control_;
+  const Runner* runner_ = nullptr;
 };
 
 }  // namespace
@@ -153,8 +173,13 @@ std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law
   return std::make_unique<Simulated>(model, law, plant, seed, trial);
 }
 
-std::unique_ptr<Source> recorded_source(const Model& model, const Log& log, std::uint32_t run) {
-  return std::make_unique<Recorded>(model, log, run);
+std::unique_ptr<Source> recorded_source(const Model& model, const Log& log, std::uint32_t run, int width,
+                                        int first_sample) {
+  return std::make_unique<Recorded>(model, log, run, width, first_sample);
+}
+
+std::unique_ptr<Source> world_source(std::unique_ptr<World> world, int agents) {
+  return std::make_unique<Driven>(std::move(world), agents);
 }
 
 }  // namespace garrison::detail

@@ -17,8 +17,10 @@ namespace garrison::detail {
 class Source {
  public:
   virtual ~Source() = default;
-  /// Common shift of the initial estimates of this trial (n numbers).
-  virtual Vector start_shift() const = 0;
+  /// Initial estimates of this trial (n x N) from the given ones.
+  virtual Matrix start(const Matrix& given) const = 0;
+  /// Called once before the first sample with what the agents of this trial run on.
+  virtual void meet(const Runner&) {}
   /// The state at the present time; null when it is not known.
   virtual const double* truth() const = 0;
   /// Moves to time t and writes its measurements.
@@ -47,6 +49,9 @@ void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radi
 
 std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law, const PlantOptions& plant,
                                          std::uint64_t seed, std::uint32_t trial);
-std::unique_ptr<Source> recorded_source(const Model& model, const Log& log, std::uint32_t run);
+std::unique_ptr<Source> recorded_source(const Model& model, const Log& log, std::uint32_t run, int width,
+                                        int first_sample);
+/// Agents that drive plants of their own.
+std::unique_ptr<Source> world_source(std::unique_ptr<World> world, int agents);
 
 }  // namespace garrison::detail

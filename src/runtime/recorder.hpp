@@ -22,20 +22,22 @@ class Recorder {
                  std::span<const double> y);
   /// Counts and keeps the measurements of time t >= 1.
   void count(int trial, int t, std::span<const double> y);
-  void finish(const LinkCounters& link, std::int64_t overflows);
+  void finish(const LinkCounters& link, std::int64_t overflows, std::int64_t bytes_per_step);
   Record release();
 
  private:
   std::size_t row(int trial, int t) const;
   void errors(std::size_t row, const double* estimate, const double* truth);
   void accusations(int trial, int t, const Runner& runner);
+  void details(int trial, int t, const Runner& runner);
 
   Record record_;
   Keep keep_;
   bool vouch_;  // no agent lies in its messages: only then a family's bounds are covered
   std::size_t outputs_;
-  std::vector<std::vector<AgentSet>> last_;     // per trial: the sets at the last accusation
-  std::vector<std::vector<double>> estimates_;  // per trial, when estimates are not kept
+  std::vector<std::vector<AgentSet>> last_;              // per trial: the sets at the last accusation
+  std::vector<std::vector<std::vector<double>>> lists_;  // per trial, [agent * details + detail]
+  std::vector<std::vector<double>> estimates_;           // per trial, when estimates are not kept
   std::mutex mutex_;
 };
 

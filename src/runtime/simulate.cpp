@@ -13,6 +13,7 @@ namespace garrison {
 namespace {
 
 using MakeSource = std::function<std::unique_ptr<detail::Source>(std::uint32_t trial)>;
+using SourcesOf = std::function<MakeSource(const Prepared&)>;
 
 class RunnerVictims final : public Victims {
  public:
@@ -76,17 +77,21 @@ void run_trial(const Model& model, const Network& network, const RunOptions& opt
   auto attacks = start_attacks(model, options, id);
   const RunnerVictims victims(runner);
   std::vector<double> y(static_cast<std::size_t>(model.total_outputs()));
-  runner.reset(starts(model, options.start).colwise() + source.start_shift(),
-               link.perfect() ? nullptr : &link);
-  recorder.take(trial, 0, runner, source.truth(), y);
-  for (int t = 1; t <= recorder.record().steps; ++t) {
+  runner.reset(source.start(starts(model, options.start)), link.perfect() ? nullptr : &link);
+  source.meet(runner);
+  const auto sample = [&](int t) {
     source.next(t, y);
     for (auto& attack : attacks) attack->apply({t, y, victims});
     runner.step(t, y.data());
+  };
+  if (recorder.record().first_sample == 0) sample(0);
+  recorder.take(trial, 0, runner, source.truth(), y);
+  for (int t = 1; t <= recorder.record().steps; ++t) {
+    sample(t);
     recorder.take(trial, t, runner, source.truth(), y);
     if (!progress.advance()) return;
   }
-  recorder.finish(link.counters, runner.overflows());
+  recorder.finish(link.counters, runner.overflows(), runner.bytes_per_step());
 }
 
 /// kLanes trials at once where the family can; trial by trial the same bits.
@@ -109,7 +114,7 @@ void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
   for (int l = 0; l < kLanes; ++l) {
     const auto trial = static_cast<std::uint32_t>(first + std::min(l, used - 1));
     lanes.push_back({make(trial), start_attacks(model, options, trial)});
-    x0.push_back(start.colwise() + lanes.back().source->start_shift());
+    x0.push_back(lanes.back().source->start(start));
   }
   std::vector<double> y(M);
   std::vector<double> all(M * kLanes);
@@ -133,7 +138,7 @@ void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
 }
 
 bool lanes_fit(const RunOptions& options) {
-  if (options.trials < 2 || options.keep.report || options.keep.signals) return false;
+  if (options.trials < 2 || options.keep.report || options.keep.signals || options.keep.details) return false;
   if (!options.message_attacks.empty() || options.link.drop > 0.0 || options.link.delay > 0.0) return false;
   for (const Attack& attack : options.attacks)
     if (attack->closed_loop()) return false;
@@ -141,12 +146,18 @@ bool lanes_fit(const RunOptions& options) {
 }
 
 Record drive(const Model& model, const Network& network, const AnyFilter& filter, int steps, bool truth_known,
-             const RunOptions& options, const MakeSource& make) {
+             const RunOptions& options, const SourcesOf& sources) {
   if (options.trials < 1) refuse("trials", std::to_string(options.trials), "at least 1");
   for (const Attack& attack : options.attacks) attack->schedule().require_agents_below(model.agents());
+  for (const auto& attack : options.message_attacks)
+    if (!attack->fits(model.states()))
+      refuse("attack", "numbers for another plant",
+             "one per attacked agent and state (" + std::to_string(model.states()) + " states)",
+             "see the attack's covariance or deltas");
   const Link rehearsal(network, options.link, options.message_attacks, options.seed, 0);
   const auto prepared = filter.prepare(model, network);
   prepared->check_start(starts(model, options.start));
+  const MakeSource make = sources(*prepared);
   detail::Recorder recorder(model, filter, steps, truth_known, options);
   Progress progress(options, static_cast<std::int64_t>(steps) * options.trials);
   const int threads = thread_count(options.threads);
@@ -161,6 +172,9 @@ Record drive(const Model& model, const Network& network, const AnyFilter& filter
     }
   };
   if (const auto probe = lanes_fit(options) ? prepared->lanes() : nullptr; probe != nullptr) {
+    const auto alone = prepared->runner(1);  // lanes keep no messages to measure
+    alone->reset(starts(model, options.start), nullptr);
+    recorder.finish({}, 0, alone->bytes_per_step());
     const int groups = (options.trials + kLanes - 1) / kLanes;
     Workers workers(std::min(threads, groups));
     workers.split(groups, [&](std::int64_t begin, std::int64_t end, int) {
@@ -186,6 +200,7 @@ Record drive(const Model& model, const Network& network, const AnyFilter& filter
   if (failure) std::rethrow_exception(failure);
   Record record = recorder.release();
   record.interrupted = progress.stopped();
+  record.warnings = filter.warnings(model, {record.verdict, record.trials, record.steps + 1, record.agents});
   return record;
 }
 
@@ -194,15 +209,34 @@ Record drive(const Model& model, const Network& network, const AnyFilter& filter
 Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
                 const PlantOptions& plant, const RunOptions& options) {
   if (plant.steps < 1) refuse("steps", std::to_string(plant.steps), "at least 1");
-  if (plant.x0.size() != 0 && plant.x0.size() != model.states())
+  const bool own = filter.own_states();
+  const int width = own ? model.agents() * model.states() : model.states();
+  if (plant.x0.size() != 0 && plant.x0.size() != width)
     refuse("x0", std::to_string(plant.x0.size()) + " numbers",
-           std::to_string(model.states()) + ", one per state");
+           std::to_string(width) + (own ? ", one per agent and state" : ", one per state"));
   if (!plant.x0.allFinite()) refuse("x0", "a number that is not finite", "a finite initial state");
   if (!(plant.start_error >= 0.0) || !std::isfinite(plant.start_error))
     refuse("start_error", text(plant.start_error), "a finite number >= 0");
+  if (own) {
+    const Matrix* recorded = plant.disturbances.size() == 0 ? nullptr : &plant.disturbances;
+    if (recorded != nullptr && recorded->rows() != plant.steps + 1)
+      refuse("noise", std::to_string(recorded->rows()) + " rows of recorded disturbances",
+             std::to_string(plant.steps + 1) + ", one per time 0..steps");
+    return drive(model, network, filter, plant.steps, true, options, [&](const Prepared& prepared) {
+      return [&, start = starts(model, options.start)](std::uint32_t trial) {
+        return detail::world_source(
+            prepared.world({plant.x0, start, plant.start_error, plant.noise, recorded, options.seed, trial}),
+            model.agents());
+      };
+    });
+  }
+  if (plant.disturbances.size() != 0)
+    refuse("noise", "recorded disturbances", "the name of a noise law",
+           "only families whose agents drive plants of their own take recorded ones");
   const detail::NoiseLaw law(plant.noise, model);
-  return drive(model, network, filter, plant.steps, true, options, [&](std::uint32_t trial) {
-    return detail::simulated_source(model, law, plant, options.seed, trial);
+  return drive(model, network, filter, plant.steps, true, options, [&](const Prepared&) {
+    return
+        [&](std::uint32_t trial) { return detail::simulated_source(model, law, plant, options.seed, trial); };
   });
 }
 
@@ -212,8 +246,11 @@ Record replay(const Model& model, const Network& network, const AnyFilter& filte
   if (log.runs != 1 && log.runs != options.trials)
     refuse("trials", std::to_string(options.trials), std::to_string(log.runs) + ", one per run of the log",
            "a log of one run serves any number of trials");
-  return drive(model, network, filter, log.steps, log.truth != nullptr, options, [&](std::uint32_t trial) {
-    return detail::recorded_source(model, log, log.runs == 1 ? 0 : trial);
+  const int width = filter.own_states() ? model.agents() * model.states() : model.states();
+  return drive(model, network, filter, log.steps, log.truth != nullptr, options, [&](const Prepared&) {
+    return [&, width](std::uint32_t trial) {
+      return detail::recorded_source(model, log, log.runs == 1 ? 0 : trial, width, filter.first_sample());
+    };
   });
 }
 
@@ -225,15 +262,16 @@ Record replay(const Model& model, const Network& network, const AnyFilter& filte
   if (measurements.rows() < 1 || measurements.cols() != model.total_outputs())
     refuse("measurements", shape(measurements), "steps x " + std::to_string(model.total_outputs()),
            "one column per row of the C_i, agent by agent; NaN where a measurement is missing");
-  if (truth.size() != 0 && (truth.rows() != measurements.rows() + 1 || truth.cols() != model.states()))
-    refuse("truth", shape(truth),
-           std::to_string(measurements.rows() + 1) + " x " + std::to_string(model.states()),
-           "one row per time, the first one before the first measurement");
+  const auto steps = measurements.rows() + filter.first_sample() - 1;
+  const int width = filter.own_states() ? model.agents() * model.states() : model.states();
+  if (truth.size() != 0 && (truth.rows() != steps + 1 || truth.cols() != width))
+    refuse("truth", shape(truth), std::to_string(steps + 1) + " x " + std::to_string(width),
+           "one row per time 0..steps");
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Rows y = measurements;
   const Rows x = truth;
   return replay(model, network, filter,
-                Log{y.data(), x.size() == 0 ? nullptr : x.data(), 1, static_cast<int>(y.rows())}, options);
+                Log{y.data(), x.size() == 0 ? nullptr : x.data(), 1, static_cast<int>(steps)}, options);
 }
 
 }  // namespace garrison

@@ -23,7 +23,7 @@ inline Matrix normal_matrix(Rng& rng, int rows, int columns) {
   return Matrix::NullaryExpr(rows, columns, [&] { return normal(rng); });
 }
 
-/// A plant with ||A|| = norm and one unit row per agent.
+/// A plant with ||A|| = norm and one unit row per agent; bounds of the noise, and covariances.
 inline Model scalar_model(Rng& rng, int n, int agents, double norm, double b_w, double b_v) {
   Matrix A = Matrix::Identity(n, n) + 0.3 * normal_matrix(rng, n, n);
   A *= norm / Eigen::JacobiSVD<Matrix>(A).singularValues()(0);
@@ -32,7 +32,9 @@ inline Model scalar_model(Rng& rng, int n, int agents, double norm, double b_w, 
     Matrix row = normal_matrix(rng, 1, n);
     C.push_back(row / row.norm());
   }
-  return {A, C, {b_w, Vector::Constant(agents, b_v), {}, {}}};
+  const Matrix Sw = 0.04 * Matrix::Identity(n, n);  // for families that weigh; nothing is drawn from it
+  const std::vector<Matrix> Sv(static_cast<std::size_t>(agents), Matrix::Constant(1, 1, 0.1));
+  return {A, C, {b_w, Vector::Constant(agents, b_v), Sw, Sv}};
 }
 
 /// A connected graph: a random tree and some more edges.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "garrison/attacks/schedule.hpp"
+#include "garrison/core/types.hpp"
 
 namespace garrison {
 
@@ -16,6 +17,10 @@ struct Hop {
   int round;
   int sender;
   int receiver;
+  int states = 0;  ///< n of the plant
+  std::span<const int> entries =
+      {};                  ///< which state each number belongs to; empty = the first, the second, ..
+  std::uint32_t salt = 0;  ///< keeps the chance of several attacks apart
 };
 
 /// What lying agents do to the numbers of a message. Stateless: the result depends on its arguments only.
@@ -26,6 +31,8 @@ class GARRISON_EXPORT MessageAttack {
   const Schedule& schedule() const { return schedule_; }
   /// Changes `values` in place for this receiver; false = the message is withheld.
   virtual bool rewrite(const Hop& hop, const Random& random, std::span<double> values) const = 0;
+  /// Its numbers fit a plant with that many states; drivers refuse an attack that does not.
+  virtual bool fits(int) const { return true; }
 
  private:
   Schedule schedule_;
@@ -35,6 +42,14 @@ class GARRISON_EXPORT MessageAttack {
 std::shared_ptr<MessageAttack> forge(Schedule schedule, double offset, bool replace);
 /// Different lies to different neighbours: values + size * (a random direction per receiver and round).
 std::shared_ptr<MessageAttack> equivocate(Schedule schedule, double size);
+/// Every neighbour gets values + delta(t) with delta ~ N(0, covariance), drawn once per sample for all liars
+/// together and new at every sample. `covariance`: B n x B n for the B agents of the schedule in ascending
+/// order; may be singular. Agents send as many of their entries as their filter shares.
+/// @throws InvalidInput when it is not symmetric positive semidefinite, or its size is no multiple of B
+std::shared_ptr<MessageAttack> coordinated(Schedule schedule, const Matrix& covariance);
+/// Every neighbour gets values + delta(t) with given delta: `deltas` has one row per sample from the start of
+/// the schedule on (zero afterwards) and B n columns, agents in ascending order.
+std::shared_ptr<MessageAttack> perturb(Schedule schedule, const Matrix& deltas);
 /// Nothing is sent.
 std::shared_ptr<MessageAttack> silence(Schedule schedule);
 

@@ -32,6 +32,14 @@ enum class Verdict : std::uint8_t {
   silent,     ///< no measurement at this step (relay, or lost)
 };
 
+/// The verdicts of a whole run, as a family's `warnings` (optional) sees them.
+struct VerdictLog {
+  std::span<const std::uint8_t> verdict;  ///< [trial][time][agent], values of Verdict; time 0 is the start
+  int trials;
+  int times;
+  int agents;
+};
+
 /// Numbers that every family reports of one agent after a step; NaN = does not exist.
 struct Report {
   double bound = kNaN;      ///< certified: ||estimate - state|| <= bound, under the family's assumptions
@@ -56,6 +64,10 @@ constexpr int dimension(const Local& local) {
 /// - `init(local, gains, x0, state, message)` sizes every buffer of state and message (may allocate).
 /// - `y` has local.outputs entries; NaN = missing. Infinite and huge entries are allowed.
 /// - The inbox holds finite messages of the right size only; a missing neighbour is simply not in it.
+/// - Optional: `first_sample` = 0 (default 1) for a family that has a sample at the start; `only_states`, the
+///   one dimension that it exists for; `control` and `world` for agents with plants of their own
+///   (core/world.hpp); `detail_names` and `detail` for lists such as sets; `accused_into` in place of
+///   `accused` to build the set when asked.
 /// - `expected` writes the measurement that the agent predicts for the next step (local.outputs entries),
 ///   `alarm_level` the deviation from it that the agent tolerates there: what an informed attacker knows.
 template <class F, int n>
@@ -71,11 +83,26 @@ concept Filter =
       { F::template fuse<n>(local, gains, state, inbox, round, message) } noexcept;
       { F::template report<n>(local, gains, view) } noexcept -> std::same_as<Report>;
       { F::template estimate<n>(view) } noexcept -> std::convertible_to<const Vec<n>&>;
-      { F::template accused<n>(view) } noexcept -> std::same_as<const AgentSet*>;
       { F::template expected<n>(local, gains, view, out) } noexcept;
       { F::template alarm_level<n>(local, gains, view) } noexcept -> std::same_as<double>;
       { F::template signals<n>(local, gains, view, out) } noexcept;
       { message.values() } -> std::same_as<std::span<double>>;
-    };
+    } &&
+    (
+        requires(const typename F::template State<n>& view) {
+          { F::template accused<n>(view) } noexcept -> std::same_as<const AgentSet*>;
+        } ||
+        requires(const typename F::template State<n>& view, AgentSet& set) {
+          { F::template accused_into<n>(view, set) } noexcept;
+        });
+
+/// First sample of a family's runs: 1, or 0 where the start has a sample too.
+template <class F>
+constexpr int first_sample() {
+  if constexpr (requires { F::first_sample; })
+    return F::first_sample;
+  else
+    return 1;
+}
 
 }  // namespace garrison

@@ -20,6 +20,9 @@ struct GARRISON_EXPORT Noise {
   Matrix process_covariance;
   /// Covariance of v_i, m_i x m_i, one per agent; empty = not known.
   std::vector<Matrix> measurement_covariance;
+  /// What each agent takes for the covariance of w where they differ, n x n, one per agent; empty = all take
+  /// process_covariance. Filters weigh with it; the simulated noise does not depend on it.
+  std::vector<Matrix> agent_process_covariance = {};
 };
 
 /// x(t+1) = A x(t) + w(t),  y_i(t) = C_i x(t) + v_i(t) for agents i = 0..N-1.
@@ -30,14 +33,20 @@ struct GARRISON_EXPORT Noise {
 class GARRISON_EXPORT Model {
  public:
   /// `A`: n x n, finite. `C`: one m_i x n matrix per agent, finite (m_i = 0 allowed), at least one agent.
+  /// `exposed`: how many of an agent's first outputs an attacker can reach, one number per agent; empty =
+  /// all.
   /// @throws InvalidInput on a wrong shape, a number that is not finite or an impossible noise.
-  Model(Matrix A, std::vector<Matrix> C, Noise noise = {});
+  Model(Matrix A, std::vector<Matrix> C, Noise noise = {}, std::vector<int> exposed = {});
 
   int states() const { return static_cast<int>(A_.rows()); }
   int agents() const { return static_cast<int>(C_.size()); }
   const Matrix& A() const { return A_; }
   const Matrix& C(int agent) const { return C_[static_cast<std::size_t>(agent)]; }
   int outputs(int agent) const { return static_cast<int>(C(agent).rows()); }
+  /// Outputs 0..exposed-1 of an agent can be attacked, the others are secured.
+  int exposed(int agent) const {
+    return exposed_.empty() ? outputs(agent) : exposed_[static_cast<std::size_t>(agent)];
+  }
   int offset(int agent) const { return offsets_[static_cast<std::size_t>(agent)]; }
   /// Number of scalar measurements of the whole network at one time.
   int total_outputs() const { return offsets_.back(); }
@@ -52,6 +61,7 @@ class GARRISON_EXPORT Model {
   std::vector<Matrix> C_;
   Noise noise_;
   std::vector<int> offsets_;
+  std::vector<int> exposed_;  // empty = all
 };
 
 }  // namespace garrison

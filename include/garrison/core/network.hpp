@@ -57,6 +57,8 @@ class GARRISON_EXPORT Network {
 
   static Network ring(int agents);
   static Network path(int agents);
+  /// i and j hear each other when |i - j| <= `range` (>= 1): a string with messages to the `range` nearest.
+  static Network band(int agents, int range);
   static Network star(int agents);
   static Network complete(int agents);
   static Network grid(int rows, int columns);

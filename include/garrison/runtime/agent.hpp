@@ -41,6 +41,8 @@ class GARRISON_EXPORT AnyAgent {
   virtual std::shared_ptr<AnyMessage> fuse(std::span<const std::shared_ptr<AnyMessage>> inbox) = 0;
   virtual Vector estimate() const = 0;
   virtual Report report() const = 0;
+  /// What the agent does to its own plant until the next sample; NaN where the family has none.
+  virtual double control() const = 0;
   virtual std::vector<int> accused() const = 0;
   virtual std::int64_t dropped() const = 0;
 };
@@ -84,7 +86,7 @@ class Agent final : public AnyAgent {
       refuse("x0", std::to_string(x0.size()) + " numbers", std::to_string(local_.states) + ", one per state");
     const Vec<n> start = x0;
     F::template init<n>(local_, *gains_, start, state_, outgoing_);
-    t_ = 0;
+    t_ = first_sample<F>() - 1;
     round_ = rounds();
     dropped_ = 0;
   }
@@ -123,9 +125,23 @@ class Agent final : public AnyAgent {
 
   Vector estimate() const override { return F::template estimate<n>(state_); }
   Report report() const override { return F::template report<n>(local_, *gains_, state_); }
+  double control() const override {
+    if constexpr (requires { F::template control<n>(state_); })
+      return F::template control<n>(state_);
+    else
+      return kNaN;
+  }
   std::vector<int> accused() const override {
     std::vector<int> all;
-    const AgentSet& set = *F::template accused<n>(state_);
+    AgentSet built;
+    const AgentSet* found = &built;
+    if constexpr (requires { F::template accused_into<n>(state_, built); }) {
+      built.resize(local_.agents);
+      F::template accused_into<n>(state_, built);
+    } else {
+      found = F::template accused<n>(state_);
+    }
+    const AgentSet& set = *found;
     for (int i = 0; i < local_.agents && !set.empty(); ++i)
       if (set.contains(i)) all.push_back(i);
     return all;

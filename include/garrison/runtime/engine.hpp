@@ -50,11 +50,12 @@ class Engine final : public Runner {
       : gains_(std::move(gains)),
         model_(model),
         plan_(network.offsets(), network.lists()),
-        mail_(network, plan_.order()),
+        mail_(network, plan_.order(), model.states()),
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
         states_(static_cast<std::size_t>(model.agents())),
         average_(states_.size() * static_cast<std::size_t>(model.states())),
-        scratch_(average_.size()) {
+        scratch_(average_.size()),
+        accused_(model.agents()) {
     position_.resize(states_.size());
     for (const int i : plan_.order()) {
       position_[static_cast<std::size_t>(i)] = places_.size();
@@ -72,6 +73,7 @@ class Engine final : public Runner {
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
     }
     mail_.fill();
+    bytes_ = static_cast<std::int64_t>(sizeof(double)) * mail_.numbers_per_round() * F::rounds(*gains_);
     overflows_ = 0;
   }
 
@@ -111,10 +113,28 @@ class Engine final : public Runner {
     const std::size_t k = position_[static_cast<std::size_t>(agent)];
     return F::template alarm_level<n>(local(k), *gains_, states_[k]);
   }
+  void control(double* out) const override {
+    if constexpr (requires(const State& s) { F::template control<n>(s); })
+      for (std::size_t k = 0; k < states_.size(); ++k)
+        out[static_cast<std::size_t>(places_[k].id)] = F::template control<n>(states_[k]);
+  }
+  void detail(int agent, std::size_t which, std::vector<double>& out) const override {
+    const std::size_t k = position_[static_cast<std::size_t>(agent)];
+    if constexpr (requires(const State& s) { F::template detail<n>(local(k), *gains_, s, which, out); })
+      F::template detail<n>(local(k), *gains_, states_[k], which, out);
+  }
   const AgentSet& accused(int agent) const override {
-    return *F::template accused<n>(states_[position_[static_cast<std::size_t>(agent)]]);
+    const State& s = states_[position_[static_cast<std::size_t>(agent)]];
+    if constexpr (requires { F::template accused_into<n>(s, accused_); }) {
+      accused_.clear();
+      F::template accused_into<n>(s, accused_);
+      return accused_;
+    } else {
+      return *F::template accused<n>(s);
+    }
   }
   std::int64_t overflows() const override { return overflows_; }
+  std::int64_t bytes_per_step() const override { return bytes_; }
 
  private:
   /// Where things of one agent are; a Local per agent would be twice as much to read at every step.
@@ -236,6 +256,8 @@ class Engine final : public Runner {
   Aligned<double> average_;
   Aligned<double> scratch_;
   std::int64_t overflows_ = 0;
+  std::int64_t bytes_ = 0;
+  mutable AgentSet accused_;  // of families that build it when asked
 };
 
 }  // namespace garrison

@@ -12,6 +12,7 @@
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/core/world.hpp"
 #include "garrison/runtime/agent.hpp"
 #include "garrison/runtime/runner.hpp"
 
@@ -27,6 +28,8 @@ class GARRISON_EXPORT Prepared {
   virtual std::unique_ptr<AnyAgent> agent(int id) const = 0;
   /// Several trials side by side, with the same bits as `runner`; null where the family has no such path.
   virtual std::unique_ptr<LaneRunner> lanes() const = 0;
+  /// The plants that the agents drive, for one trial; null for families that watch one common plant.
+  virtual std::unique_ptr<World> world(const WorldOptions& options) const = 0;
 };
 
 /// A filter with its parameters.
@@ -40,6 +43,13 @@ class GARRISON_EXPORT AnyFilter {
   /// Conditions and bounds of the family's theorems.
   virtual Check check(const Model& model, const Network& network) const = 0;
   virtual std::vector<std::string> signal_names() const = 0;
+  /// What a user should know of a run that ended without an error; empty where the family has nothing to say.
+  virtual std::vector<std::string> warnings(const Model& model, const VerdictLog& log) const = 0;
+  virtual std::vector<std::string> detail_names() const = 0;
+  /// 1, or 0 for families that have a sample at the start too.
+  virtual int first_sample() const = 0;
+  /// Every agent has a state of its own (and the family a world).
+  virtual bool own_states() const = 0;
 };
 
 /// One line of `garrison list filters`.

@@ -19,7 +19,7 @@ class PreparedOf final : public Prepared {
         network_(network) {}
 
   std::unique_ptr<Runner> runner(int threads) const override {
-    return dispatch(model_.states(), [&]<int n>() -> std::unique_ptr<Runner> {
+    return dispatched([&]<int n>() -> std::unique_ptr<Runner> {
       return std::make_unique<Engine<F, n>>(gains_, model_, network_, threads);
     });
   }
@@ -29,7 +29,7 @@ class PreparedOf final : public Prepared {
   std::unique_ptr<AnyAgent> agent(int id) const override {
     if (id < 0 || id >= model_.agents())
       refuse("id", std::to_string(id), "an agent in 0.." + std::to_string(model_.agents() - 1));
-    return dispatch(model_.states(), [&]<int n>() -> std::unique_ptr<AnyAgent> {
+    return dispatched([&]<int n>() -> std::unique_ptr<AnyAgent> {
       return std::make_unique<Agent<F, n>>(gains_, model_, network_, id);
     });
   }
@@ -39,13 +39,43 @@ class PreparedOf final : public Prepared {
     else
       return nullptr;
   }
+  std::unique_ptr<World> world(const WorldOptions& options) const override {
+    if constexpr (requires { F::world(*gains_, options); })
+      return F::world(*gains_, options);
+    else
+      return nullptr;
+  }
 
  private:
+  /// A family that exists for one dimension only (and has refused others in `design`) is compiled for that
+  /// one.
+  template <class Action>
+  auto dispatched(const Action& action) const {
+    if constexpr (requires { F::only_states; })
+      return action.template operator()<F::only_states>();
+    else
+      return dispatch(model_.states(), action);
+  }
+
   std::shared_ptr<const typename F::Gains> gains_;
   Model model_;
   Network network_;
 };
 
+namespace detail {
+template <class F>
+struct RunsAs {
+  using type = F;
+};
+template <class F>
+  requires requires { typename F::RunsAs; }
+struct RunsAs<F> {
+  using type = typename F::RunsAs;
+};
+}  // namespace detail
+
+/// A family may name another one, F::RunsAs, that runs the gains of its design: it then costs no engine of
+/// its own.
 template <class F>
 class FilterOf final : public AnyFilter {
  public:
@@ -56,13 +86,30 @@ class FilterOf final : public AnyFilter {
   ParamMap params() const override { return values(params_); }
   std::shared_ptr<const Prepared> prepare(const Model& model, const Network& network) const override {
     require_same_size(model, network);
-    return std::make_shared<PreparedOf<F>>(F::design(params_, model, network), model, network);
+    using Runs = typename detail::RunsAs<F>::type;
+    return std::make_shared<PreparedOf<Runs>>(F::design(params_, model, network), model, network);
   }
   Check check(const Model& model, const Network& network) const override {
     require_same_size(model, network);
     return F::check(params_, model, network);
   }
   std::vector<std::string> signal_names() const override { return F::signal_names(); }
+  std::vector<std::string> warnings(const Model& model, const VerdictLog& log) const override {
+    if constexpr (requires { F::warnings(model, log); })
+      return F::warnings(model, log);
+    else
+      return {};
+  }
+  std::vector<std::string> detail_names() const override {
+    if constexpr (requires { F::detail_names(); })
+      return F::detail_names();
+    else
+      return {};
+  }
+  int first_sample() const override { return garrison::first_sample<F>(); }
+  bool own_states() const override {
+    return requires(const typename F::Gains& g, const WorldOptions& o) { F::world(g, o); };
+  }
 
  private:
   static void require_same_size(const Model& model, const Network& network) {

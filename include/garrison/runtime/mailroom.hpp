@@ -21,8 +21,9 @@ namespace garrison {
 template <class Message>
 class Mailroom {
  public:
-  /// `order`: engine position -> public id.
-  Mailroom(const Network& network, std::span<const int> order) : order_(order.begin(), order.end()) {
+  /// `order`: engine position -> public id. `states`: n of the plant.
+  Mailroom(const Network& network, std::span<const int> order, int states)
+      : order_(order.begin(), order.end()), states_(states) {
     std::vector<std::uint32_t> position(order_.size());
     for (std::size_t k = 0; k < order_.size(); ++k)
       position[static_cast<std::size_t>(order_[k])] = static_cast<std::uint32_t>(k);
@@ -52,6 +53,14 @@ class Mailroom {
       messages_[k] = messages_[k % order_.size()];
   }
 
+  /// Numbers that all links carry in one round when no message is lost.
+  std::int64_t numbers_per_round() {
+    std::int64_t sum = 0;
+    for (const std::uint32_t sender : slots_)
+      sum += static_cast<std::int64_t>(messages_[sender].values().size());
+    return sum;
+  }
+
   bool perfect() const { return link_ == nullptr || link_->perfect(); }
   /// Where agents write; becomes current with `post`.
   Message* outgoing() { return messages_.data() + base(posted_); }
@@ -66,7 +75,7 @@ class Mailroom {
     for (std::size_t k = 0; k < order_.size(); ++k) {
       received_[k] = 0;
       for (std::size_t e = first_[k]; e < first_[k + 1]; ++e)
-        deliver({t, round, order_[slots_[e]], order_[k]}, slots_[e], k, forged);
+        deliver({t, round, order_[slots_[e]], order_[k], states_}, slots_[e], k, forged);
     }
   }
 
@@ -79,6 +88,14 @@ class Mailroom {
 
  private:
   std::size_t base(std::uint64_t hop) const { return static_cast<std::size_t>(hop % depth_) * order_.size(); }
+
+  /// Which states a message speaks of; families that send the whole state do not say.
+  static std::span<const int> entries(const Message& message) {
+    if constexpr (requires { message.entries(); })
+      return message.entries();
+    else
+      return {};
+  }
 
   void deliver(const Hop& hop, std::uint32_t sender, std::size_t receiver, std::size_t& forged) {
     LinkCounters nobody_counts;
@@ -96,7 +113,9 @@ class Mailroom {
     if (link_ != nullptr && link_->lies(hop.sender)) {
       messages_[forged] = messages_[slot];
       slot = forged++;
-      if (!link_->rewrite(hop, messages_[slot].values(), changed)) return void(++counters.lost);
+      Hop told = hop;
+      told.entries = entries(messages_[slot]);
+      if (!link_->rewrite(told, messages_[slot].values(), changed)) return void(++counters.lost);
     }
     for (const double v : messages_[slot].values())
       if (!std::isfinite(v)) return void(++counters.refused);
@@ -105,6 +124,7 @@ class Mailroom {
   }
 
   std::vector<int> order_;
+  int states_;
   std::vector<std::size_t> first_;        // of each agent's slots, N+1
   std::vector<std::uint32_t> slots_;      // as wired: positions of the neighbours, by public id
   std::vector<std::uint32_t> delivered_;  // as delivered this round: indices into messages_

@@ -18,10 +18,13 @@ struct GARRISON_EXPORT Record {
   int steps = 0;
   int agents = 0;
   int states = 0;
+  int first_sample = 1;     ///< 0 for families that have a sample at the start too
+  bool own_states = false;  ///< every agent has a state of its own
   std::vector<std::string> signal_names;
+  std::vector<std::string> detail_names;
 
-  Bulk<double> truth;         ///< [trial][time][state]; empty when not known
-  Bulk<double> measurements;  ///< [trial][time 1..steps][measurement], as the filter received them
+  Bulk<double> truth;         ///< [trial][time][state] or [trial][time][agent][state]; empty when not known
+  Bulk<double> measurements;  ///< [trial][time first_sample..steps][measurement], as the filter received them
   Bulk<double> estimate;      ///< [trial][time][agent][state]
   Bulk<double> error;         ///< ||estimate - truth||; empty when the truth is not known
   Bulk<double> bound;         ///< certified bound on the error; NaN when agents lie in messages
@@ -38,11 +41,23 @@ struct GARRISON_EXPORT Record {
   };
   std::vector<Accusation> accusations;
 
+  /// Lists that the family tells of its agents (sets, gains), whenever one of them changed.
+  struct Detail {
+    int trial;
+    int time;
+    int agent;
+    int name;  ///< index into detail_names
+    std::vector<double> values;
+  };
+  std::vector<Detail> details;
+
   LinkCounters link;
-  std::int64_t missing = 0;    ///< measurements that were NaN
-  std::int64_t nonfinite = 0;  ///< measurements that were infinite or beyond kHuge
-  std::int64_t overflows = 0;  ///< steps with an estimate that was not finite
-  bool interrupted = false;    ///< stopped by the caller before the end
+  std::int64_t missing = 0;           ///< measurements that were NaN
+  std::int64_t nonfinite = 0;         ///< measurements that were infinite or beyond kHuge
+  std::int64_t overflows = 0;         ///< steps with an estimate that was not finite
+  std::vector<std::string> warnings;  ///< of the family, for people
+  bool interrupted = false;           ///< stopped by the caller before the end
+  std::int64_t bytes_per_step = 0;    ///< payload of all messages of one sample, when none is lost
 };
 
 }  // namespace garrison

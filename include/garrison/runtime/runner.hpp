@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "garrison/core/filter.hpp"
 #include "garrison/runtime/link.hpp"
@@ -32,10 +33,18 @@ class GARRISON_EXPORT Runner {
   /// The measurement that `agent` predicts for the next sample, and the deviation it tolerates.
   virtual void expected(int agent, double* out) const = 0;
   virtual double alarm_level(int agent) const = 0;
+  /// What every agent does to its own plant until the next sample, N numbers; families without one write
+  /// none.
+  virtual void control(double* out) const = 0;
+  /// Detail `which` of the family's detail_names, of one agent.
+  virtual void detail(int agent, std::size_t which, std::vector<double>& out) const = 0;
   /// Agents that `agent` believes to be attacked.
+  /// Valid until the next call.
   virtual const AgentSet& accused(int agent) const = 0;
   /// Steps at which some estimate was no longer finite (its messages are then withheld).
   virtual std::int64_t overflows() const = 0;
+  /// Payload of all messages of one sample, all rounds, when none is lost; known after `reset`.
+  virtual std::int64_t bytes_per_step() const = 0;
 };
 
 }  // namespace garrison

@@ -19,6 +19,7 @@ struct GARRISON_EXPORT Keep {
   bool report = true;    ///< bound, statistic, threshold, verdict, accusations
   bool signals = false;  ///< the family's own signals
   bool measurements = true;
+  bool details = false;  ///< the family's lists (sets, gains), whenever one changes
 };
 
 /// Settings that simulation and replay share.
@@ -38,12 +39,15 @@ struct GARRISON_EXPORT RunOptions {
 /// How the simulated plant starts and is disturbed.
 struct GARRISON_EXPORT PlantOptions {
   int steps = 0;
-  Vector x0;  ///< true initial state; empty = zeros
-  double start_error =
-      0.0;  ///< the common initial estimate is moved by a random vector of at most this length
+  Vector x0;  ///< true initial state; empty = zeros. Agents with states of their own: agent by agent
+  /// The common initial estimate (or, with states of their own, each one) is moved by a random vector of at
+  /// most this length.
+  double start_error = 0.0;
   /// "uniform" within the model's bounds, "extreme" at them, "normal" with the model's covariances, "none",
   /// or "auto": uniform where bounds are known, else normal where covariances are, else none.
   std::string noise = "auto";
+  /// Recorded disturbances in place of a noise law, one row per time; only for families with a world.
+  Matrix disturbances = {};
 };
 
 /// x(t+1) = A x(t) + w(t), y = C x + v, attacked, filtered. Trials differ in noise, attack chance and link
@@ -52,10 +56,10 @@ struct GARRISON_EXPORT PlantOptions {
 GARRISON_EXPORT Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
                                 const PlantOptions& plant, const RunOptions& options);
 
-/// Recorded runs, C-ordered and not owned; row r of the measurements belongs to time r+1, NaN = missing.
+/// Recorded runs, C-ordered and not owned; NaN = missing.
 struct GARRISON_EXPORT Log {
-  const double* measurements = nullptr;  ///< [run][time 1..steps][Model::total_outputs()]
-  const double* truth = nullptr;         ///< [run][time 0..steps][state]; null = not known
+  const double* measurements = nullptr;  ///< [run][time first_sample..steps][Model::total_outputs()]
+  const double* truth = nullptr;  ///< [run][time 0..steps][state] or [..][agent][state]; null = not known
   int runs = 1;
   int steps = 0;
 };

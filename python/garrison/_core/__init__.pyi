@@ -8,13 +8,17 @@ import numpy
 import numpy.typing
 import typing
 from . import saturation
+from . import rdkf
 from . import structure
 from . import structural
+from . import partial_sharing
+from . import platoon
 
 __all__: list[str] = [
     "Agent",
     "Attack",
     "DesignInfeasible",
+    "Dkf",
     "Error",
     "Filter",
     "Identified",
@@ -24,6 +28,10 @@ __all__: list[str] = [
     "Message",
     "Model",
     "Network",
+    "PartialSharing",
+    "Platoon",
+    "PlatoonBaseline",
+    "Rdkf",
     "Saturation",
     "ScalarGain",
     "Structural",
@@ -42,6 +50,9 @@ __all__: list[str] = [
     "nearest_name",
     "observable",
     "one_step_sparse_observable",
+    "partial_sharing",
+    "platoon",
+    "rdkf",
     "replay",
     "s_sparse_observable",
     "saturation",
@@ -71,7 +82,8 @@ class Model:
 
     A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.
     process_bound: ||w|| <= it, >= 0, nan = not known. measurement_bound: |v_i| <= it, a number or
-    one per agent. Covariances: (n, n), and one (m_i, m_i) array per agent.
+    one per agent. Covariances: (n, n), or (N, n, n) where each agent takes another one for w (no noise is
+    simulated from those), and one (m_i, m_i) array per agent.
     Raises InvalidInput when shapes do not fit or a number is not finite.
     """
     def __init__(
@@ -81,7 +93,7 @@ class Model:
         *,
         process_bound: typing.SupportsFloat | typing.SupportsIndex = ...,
         measurement_bound: typing.Any = None,
-        process_covariance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+        process_covariance: typing.Any = None,
         measurement_covariance: typing.Any | None = None,
     ) -> None: ...
     def __repr__(self) -> str: ...
@@ -123,6 +135,13 @@ class Network:
     matrix whose entry (i, j) says that i hears j. agents: needed when the last ones have no edge.
     Pairs given twice count once. Raises InvalidInput on a self-loop or an index out of range.
     """
+    @staticmethod
+    def band(
+        agents: typing.SupportsInt | typing.SupportsIndex, range: typing.SupportsInt | typing.SupportsIndex
+    ) -> Network:
+        """
+        i and j hear each other when |i - j| <= range.
+        """
     @staticmethod
     def complete(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
     @staticmethod
@@ -191,6 +210,11 @@ class Filter:
     A filter family with its parameters.
     """
     def __repr__(self) -> str: ...
+    @property
+    def detail_names(self) -> list[str]:
+        """
+        Names of the lists (sets, gains) that a run can keep.
+        """
     @property
     def name(self) -> str: ...
     @property
@@ -267,6 +291,37 @@ class Lfre(Filter):
         poles: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
     ) -> None: ...
 
+class Rdkf(Filter):
+    """
+    Resilient distributed Kalman filter.
+
+    Source: Dutta, Zhang, Jin, CDC 2019
+
+    weight: lambda of (8), the pull of a measurement at most; its estimate moves by at most half of (10), which is proportional to it; 0 ignores all measurements [1], >= 0, <= 1e+100
+    penalty: of the whitened residual: "norm" = the paper's; "huber" = the same pull, but a Kalman step as long as it is not reached; "l1" = sensor by sensor; "group" = the neighbours' measurements too, which then travel
+    solver: of the step: "exact", or "ipopt" as a slow cross-check of penalty "norm" in builds that have it
+    smoothing: penalty "norm" only: lambda sqrt(|r|^2 + epsilon^2); solver "ipopt" takes 1e-6 for 0 [1], >= 0, <= 1e+100
+    initial_error: bound on the distance of every initial estimate from the state; giving it asks for run-time error bounds (needs the model's process_bound) [state], >= 0
+    """
+    def __init__(
+        self,
+        *,
+        weight: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        penalty: str = "norm",
+        solver: str = "exact",
+        smoothing: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        initial_error: typing.SupportsFloat | typing.SupportsIndex = ...,
+    ) -> None: ...
+
+class Dkf(Filter):
+    """
+    Distributed Kalman filter, steady state (no protection).
+
+    Source: (7) of Dutta, Zhang, Jin, CDC 2019
+
+    """
+    def __init__(self) -> None: ...
+
 class Structural(Filter):
     """
     Single-time-scale estimator with exact residual tests.
@@ -305,6 +360,126 @@ class Structural(Filter):
         settle: typing.SupportsInt | typing.SupportsIndex = -1,
         isolate: bool = False,
         accuse_missing: bool = False,
+    ) -> None: ...
+
+class PartialSharing(Filter):
+    """
+    Consensus Kalman filter with partial sharing (BR-CDF).
+
+    Source: Moradi, Gogineni, Venkategowda, Werner, 2023, Algorithm 1
+
+    gain: factor of the consensus gain C_i = gamma (A - K_i H_i) P_i; see the stability tests of check [1], >= 0, <= 1e+06
+    shared: entries of the estimate that every agent sends per sample; 0 = all [entries], >= 0
+    shared_each: the same, one number per agent; overrides shared [entries], >= 1
+    selection: which entries every agent sends first: zeros and ones, agent by agent, one per state; overrides shared, shared_each and starts, >= 0, <= 1
+    starts: first selections: "random" subsets (uncoordinated, the paper), or "coordinated": everybody begins with the first entries
+    selection_seed: seed of the random first selections, >= 0
+    shift: circular shift of all selections per sample; any whole number. Without a common factor with the number of states every entry has its turn [entries]
+    start_variance: P_0 = start_variance I [state^2], >= 0, <= 1e+100
+    start_covariance: P_0 row by row, symmetric positive semidefinite; overrides start_variance [state^2]
+    start_is_prediction: the initial estimate and P_0 belong to the first measurement (xhat(0) of the paper), not to the sample before it
+    gains: "frozen" once (11) has converged, "varying" for ever (same values but for rounding), or "steady": the limits from the start
+    """
+    def __init__(
+        self,
+        *,
+        gain: typing.SupportsFloat | typing.SupportsIndex = ...,
+        shared: typing.SupportsInt | typing.SupportsIndex = 0,
+        shared_each: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        selection: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        starts: str = "random",
+        selection_seed: typing.SupportsInt | typing.SupportsIndex = 0,
+        shift: typing.SupportsInt | typing.SupportsIndex = 1,
+        start_variance: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        start_covariance: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        start_is_prediction: bool = False,
+        gains: str = "frozen",
+    ) -> None: ...
+
+class Platoon(Filter):
+    """
+    Observer, detector and controller of a string of vehicles.
+
+    Source: He, Hashemi, Johansson, Automatica 2021, Algorithms 1, 2 and 3
+
+    threshold: saturation threshold: beta_{i,0} of (25), or the static one; left out: the one with the least certified limit under the adaptive threshold [m, m/s], > 0
+    adaptive: the threshold follows the error bound (25); false: static
+    attacked: most absolute sensors attacked, 1..L [sensors]
+    process_noise: ||d_i(t)|| <= eps [m, m/s], >= 0
+    measurement_noise: length of the noise vector of every absolute and relative sensor is at most mu [m, m/s], >= 0
+    initial_error: ||xhat_i(0) - x_i(0)|| <= q [m, m/s], > 0
+    varpi: 1/varpi is the observer gain of vehicles that hear fewer than 2L others [1], > 1
+    reference: position and velocity of the reference at time 0, or at times 0, 1, ...; constant velocity after the last pair [m, m/s]
+    spacing: desired gap between vehicles [m]
+    gs: controller gain on positions, > 0 [1/s^2]
+    gv: controller gain on velocities, > T g_s [1/s]
+    detector: Algorithm 2; false: the sets stay as given
+    bound: "safe" (valid), "tight" (valid, smaller, more work) or "printed": (17) as printed, which is false (counterexamples: cases process_noise_counterexample and lemma1_counterexample) and is therefore never reported as a bound
+    tie: (13), two sources equally near: lower label or smaller error bound
+    count: (29): "runs" of suspects as printed, or "cover": send the pairs that fired and count the least number of sensors that explains them; never weaker
+    pairs: test (27) for all pairs in range and conclude from all explanations by at most b attackers (our notes, S4)
+    neighbours: test (28) for the measurements of all neighbours (our notes, S6)
+    median: take the median of the reconstructed measurements where its bound is smaller (our notes, S3)
+    accuse_missing: a missing (NaN) absolute measurement counts as proof of attack
+    prior_attacked: what vehicles are told before the start: pairs vehicle, sensor proved attacked
+    prior_suspected: the same for suspected sensors
+    prior_free: the same for sensors that are known to be free
+    """
+    def __init__(
+        self,
+        *,
+        threshold: typing.SupportsFloat | typing.SupportsIndex = ...,
+        adaptive: bool = True,
+        attacked: typing.SupportsInt | typing.SupportsIndex = 1,
+        process_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
+        measurement_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
+        initial_error: typing.SupportsFloat | typing.SupportsIndex = ...,
+        varpi: typing.SupportsFloat | typing.SupportsIndex = 2.0,
+        reference: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        spacing: typing.SupportsFloat | typing.SupportsIndex = 20.0,
+        gs: typing.SupportsFloat | typing.SupportsIndex = ...,
+        gv: typing.SupportsFloat | typing.SupportsIndex = ...,
+        detector: bool = True,
+        bound: str = "safe",
+        tie: str = "low",
+        count: str = "runs",
+        pairs: bool = False,
+        neighbours: bool = False,
+        median: bool = False,
+        accuse_missing: bool = False,
+        prior_attacked: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        prior_suspected: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        prior_free: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+    ) -> None: ...
+
+class PlatoonBaseline(Filter):
+    """
+    Unprotected and trimmed-mean control of a string of vehicles.
+
+    Source: baselines PWM, PTD (Lin, Jia 2009), PBE (Mitra, Sundaram 2019) of the platoon paper; our definitions
+
+    kind: which one
+    attacked: pbe: values trimmed from each end [sensors], >= 0
+    varpi: pbe: 1/varpi is the gain of the local update [1], >= 1
+    reference: position and velocity of the reference at time 0, or at times 0, 1, ... [m, m/s]
+    spacing: desired gap between vehicles [m]
+    gs: controller gain on positions, > 0 [1/s^2]
+    gv: controller gain on velocities, > T g_s [1/s]
+    process_noise: of the simulated vehicles [m, m/s], >= 0
+    measurement_noise: of the simulated sensors [m, m/s], >= 0
+    """
+    def __init__(
+        self,
+        *,
+        kind: str = "",
+        attacked: typing.SupportsInt | typing.SupportsIndex = 1,
+        varpi: typing.SupportsFloat | typing.SupportsIndex = 2.0,
+        reference: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+        spacing: typing.SupportsFloat | typing.SupportsIndex = 20.0,
+        gs: typing.SupportsFloat | typing.SupportsIndex = ...,
+        gv: typing.SupportsFloat | typing.SupportsIndex = ...,
+        process_noise: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        measurement_noise: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
 
 class Attack:
@@ -366,6 +541,11 @@ class Agent:
         """
     @property
     def bound(self) -> float: ...
+    @property
+    def control(self) -> float:
+        """
+        What it does to its own plant until the next sample; nan where it has none.
+        """
     @property
     def dropped(self) -> int:
         """
@@ -625,6 +805,7 @@ def simulate(
     x0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     start_error: typing.SupportsFloat | typing.SupportsIndex,
     noise: str,
+    disturbances: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     trials: typing.SupportsInt | typing.SupportsIndex,
     seed: typing.SupportsInt | typing.SupportsIndex,
     threads: typing.SupportsInt | typing.SupportsIndex,

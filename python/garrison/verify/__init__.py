@@ -10,12 +10,18 @@ from pathlib import Path
 from typing import Any
 
 from garrison._core import IoError
-from garrison.verify import saturation, structural
+from garrison.verify import partial_sharing, platoon, rdkf, saturation, structural
 from garrison.verify.bad import judge
 from garrison.verify.compare import FieldResult, compare
 
 #: name of the paper in a case file -> module that recomputes its cases
-FAMILIES = {"he_secure": saturation, "doost_structural": structural}
+FAMILIES = {
+    "he_secure": saturation,
+    "dutta_rdkf": rdkf,
+    "he_platoon": platoon,
+    "moradi_brcdf": partial_sharing,
+    "doost_structural": structural,
+}
 
 
 @dataclass
@@ -37,8 +43,7 @@ def _family(case: dict[str, Any], path: Path) -> str:
     if isinstance(case.get("paper"), str):
         return str(case["paper"])
     inputs = case.get("inputs", {})
-    if isinstance(inputs, list) and inputs:
-        inputs = inputs[0]
+    inputs = inputs[0] if isinstance(inputs, list) and inputs else inputs
     for name, module in FAMILIES.items():
         if isinstance(inputs, dict) and module.recognises(inputs):
             return name
@@ -72,7 +77,10 @@ def verify_file(path: Path, family: str | None = None) -> FileResult | None:
             result.fields = judge(module, case, _template(case, paper, path))
         elif "inputs" in case and "expected" in case:
             result.fields = compare(
-                module.evaluate(case["inputs"], case["expected"]), case["expected"], module.TOLERANCES
+                module.evaluate(case["inputs"], case["expected"]),
+                case["expected"],
+                module.TOLERANCES,
+                informative=frozenset(getattr(module, "INFORMATIVE", ())),
             )
         else:
             result.fields = [FieldResult.failure("file", "has neither expected nor must")]

@@ -69,7 +69,7 @@ def _holds(rule: dict[str, Any], output: Any) -> FieldResult:
         missing = set(rule["value"]) - _accused(got, True)
         return FieldResult(name, float(len(missing)), not missing, f"not accused {sorted(missing)}" if missing else "")
     if kind == "within_bound":
-        error, bound = got
+        error, bound = output["within_bound"] if "bound" in rule else got
         known = np.isfinite(bound)
         excess = float((error[known] - bound[known]).max(initial=0.0))
         return FieldResult(name, max(excess, 0.0), excess <= 0.0)

@@ -10,6 +10,16 @@ ABSOLUTE = 1e-12
 
 #: what an evaluator returns for an expected key that it does not know
 NOT_UNDERSTOOD = object()
+#: what an evaluator returns for a key that nobody can recompute from the inputs of this case
+NOT_COMPARED = object()
+
+
+@dataclass
+class Within:
+    """A computed number or array with a tolerance of its own, absolute, per entry."""
+
+    value: Any
+    allowed: Any
 
 
 @dataclass
@@ -55,6 +65,9 @@ def _whole(value: Any) -> bool:
 
 def _numeric(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
     e = np.asarray(expected, dtype=float)
+    allowed = None
+    if isinstance(got, Within):
+        got, allowed = got.value, np.broadcast_to(np.asarray(got.allowed, dtype=float), e.shape)
     g = np.asarray(got, dtype=float)
     if g.shape != e.shape:
         return FieldResult.failure(name, f"got shape {g.shape}, expected {e.shape}")
@@ -65,6 +78,8 @@ def _numeric(name: str, got: Any, expected: Any, relative: float) -> FieldResult
     scale = float(np.abs(e[finite]).max(initial=0.0))
     worst = float(np.abs(g[finite] - e[finite]).max(initial=0.0))
     deviation = worst / scale if scale > 0 else worst
+    if allowed is not None:
+        return FieldResult(name, deviation, bool((np.abs(g[finite] - e[finite]) <= allowed[finite]).all()))
     return FieldResult(name, deviation, worst <= relative * scale + ABSOLUTE)
 
 
@@ -90,13 +105,23 @@ def _leaf(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
     return _numeric(name, got, numbers, relative)
 
 
-def compare(got: Any, expected: Any, tolerances: dict[str, float], name: str = "") -> list[FieldResult]:
-    """Field by field; `tolerances` maps the end of a field's name to its own relative tolerance."""
+def compare(
+    got: Any, expected: Any, tolerances: dict[str, float], name: str = "", informative: frozenset[str] = frozenset()
+) -> list[FieldResult]:
+    """Field by field; `tolerances` maps the end of a field's name to its own relative tolerance.
+
+    Fields whose key, or key within its parent ("parent/key"), is in `informative` say something about the reference
+    and are not compared.
+    """
     if isinstance(expected, dict):
         results = []
         for key, value in expected.items():
+            path = f"{name}/{key}" if name else key
+            if key in informative or "/".join(path.split("/")[-2:]) in informative:
+                continue
             inner = got.get(key, NOT_UNDERSTOOD) if isinstance(got, dict) else NOT_UNDERSTOOD
-            results += compare(inner, value, tolerances, f"{name}/{key}" if name else key)
+            if inner is not NOT_COMPARED:
+                results += compare(inner, value, tolerances, path, informative)
         return results
     if isinstance(expected, list) and expected and all(isinstance(v, dict) for v in expected):
         if not isinstance(got, list) or len(got) != len(expected):
@@ -104,7 +129,7 @@ def compare(got: Any, expected: Any, tolerances: dict[str, float], name: str = "
             return [FieldResult.failure(name, f"got {count} entries, expected {len(expected)}")]
         results = []
         for k, (g, e) in enumerate(zip(got, expected, strict=True)):
-            results += compare(g, e, tolerances, f"{name}[{k}]")
+            results += compare(g, e, tolerances, f"{name}[{k}]", informative)
         return results
     own = [tolerance for end, tolerance in tolerances.items() if name.endswith(end)]
     return [_leaf(name, got, expected, own[0] if own else RELATIVE)]

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <map>
 
-#include "../covariances.hpp"
 #include "../random_system.hpp"
 #include "garrison/attacks/registry.hpp"
 #include "garrison/runtime/simulate.hpp"
@@ -23,9 +22,15 @@ std::vector<std::shared_ptr<const AnyFilter>> filters(bool bounded) {
       make_filter("saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{4}}, {"chebyshev", true}}),
       make_filter("scalar_gain", {{"rounds", std::int64_t{2}}}),
       make_filter("lfre", {}),
+      make_filter("dkf", {}),
+      make_filter("rdkf", {{"weight", 0.5}}),
+      make_filter("rdkf", {{"weight", 0.5}, {"penalty", std::string("l1")}}),
+      make_filter("rdkf", {{"weight", 0.5}, {"penalty", std::string("group")}}),
       make_filter("structural", {}),
       make_filter("structural",
-                  {{"window", std::int64_t{3}}, {"isolate", true}, {"settle", std::int64_t{0}}})};
+                  {{"window", std::int64_t{3}}, {"isolate", true}, {"settle", std::int64_t{0}}}),
+      make_filter("partial_sharing", {{"gain", 0.1}, {"starts", "coordinated"}, {"shared", std::int64_t{1}}}),
+      make_filter("partial_sharing", {{"gain", 0.1}, {"gains", "varying"}})};
   if (bounded) {
     const ParamMap base{{"rounds", std::int64_t{12}}, {"attacked", std::int64_t{2}}, {"initial_error", 2.0}};
     ParamMap detector = base;
@@ -34,6 +39,8 @@ std::vector<std::shared_ptr<const AnyFilter>> filters(bool bounded) {
     adaptive.insert({"adaptive", true});
     all.push_back(make_filter("saturation", detector));
     all.push_back(make_filter("saturation", adaptive));
+    all.push_back(
+        make_filter("rdkf", {{"weight", 0.5}, {"penalty", std::string("huber")}, {"initial_error", 2.0}}));
   }
   return all;
 }
@@ -46,7 +53,7 @@ struct Setup {
 
 Setup setup(int n, int agents, std::uint64_t seed) {
   test::Rng rng(seed);
-  Model model = test::with_covariances(test::scalar_model(rng, n, agents, 0.98, 0.02, 0.01));
+  Model model = test::scalar_model(rng, n, agents, 0.98, 0.02, 0.01);
   const Network network = test::connected_network(rng, agents);
   Matrix y = test::normal_matrix(rng, 30, agents);
   y(3, 1) = kNaN;
@@ -134,7 +141,7 @@ TEST_CASE("replay gives the bits of agents driven by hand, and survives bad meas
 TEST_CASE("any number of threads gives the same bits, and so do trials side by side") {
   for (const int n : {1, 3, 8, 9}) {
     test::Rng rng(static_cast<std::uint64_t>(n));
-    const Model model = test::with_covariances(test::scalar_model(rng, n, 9, 1.0, 0.02, 0.01));
+    const Model model = test::scalar_model(rng, n, 9, 1.0, 0.02, 0.01);
     const Network network = test::connected_network(rng, 9);
     const std::vector<Attack> attacks{scale(Schedule(5, {2}), 3.0),
                                       random_noise(Schedule(9, {4, 5}, 20, 0.5), "normal", 2.0, false),

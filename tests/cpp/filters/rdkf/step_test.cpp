@@ -8,6 +8,8 @@
 
 #include "../../cases.hpp"
 #include "../../random_system.hpp"
+#include "garrison/filters/rdkf/box_step.hpp"
+#include "garrison/filters/rdkf/ipopt_step.hpp"
 
 using namespace garrison;
 using namespace garrison::cases;
@@ -22,9 +24,12 @@ struct Solution {
   Step step;
 };
 
-Solution solved(const StepFactors& f, double lambda, const Vector& y, const Vector& x0) {
-  Solution s{x0, Vector::Zero(f.d.size()), {}};
-  s.step = solve(f, lambda, y.data(), s.x.data(), s.u.data());
+Solution solved(const StepFactors& f, double lambda, const Vector& y, const Vector& x0,
+                double smoothing = 0.0) {
+  Vector room = Vector::Zero(static_cast<Eigen::Index>(f.room()));
+  Solution s{x0, {}, {}};
+  s.step = solve(f, {lambda, smoothing}, y.data(), s.x.data(), room.data());
+  s.u = room.head(f.outputs());
   return s;
 }
 
@@ -47,6 +52,13 @@ TEST_CASE("single problems of every kind have the reference solution") {
     const Solution huber = solved(step_factors(root, M, Q, Penalty::huber), lambda, b, x0);
     CHECK(agree_entries(norm.x, vector(out["x"])));
     CHECK(agree_entries(huber.x, vector(out["x_huber"])));
+    const StepFactors f = step_factors(root, M, Q, Penalty::norm);
+    CHECK(agree_entries(solved(f, lambda, b, x0, number(in["eps"])).x, vector(out["x_smoothed"])));
+    const BoxFactors box = box_factors(root, M, Q);
+    Vector x = x0;
+    Vector room = Vector::Zero(static_cast<Eigen::Index>(box.room()));
+    solve_box(box, lambda, b.data(), x.data(), room.data());
+    CHECK(agree_entries(x, vector(out["x_l1"]), 1e-8));
     const double mu = number(out["mu"]);
     const double size = b.norm() + (M * x0).norm();
     if (std::isinf(mu)) {
@@ -85,19 +97,21 @@ TEST_CASE("3000 random problems over 12 decades fulfil the optimality conditions
     const Penalty penalty = instance % 2 == 0 ? Penalty::norm : Penalty::huber;
     const StepFactors f = step_factors(Matrix::Identity(q, q), M, Q, penalty);
     if (kind == 5) {  // at the edge between saturated and not
-      const Vector rho = f.R * (b - M * x0);
-      const double edge = (rho.array() / (f.d.array() + 1e-300)).matrix().norm();
+      const Vector rho = f.R.dense() * (b - M * x0);
+      const Eigen::Map<const Vector> d(f.d.data(), q);
+      const double edge = (rho.array() / (d.array() + 1e-300)).matrix().norm();
       if (std::isfinite(edge) && edge < 1e200) lambda = edge * (1.0 + uniform(rng, -1e-9, 1e-9));
     }
     const Solution s = solved(f, lambda, b, x0);
     CAPTURE(instance);
-    CHECK((f.K.transpose() * f.K - M.transpose() * M).norm() <= 1e-12 * M.squaredNorm());
+    const Matrix K = f.K.dense();
+    CHECK((K.transpose() * K - M.transpose() * M).norm() <= 1e-12 * M.squaredNorm());
     // Residual plus the penalty's own part: V'(b - M x) = mu u (+ u/2 for huber).
-    const Vector residual = f.R * b - f.K * s.x;
+    const Vector residual = f.R.dense() * b - K * s.x;
     const double own = penalty == Penalty::huber ? 0.5 : 0.0;
     const double scale = b.norm() + (M * x0).norm() + 1e-300;
     worst_residual = std::max(worst_residual, (residual - (s.step.mu + own) * s.u).norm() / scale);
-    const Vector push = f.K.transpose() * s.u;
+    const Vector push = K.transpose() * s.u;
     const Vector gradient = 2.0 * (Q * (s.x - x0)) - push;
     const double weight = push.norm() + 2.0 * Q.norm() * (s.x.norm() + x0.norm());
     worst_gradient = std::max(worst_gradient, gradient.norm() / weight);
@@ -130,4 +144,69 @@ TEST_CASE("huge and degenerate data stay finite") {
   CHECK(solved(nothing, 1.0, Vector(0), x0).x == x0);
   CHECK_THROWS_WITH_AS(step_factors(M, M, -M, Penalty::norm), doctest::Contains("not positive definite"),
                        InvalidInput);
+}
+
+TEST_CASE("elementwise penalty: optimality of 500 random problems, with dependent rows and q > n") {
+  Rng rng(20261125);
+  double worst = 0.0;
+  int most = 0;
+  for (int instance = 0; instance < 500; ++instance) {
+    const int n = whole(rng, 1, 8);
+    const int q = whole(rng, 1, 12);
+    Matrix M = normal_matrix(rng, q, n);
+    if (instance % 4 == 1 && q > 1) M.row(q - 1) = M.row(0);
+    if (instance % 4 == 2) M.row(0).setZero();
+    const Matrix root = normal_matrix(rng, n, n);
+    const Matrix Q = root * root.transpose() + 0.1 * Matrix::Identity(n, n);
+    const Vector x0 = normal_matrix(rng, n, 1);
+    Vector b = M * x0 + std::pow(10.0, uniform(rng, -3, 3)) * normal_matrix(rng, q, 1);
+    if (instance % 5 == 0) b = M * normal_matrix(rng, n, 1);
+    const double lambda = std::pow(10.0, uniform(rng, -3, 3));
+    const BoxFactors f = box_factors(Matrix::Identity(q, q), M, Q);
+    Vector x = x0;
+    Vector room = Vector::Zero(static_cast<Eigen::Index>(f.room()));
+    const Step step = solve_box(f, lambda, b.data(), x.data(), room.data());
+    const Vector u = room.head(q);
+    const Vector r = b - M * x;
+    const double size = b.norm() + (M * x0).norm() + lambda * f.H.norm();
+    CAPTURE(instance);
+    CHECK(u.cwiseAbs().maxCoeff() <= lambda);
+    const Vector gradient = 2.0 * Q * (x - x0) - M.transpose() * u;
+    worst = std::max(worst, gradient.norm() / (lambda * M.norm() + 2.0 * Q.norm() * (x.norm() + x0.norm())));
+    for (int i = 0; i < q; ++i) {  // complementarity
+      const double wrong = std::abs(u(i)) < lambda ? std::abs(r(i)) : u(i) > 0 ? -r(i) : r(i);
+      worst = std::max(worst, wrong / size);
+    }
+    most = std::max(most, step.iterations);
+  }
+  std::cout << "rdkf elementwise step: 500 problems from seed 20261125, optimality " << worst
+            << ", active-set iterations at most " << most << "\n";
+  CHECK(worst <= 1e-11);
+}
+
+TEST_CASE("Ipopt agrees within what its smoothing allows, or is refused with what to do") {
+  if (!ipopt_available()) {
+    CHECK_THROWS_WITH_AS(require_ipopt(), doctest::Contains("coinor-libipopt-dev"), InvalidInput);
+    return;
+  }
+  Rng rng(7);
+  double worst = 0.0;
+  for (int instance = 0; instance < 60; ++instance) {
+    const int n = whole(rng, 1, 10);
+    const int q = whole(rng, 1, 8);
+    const Matrix M = normal_matrix(rng, q, n);
+    const Matrix root = normal_matrix(rng, n, n);
+    const Matrix Q = root * root.transpose() + 0.1 * Matrix::Identity(n, n);
+    const Vector x0 = normal_matrix(rng, n, 1);
+    const Vector b = M * x0 + uniform(rng, 0.1, 20.0) * normal_matrix(rng, q, 1);
+    const double lambda = uniform(rng, 0.1, 5.0);
+    const Solution exact = solved(step_factors(Matrix::Identity(q, q), M, Q, Penalty::norm), lambda, b, x0);
+    Vector x = x0;
+    const Step step = solve_ipopt(Q, M, b, {lambda, 0.0}, x.data());
+    CAPTURE(instance);
+    CHECK(step.iterations >= 0);
+    worst = std::max(worst, (x - exact.x).norm() / (1.0 + exact.x.norm()));
+  }
+  std::cout << "rdkf step: 60 problems from seed 7, largest distance of Ipopt's solution " << worst << "\n";
+  CHECK(worst <= 1e-3);
 }

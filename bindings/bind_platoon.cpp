@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vehicles: their model, and the analysis of the platoon paper.
+#include "bindings.hpp"
+#include "garrison/filters/platoon/bounds.hpp"
+#include "garrison/filters/platoon/detector.hpp"
+#include "garrison/filters/platoon/loop.hpp"
+#include "garrison/filters/platoon/partition.hpp"
+#include "garrison/filters/platoon/theorems.hpp"
+#include "garrison/filters/platoon/world.hpp"
+
+using namespace garrison;
+using namespace garrison::platoon;
+
+namespace {
+
+py::tuple pair(const Interval& i) { return py::make_tuple(i.lo, i.hi); }
+
+void bind_setting(py::module_& p) {
+  py::class_<Setting>(
+      p, "Setting",
+      "What Assumptions 1 and 2 and the observer's tuning say: N vehicles, range L, period T,\n"
+      "b attacked sensors, noise bounds eps and mu, initial error q, threshold beta.")
+      .def(py::init([](int vehicles, int range, double period, int attacked, double eps, double mu, double q,
+                       double varpi, double beta, bool adaptive) {
+             const Setting s{vehicles, range, period, attacked, eps, mu, q, varpi, beta, adaptive};
+             require(s);
+             return s;
+           }),
+           py::kw_only(), py::arg("vehicles"), py::arg("range"), py::arg("period"), py::arg("attacked"),
+           py::arg("eps"), py::arg("mu"), py::arg("q"), py::arg("varpi") = 2.0, py::arg("beta"),
+           py::arg("adaptive") = true)
+      .def_property_readonly("norm_A", [](const Setting& s) { return norm_A(s); })
+      .def_property_readonly(
+          "mubar", [](const Setting& s) { return mubar(s); }, "(8)")
+      .def_property_readonly(
+          "beta0", [](const Setting& s) { return beta0(s); }, "(20), with mubar")
+      .def_property_readonly("k0", [](const Setting& s) { return k0(s); }, "(25)");
+}
+
+void bind_theorems(py::module_& p) {
+  p.def("beta1_bar", &beta1_bar, py::arg("setting"), py::arg("omega"), "(20)");
+  p.def("beta2_bar", &beta2_bar, py::arg("setting"), py::arg("omega"), "(20)");
+  p.def("proposition2", &proposition2, py::arg("setting"), py::arg("omega"), "(23)");
+  p.def("f3", &f3, py::arg("setting"), py::arg("omega"), "(24)");
+  p.def("f4", &f4, py::arg("setting"), py::arg("omega"), "(24)");
+  p.def(
+      "omega_interval", [](const Setting& s) { return pair(omega_interval(s)); }, py::arg("setting"),
+      "All omega with 0 < beta1_bar < beta2_bar; (nan, nan) when there is none.");
+  p.def(
+      "beta_interval", [](const Setting& s) { return pair(beta_interval(s)); }, py::arg("setting"),
+      "All thresholds that Theorem 1 admits for some omega.");
+  p.def(
+      "beta_interval_safe", [](const Setting& s) { return pair(beta_interval_safe(s)); }, py::arg("setting"),
+      "All thresholds with which the bound that holds contracts.");
+  p.def("safe_limit", &safe_limit, py::arg("setting"),
+        "Limit of the bound that holds, nobody identified; nan when it grows for ever.");
+  p.def("best_threshold", &best_threshold, py::arg("setting"),
+        "Threshold with the least such limit under the adaptive rule. Raises DesignInfeasible.");
+  p.def(
+      "theorem1",
+      [](const Setting& s, int free_in_reach, int proved, int distance) {
+        const auto b = theorem1(s, {free_in_reach, proved, distance});
+        return py::dict(py::arg("k_star") = b.k_star, py::arg("Q") = b.Q, py::arg("m") = b.m,
+                        py::arg("alpha1") = b.alpha1, py::arg("alpha2") = b.alpha2,
+                        py::arg("alpha3") = b.alpha3);
+      },
+      py::arg("setting"), py::kw_only(), py::arg("free_in_reach") = 0, py::arg("proved") = 0,
+      py::arg("distance") = 1, "(21), (22) as printed.");
+  p.def(
+      "theorem2",
+      [](const Setting& s, int free_in_reach, int proved, int distance) {
+        const auto b = theorem2(s, {free_in_reach, proved, distance});
+        return py::dict(py::arg("k0") = b.k0, py::arg("h1") = b.h1, py::arg("h2") = b.h2,
+                        py::arg("alpha1") = b.alpha1, py::arg("alpha2") = b.alpha2,
+                        py::arg("alpha3") = b.alpha3);
+      },
+      py::arg("setting"), py::kw_only(), py::arg("free_in_reach") = 0, py::arg("proved") = 0,
+      py::arg("distance") = 1, "(26), with 2L+1-b in h1.");
+}
+
+void bind_loop(py::module_& p) {
+  p.def("grounded_eigenvalues", &grounded_eigenvalues, py::arg("vehicles"), "Of L_g, upwards.");
+  p.def("assumption4", &assumption4, py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"));
+  p.def(
+      "loop_factors",
+      [](int vehicles, double period, double gs, double gv) {
+        const auto f = loop_factors(vehicles, period, gs, gv);
+        return py::dict(py::arg("rho") = f.rho, py::arg("M_max") = f.M_max, py::arg("M_min") = f.M_min,
+                        py::arg("kappa") = f.kappa, py::arg("xi") = f.xi, py::arg("l1") = f.l1);
+      },
+      py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"),
+      "Factors of Lemma 2 for P_0 of (31) by 2 x 2 blocks; all but rho nan when P_0 is not Schur.");
+  p.def(
+      "theorem4",
+      [](int vehicles, double period, double gs, double gv, double eps, double alpha) {
+        const auto b = theorem4(vehicles, period, gs, gv, eps, alpha);
+        return py::dict(py::arg("eta") = b.eta, py::arg("eta_safe") = b.eta_safe, py::arg("bound") = b.bound,
+                        py::arg("bound_safe") = b.bound_safe, py::arg("bound_sharp") = b.bound_sharp,
+                        py::arg("spacing") = b.spacing);
+      },
+      py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"), py::arg("eps"), py::arg("alpha"),
+      "Limsup of (4): as printed, with the corrected (31), and with the sharper factor.");
+}
+
+void bind_pieces(py::module_& p) {
+  p.def("in_V1", &in_V1, py::arg("vehicle"), py::arg("vehicles"), py::arg("range"), "(5): hears 2L others.");
+  p.def("nearest", &nearest, py::arg("vehicle"), py::arg("vehicles"),
+        "(30): the next ones; -1 stands for the reference, on both sides.");
+  p.def(
+      "runs",
+      [](std::vector<int> labels) {
+        std::sort(labels.begin(), labels.end());
+        return py::make_tuple(runs(labels), count_runs(labels));
+      },
+      py::arg("labels"), "Maximal runs of successive labels, and the left side of (29).");
+  p.def(
+      "gain",
+      [](double beta, double eta_s, double eta_v, bool attacked, bool free) {
+        return gain(beta, std::hypot(eta_s, eta_v), attacked, free);
+      },
+      py::arg("beta"), py::arg("eta_s"), py::arg("eta_v"), py::kw_only(), py::arg("attacked") = false,
+      py::arg("free") = false, "(14) of one innovation.");
+  p.def(
+      "best_source",
+      [](int vehicle, int vehicles, int range, const std::vector<int>& free, bool by_bound,
+         const std::vector<double>& alpha) {
+        if (alpha.size() != static_cast<std::size_t>(vehicles))
+          refuse("alpha", std::to_string(alpha.size()) + " numbers", "one per vehicle");
+        BestSource best(by_bound);
+        for (int j = 0; j < vehicles; ++j) {
+          const bool candidate = (std::abs(j - vehicle) <= range && in_V1(j, vehicles, range)) ||
+                                 std::find(free.begin(), free.end(), j) != free.end();
+          if (j != vehicle && candidate)
+            best.offer(j, std::abs(j - vehicle), alpha[static_cast<std::size_t>(j)]);
+        }
+        return best.id();
+      },
+      py::arg("vehicle"), py::arg("vehicles"), py::arg("range"), py::arg("free"), py::kw_only(),
+      py::arg("by_bound"), py::arg("alpha"), "j_i of (13); -1 when there is none.");
+}
+
+}  // namespace
+
+void bind_platoon(py::module_& m) {
+  py::module_ p = m.def_submodule(
+      "platoon", "Vehicles in a string: model and analysis. Ids 0..N-1 are the paper's 1..N.");
+  p.def("model", &model, py::arg("vehicles"), py::arg("period"), py::arg("inputs") = false,
+        "Model of N vehicles (position m, velocity m/s) sampled every `period` s. Outputs per vehicle: "
+        "absolute\n"
+        "position and velocity (attackable); relative ones to the vehicle ahead (secured, not of vehicle 0); "
+        "with\n"
+        "`inputs`, for recorded data, the input applied from this sample on (nan = what the filter "
+        "commanded).");
+  p.attr("DISTURBANCES") = kDisturbances;
+  bind_setting(p);
+  bind_theorems(p);
+  bind_loop(p);
+  bind_pieces(p);
+}

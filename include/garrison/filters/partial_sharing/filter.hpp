@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// Consensus Kalman filter that shares a part of its estimate: BR-CDF, Algorithm 1 of Moradi, Gogineni,
+// Venkategowda, Werner, "Distributed filtering design with enhanced resilience to coordinated Byzantine
+// attacks".
+//
+// Steps, for every agent i and sample t (numbers are the paper's equations; k = t - 1):
+//   predict  xhat_i(k) = A z_i(t-1)
+//   share    the l entries of xhat_i(k) that S_i(k) selects; the selection then shifts by tau
+//   update   z_i(t) = xhat_i + Kf (y_i - H_i xhat_i) + gamma (I - Kf H_i) P_i sum_j S_j (xbar_j - xhat_i)
+// so that A z_i(t) is xhat_i(k+1) of (10): K_i = A Kf (9) and C_i = gamma (A - K_i H_i) P_i. The estimate of
+// time t is z_i(t), which has seen y_i(t); the paper's xhat_i(k+1) is the prediction from it. Gains follow
+// (11), which sees no data: they are frozen once they have converged, and a missing measurement leaves them
+// alone.
+//
+// Where we leave the print (our notes): C_i has no inverse of P_i, so singular covariances and agents without
+// sensors are ordinary; entries j did not share, or that are missing, too old or beyond kHuge, count as
+// agreeing. There is no screening: one liar moves the estimate without limit, in proportion to its lie. No
+// bound is reported.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "garrison/core/block.hpp"
+#include "garrison/core/conditions.hpp"
+#include "garrison/core/filter.hpp"
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+#include "garrison/core/params.hpp"
+#include "garrison/filters/partial_sharing/covariance.hpp"
+#include "garrison/filters/partial_sharing/selection.hpp"
+
+namespace garrison {
+
+struct GARRISON_EXPORT PartialSharing {
+  static constexpr std::string_view name = "partial_sharing";
+  static constexpr std::string_view title = "Consensus Kalman filter with partial sharing (BR-CDF)";
+  static constexpr std::string_view source = "Moradi, Gogineni, Venkategowda, Werner, 2023, Algorithm 1";
+
+  struct Params {
+    double gain = kNaN;
+    int shared = 0;
+    std::vector<double> shared_each;
+    std::vector<double> selection;
+    std::string starts = "random";
+    int selection_seed = 0;
+    int shift = 1;
+    double start_variance = 1.0;
+    std::vector<double> start_covariance;
+    bool start_is_prediction = false;
+    std::string gains = "frozen";
+
+    static auto fields();
+  };
+
+  /// What an agent's measurements look like with unit noise.
+  struct Sensor {
+    std::vector<double> W;  ///< inverse of the Cholesky factor of R_i, outputs x outputs, row by row
+    std::vector<double> H;  ///< W H_i, row by row
+  };
+  /// The limit of an agent's recursion: gamma times the filtered covariance, and the gain of whitened
+  /// innovations.
+  struct Steady {
+    std::vector<double> P, G, K;
+  };
+  struct Gains {
+    double gamma = 0.0;
+    partial_sharing::Selection selection;
+    std::vector<Sensor> sensors;
+    std::vector<Steady> steady;  ///< empty: the recursion runs
+    Matrix Q;
+    Matrix P0;
+    bool given = false;  ///< the start is xhat(0) with P0, not an estimate one sample earlier
+    bool freeze = true;
+  };
+
+  template <int n>
+  static constexpr std::size_t kSquare = n == Dynamic ? 1 : static_cast<std::size_t>(n) * n;
+
+  template <int n>
+  struct State {
+    Vec<n> z;  // estimate at t
+    Vec<n> x;  // xhat_i(k), the prediction of the same time
+    std::int64_t t = 0;
+    bool given = false;
+    bool frozen = false;
+    Verdict verdict = Verdict::cleared;
+    double statistic = kNaN;
+    std::unique_ptr<double[]> room;  // P, G, K, y, and scratch where n is not known when compiling
+    AgentSet nobody;
+  };
+
+  /// On the wire: the shared entries. Which ones they are follows from the sender and the time.
+  template <int n>
+  struct Message {
+    std::conditional_t<n == Dynamic, std::vector<double>, std::array<double, n == Dynamic ? 1 : n>> value{};
+    std::conditional_t<n == Dynamic, std::vector<int>, std::array<int, n == Dynamic ? 1 : n>> entry{};
+    int count = 0;
+    std::int64_t t = -1;  // sample it speaks of; -1 = nothing yet
+    std::span<double> values() { return {value.data(), static_cast<std::size_t>(count)}; }
+    std::span<const int> entries() const { return {entry.data(), static_cast<std::size_t>(count)}; }
+  };
+
+  /// Detectability, sharing, and the three stability tests side by side; MSE with and without sharing.
+  static Check check(const Params& params, const Model& model, const Network& network);
+  /// @throws InvalidInput when covariances are missing or R_i is singular, selections do not fit, or steady
+  /// gains are asked for where (11) diverges
+  static Gains design(const Params& params, const Model& model, const Network& network);
+  static int rounds(const Gains&) { return 1; }
+
+  template <int n>
+  static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
+    State<n> fresh;
+    fresh.z = fresh.x = x0;
+    fresh.given = g.given;
+    const auto nn = static_cast<std::size_t>(dimension<n>(l));
+    const auto q = static_cast<std::size_t>(l.outputs);
+    const std::size_t scratch = n == Dynamic ? 3 * nn * nn + 5 * nn : 0;
+    fresh.room = std::make_unique<double[]>(2 * nn * nn + q * nn + q + scratch);
+    std::copy_n(g.P0.data(), nn * nn, fresh.room.get());
+    if (!g.steady.empty()) {
+      const Steady& limit = g.steady[static_cast<std::size_t>(l.id)];
+      std::copy(limit.P.begin(), limit.P.end(), fresh.room.get());
+      std::copy(limit.G.begin(), limit.G.end(), fresh.room.get() + nn * nn);
+      std::copy(limit.K.begin(), limit.K.end(), fresh.room.get() + 2 * nn * nn);
+      fresh.frozen = true;
+    }
+    m.count = g.selection.shared(l.id);
+    if constexpr (n == Dynamic) {
+      m.value.assign(static_cast<std::size_t>(m.count), 0.0);
+      m.entry.assign(static_cast<std::size_t>(m.count), 0);
+    }
+    m.t = -1;
+    s = std::move(fresh);
+  }
+
+  template <int n>
+  static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
+                    Message<n>& m) noexcept {
+    const int nn = dimension<n>(l);
+    if (s.given)
+      s.x = s.z;
+    else
+      multiply<n>(l.A, s.z.data(), s.x.data(), nn);
+    s.given = false;
+    s.t = t;
+    std::copy_n(y, l.outputs, measurements(l, s));
+    const int moved = g.selection.offset(t - 1);
+    const auto own = g.selection.entries(l.id);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const int a = own[k] + moved < nn ? own[k] + moved : own[k] + moved - nn;
+      m.entry[k] = a;
+      m.value[k] = s.x[a];
+    }
+    m.t = t;
+  }
+
+  template <int n>
+  static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
+                   Message<n>& m) noexcept {
+    using Kernel = Update<n>;
+    if constexpr (n == 4 || n == 8)  // where wide registers pay; every instruction set compiles it once more
+      run_widest<Kernel>(&l, &g, &s, &inbox);
+    else
+      Kernel::template run<2>(&l, &g, &s, &inbox);
+    m.t = -1;  // nothing to say before the next sample
+  }
+
+  template <int n>
+  static Report report(const Local&, const Gains&, const State<n>& s) noexcept {
+    Report r;
+    r.statistic = s.statistic;
+    r.verdict = s.verdict;
+    return r;
+  }
+  template <int n>
+  static const Vec<n>& estimate(const State<n>& s) noexcept {
+    return s.z;
+  }
+  template <int n>
+  static const AgentSet* accused(const State<n>& s) noexcept {
+    return &s.nobody;
+  }
+  template <int n>
+  static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
+    const int nn = dimension<n>(l);
+    for (int r = 0; r < l.outputs; ++r) {
+      out[r] = 0.0;
+      for (int i = 0; i < nn; ++i) {
+        double predicted = s.given ? s.z[i] : 0.0;
+        for (int k = 0; k < nn && !s.given; ++k)
+          predicted += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.z[k];
+        out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + i] * predicted;
+      }
+    }
+  }
+  template <int n>
+  static double alarm_level(const Local&, const Gains&, const State<n>&) noexcept {
+    return kInfinity;
+  }
+  static constexpr std::size_t signal_count = 3;
+  static std::vector<std::string> signal_names() { return {"trace", "frozen", "shared"}; }
+  /// tr P_i of (11) for the next sample, whether the gains are frozen, and the number of entries sent.
+  template <int n>
+  static void signals(const Local& l, const Gains& g, const State<n>& s, double* out) noexcept {
+    const int nn = dimension<n>(l);
+    out[0] = 0.0;
+    for (int i = 0; i < nn; ++i)
+      out[0] += s.room[static_cast<std::size_t>(i) * (static_cast<std::size_t>(nn) + 1)];
+    out[1] = s.frozen ? 1.0 : 0.0;
+    out[2] = static_cast<double>(g.selection.shared(l.id));
+  }
+
+ private:
+  template <int n>
+  static double* measurements(const Local& l, const State<n>& s) noexcept {
+    const auto nn = static_cast<std::size_t>(dimension<n>(l));
+    return s.room.get() + (2 * nn + static_cast<std::size_t>(l.outputs)) * nn;
+  }
+
+  /// The numbers of one update, as the kernel needs them.
+  template <int n>
+  struct Update;
+};
+
+}  // namespace garrison
+
+#include "garrison/filters/partial_sharing/params.hpp"
+#include "garrison/filters/partial_sharing/update.hpp"

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which entries of its estimate every agent shares, and when.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "garrison/core/error.hpp"
+#include "garrison/core/types.hpp"
+
+namespace garrison::partial_sharing {
+
+/// Index lists of the shared entries at k = 0; after every sample all of them move on by `shift`
+/// (right-circular shift: entry a goes to a + shift mod m). The list of k = 0 is used at k = 0.
+class GARRISON_EXPORT Selection {
+ public:
+  Selection() = default;
+  /// `start`: N x m of zeros and ones, s_i(0) in row i; `shift` is tau, any whole number.
+  /// @throws InvalidInput when an entry is neither 0 nor 1
+  Selection(const MatrixRef& start, std::int64_t shift);
+  /// Every agent starts with its own random subset ("uncoordinated"), or all with the entries 0, 1, .. .
+  /// `shared`: l_i per agent, 1..m. @throws InvalidInput when some l_i is not
+  static Selection random(int states, std::span<const int> shared, std::int64_t shift, std::uint64_t seed);
+  static Selection coordinated(int states, std::span<const int> shared, std::int64_t shift);
+
+  int agents() const { return static_cast<int>(first_.size()) - 1; }
+  int states() const { return states_; }
+  /// tau mod m
+  int shift() const { return shift_; }
+  /// Entries of agent i at k = 0, sorted; k samples later entry a has become (a + offset(k)) mod m.
+  std::span<const int> entries(int agent) const;
+  int shared(int agent) const { return static_cast<int>(entries(agent).size()); }
+  int offset(std::int64_t k) const;
+
+  /// m / gcd(m, tau mod m); 1 when tau mod m = 0.
+  int period() const { return period_; }
+  /// s(k), N x m.
+  Matrix at(std::int64_t k) const;
+  /// s(k) of all agents one behind the other, N m numbers.
+  Vector stacked(std::int64_t k) const;
+  /// Share of the samples in which each entry is sent, N x m. An entry with 0 is never sent (note 9).
+  Matrix frequency() const;
+  /// Time mean of s(k) s(k)' over one period, N m x N m: the exact second moment on this cycle.
+  Matrix moments_cycle() const;
+  /// E{s s'} when every agent draws its own uniform subset, N m x N m: the exact second moment over random
+  /// starts.
+  Matrix moments_uniform() const;
+
+ private:
+  std::vector<int> entries_;
+  std::vector<std::size_t> first_{0};
+  int states_ = 0;
+  int shift_ = 0;
+  int period_ = 1;
+};
+
+}  // namespace garrison::partial_sharing

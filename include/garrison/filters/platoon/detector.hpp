@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tests of Algorithm 2 and how its sets are counted.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "garrison/filters/platoon/setting.hpp"
+
+namespace garrison::platoon {
+
+/// Tests compare with a guard of this size relative to the measurements: without noise the threshold of (27)
+/// is exactly 0, and rounding alone would fire it.
+inline constexpr double kGuard = 1e-12;
+
+inline bool exceeds(double norm, double level, double size) noexcept {
+  return norm > level + kGuard * (1.0 + size);
+}
+
+/// (27): level of ||y_ij + y_jj - y_ii|| for two sensors `distance` places apart; 3 mu for neighbours.
+inline double pair_level(const Setting& s, int distance) noexcept { return (distance + 2) * s.mu; }
+
+/// g_i of (28), against ||y_ii - xbar_i||: the print has A xhat_i(t-1) in place of xbar_i(t) and so forgets
+/// the control input, which accuses clean sensors (our notes, E4). `distance` > 0: y_{i|j}, S6 of our notes.
+inline double innovation_level(const Setting& s, double alpha, int distance = 0) noexcept {
+  return s.eps + (distance + 1) * s.mu + norm_A(s) * alpha;
+}
+
+/// Maximal runs of successive labels in a sorted list.
+GARRISON_EXPORT std::vector<std::vector<int>> runs(std::span<const int> sorted);
+/// Left side of (29): one attacked sensor makes at most three suspects, so each maximal run of the sorted
+/// list has at least ceil(length / 3). (A cut into shorter runs would count too many.)
+GARRISON_EXPORT int count_runs(std::span<const int> sorted) noexcept;
+
+/// Pairs (j, k) that fired in the window of one vehicle, and what follows from the knowledge that at most
+/// `budget` of the sensors in it are attacked (S4 of our notes): every attacked set covers all pairs.
+class Suspicions {
+ public:
+  /// `size` <= 63 sensors, numbered 0..size-1.
+  explicit Suspicions(int size = 0) : size_(size) {}
+  void fire(int j, int k) noexcept {
+    edges_[static_cast<std::size_t>(j)] |= bit(k);
+    edges_[static_cast<std::size_t>(k)] |= bit(j);
+    touched_ |= bit(j) | bit(k);
+  }
+  bool any() const noexcept { return touched_ != 0; }
+  std::uint64_t touched() const noexcept { return touched_; }
+
+  struct Verdicts {
+    std::uint64_t attacked = 0;  ///< in every cover
+    std::uint64_t free = 0;      ///< in no cover
+    bool contradiction = false;  ///< no cover exists: more are attacked than assumed
+  };
+  /// `attacked`, `free`: what is known already. `budget` >= 0: most attacked sensors of the window.
+  Verdicts conclude(std::uint64_t attacked, std::uint64_t free, int budget) const noexcept;
+
+ private:
+  static std::uint64_t bit(int k) noexcept { return std::uint64_t{1} << k; }
+  /// A cover of all pairs exists that adds at most `budget` of the sensors outside `in` and `out` to `in`.
+  bool coverable(std::uint64_t in, std::uint64_t out, int budget) const noexcept;
+
+  int size_;
+  std::uint64_t touched_ = 0;
+  std::array<std::uint64_t, 2 * kMostRange + 1> edges_{};
+};
+
+/// Least number of vertices of a path that cover the edges (e, e+1), e in the sorted list: greedy, exact.
+GARRISON_EXPORT int path_cover(std::span<const int> edges) noexcept;
+
+}  // namespace garrison::platoon

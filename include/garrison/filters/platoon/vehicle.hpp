@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one vehicle remembers, what it sends (6), and the settings that all share.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "garrison/core/filter.hpp"
+#include "garrison/filters/platoon/detector.hpp"
+#include "garrison/filters/platoon/formation.hpp"
+#include "garrison/filters/platoon/label_set.hpp"
+#include "garrison/filters/platoon/setting.hpp"
+
+namespace garrison::platoon {
+
+enum class BoundKind : std::uint8_t { safe, tight, printed };
+
+/// Which variants run; the defaults are the paper with our notes' corrections.
+struct Options {
+  bool detector = true;
+  BoundKind bound = BoundKind::safe;
+  bool tie_by_bound = false;    ///< (13), equally near sources: the smaller error bound wins
+  bool cover = false;           ///< S5: flood pairs and count (29) exactly
+  bool pairs = false;           ///< S4: all pairs within range
+  bool neighbours = false;      ///< S6: (28) for every neighbour
+  bool median = false;          ///< S3: the median where its bound is smaller
+  bool accuse_missing = false;  ///< a missing (NaN) absolute measurement counts as proof
+};
+
+/// Sets that a vehicle is told before the start.
+struct Prior {
+  std::vector<int> attacked, suspected, free;
+};
+
+/// Shared by all vehicles.
+struct Shared {
+  Setting setting;
+  Options options;
+  Formation formation;
+  std::vector<Prior> priors;  ///< per vehicle, or empty
+  int room = 0;               ///< most members of an attacked or suspected set
+  int room_free = 0;          ///< most listed labels of a free set
+};
+
+/// Why a vehicle no longer vouches: the data contradict Assumptions 1 and 2. Bits.
+enum Trouble : unsigned {
+  kTooMany = 1,         ///< more than b sensors proved attacked
+  kTooManyRuns = 2,     ///< left side of (29) above b
+  kBothSets = 4,        ///< a sensor both proved attacked and free
+  kFreeImpossible = 8,  ///< a free sensor showed what no honest one can
+  kNoRoom = 16,         ///< more suspects than b attackers can cause
+  kNoCover = 32,        ///< fired pairs that b attackers cannot explain
+  kHeard = 64,          ///< a vehicle in range says one of these
+};
+
+/// The three sets of Algorithm 2. With Options::cover, `suspected` holds pairs: e stands for (e, e+1).
+struct Sets {
+  LabelSet attacked, suspected, free;
+};
+
+struct VehicleState {
+  Vec<2> x = Vec<2>::Zero();           ///< xhat_i(t)
+  Vec<2> prediction = Vec<2>::Zero();  ///< xbar_i(t)
+  double alpha = kNaN;                 ///< alpha_i(t)
+  double beta = kNaN;                  ///< beta_i(t); NaN outside V_1
+  double u = 0.0;                      ///< u_i(t) of Algorithm 3
+  double applied = kNaN;               ///< recorded input since t; NaN = u
+  double y[2] = {0.0, 0.0};            ///< y_ii
+  double link[2] = {0.0, 0.0};         ///< y_{i-1,i}
+  double innovation = kNaN;            ///< ||y_ii - xbar_i||
+  double level = kNaN;                 ///< g_i of (28)
+  double gap[2] = {kNaN, kNaN};        ///< certified least gap, certified spacing error
+  std::int64_t t = -1;
+  int source = -1;       ///< j_i(t) of (13); -1 = none
+  unsigned trouble = 0;  ///< bits of Trouble, never cleared
+  bool has_y = false;
+  bool has_link = false;
+  bool impossible = false;  ///< the absolute sensor showed what no honest one can
+  bool changed = true;      ///< sets, since (29) was last counted
+  Verdict verdict = Verdict::silent;
+  Sets sets;
+  std::unique_ptr<double[]> gains;         ///< k_{i,m} (14), m = i-L..i+L; V_1 only
+  std::unique_ptr<Suspicions> suspicions;  ///< Options::pairs only
+};
+
+struct VehicleMessage {
+  int sender = 0;
+  std::int64_t t = -1;  ///< sample it was sent in: an old message is recognised
+  bool has_y = false;
+  bool has_link = false;
+  bool doubt = false;      ///< the sender's data contradict the assumptions
+  double numbers[7] = {};  ///< y_ii, y_{i-1,i}, xbar_i(t), alpha_i(t-1)
+  Sets sets;               ///< of t-1
+  std::span<double> values() { return numbers; }
+  const double* y() const { return numbers; }
+  const double* link() const { return numbers + 2; }
+  const double* prediction() const { return numbers + 4; }
+  double alpha() const { return numbers[6]; }
+};
+
+void start(const Local& local, const Shared& shared, const Vec<2>& x0, VehicleState& s, VehicleMessage& m);
+void sense(const Local& local, const Shared& shared, VehicleState& s, const double* y, std::int64_t t,
+           VehicleMessage& m) noexcept;
+void fuse(const Local& local, const Shared& shared, VehicleState& s, const Inbox<VehicleMessage>& inbox,
+          VehicleMessage& m) noexcept;
+
+}  // namespace garrison::platoon

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// One agent's step of (8), everything that does not depend on the other agents prepared.
+#pragma once
+
+#include <vector>
+
+#include "garrison/filters/rdkf/box_step.hpp"
+#include "garrison/filters/rdkf/step.hpp"
+
+namespace garrison::rdkf {
+
+/// What design leaves for one agent.
+struct AgentGains {
+  std::vector<int> heard;  ///< N_i, itself included, sorted
+  Packed J;                ///< Pbar_i^-1 A: its information vector is J xhat_i
+  Packed F;  ///< (sum over N_i of Pbar_j^-1)^-1: the fused prediction x0 is F times the sum of vectors
+  StepFactors step;  ///< penalties norm and huber
+  BoxFactors box;    ///< penalty l1
+  std::vector<StepFactors>
+      blocks;                    ///< penalty group: sensors of each agent in `heard` against this agent's Q
+  Matrix Q, M, whitener;         ///< solver ipopt only
+  double deviation_bound = 0.0;  ///< half of (10): |xhat - x0| is at most this, whatever was measured
+  double quiet_level = 0.0;      ///< a whitened residual of the prediction below this does not saturate
+  std::vector<double> reach;     ///< run-time bound: what of the error of each agent in `heard` comes in
+  double rounding = 0.0;         ///< run-time bound: rounding of x0 per unit of the information vectors
+};
+
+/// What design leaves for the run.
+struct Gains {
+  std::vector<AgentGains> agents;
+  Penalty penalty = Penalty::norm;
+  Price price;
+  bool ipopt = false;
+  bool bounded = false;  ///< initial_error was given: certified bounds on the error at run time
+  double initial_error = kNaN;
+  double process_bound = 0.0;
+  int most_outputs = 0;  ///< largest q_i, for messages that carry measurements
+};
+
+/// Room and results of one agent's steps; sized once.
+struct Workspace {
+  Aligned<double> memory;
+  double* sum = nullptr;      ///< n, filled up: sum of the information vectors of N_i
+  double* x = nullptr;        ///< n, filled up: x0, then the estimate
+  double* product = nullptr;  ///< n, filled up
+  double* room = nullptr;     ///< of the step
+  double* y = nullptr;  ///< penalty group: a row of most_outputs per agent in `heard`; else own measurement
+  std::vector<char> present;  ///< penalty group: measurements that arrived
+  double deviation = 0.0;     ///< |xhat - x0|
+  Step step;
+
+  void resize(const Gains& g, const AgentGains& a, int states);
+};
+
+/// out = M x; out has M.height entries.
+GARRISON_EXPORT void multiply(const Packed& M, const double* x, double* out) noexcept;
+
+/// w.sum and, if `measured`, w.y to w.x, w.step and w.deviation. Without a measurement the estimate is x0.
+GARRISON_EXPORT void advance(const Gains& g, const AgentGains& a, bool measured, Workspace& w) noexcept;
+
+}  // namespace garrison::rdkf

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// The resilient distributed Kalman filter of Dutta, Zhang, Jin (CDC 2019).
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "garrison/core/conditions.hpp"
+#include "garrison/core/filter.hpp"
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+#include "garrison/core/params.hpp"
+#include "garrison/filters/rdkf/agent_step.hpp"
+
+namespace garrison {
+
+/// At every sample agent i sends its information vector z_i = Pbar_i^-1 A xhat_i(k-1), fuses the vectors of
+/// N_i (itself included) to the prediction x0 = Q_i^-1 (1/d_i) sum z_j, and solves (8):
+///   xhat_i(k) = argmin over x of penalty(b_i - M_i x) + (x - x0)' Q_i (x - x0),
+/// b = Sv^-1/2 y, M = Sv^-1/2 C, penalty lambda |r| in the paper. Whatever is measured moves the estimate by
+/// at most half of (10) from x0. Steady-state covariances from (5) in the appendix' reading (our notes, 1).
+///
+/// A neighbour that is missing or late counts as holding this agent's own previous estimate. A measurement
+/// with an entry that is not finite (or beyond kHuge) counts as none: the estimate is x0.
+///
+/// With `initial_error` and process_bound known, agents also carry a bound on their error, from their
+/// neighbours' bounds and from how far their own measurement moved them: it holds under every attack on
+/// measurements, but grows without end where nothing decays.
+struct GARRISON_EXPORT Rdkf {
+  static constexpr std::string_view name = "rdkf";
+  static constexpr std::string_view title = "Resilient distributed Kalman filter";
+  static constexpr std::string_view source = "Dutta, Zhang, Jin, CDC 2019";
+
+  struct Params {
+    double weight = 1.0;
+    std::string penalty = "norm";
+    std::string solver = "exact";
+    double smoothing = 0.0;
+    double initial_error = kNaN;
+
+    static auto fields() {
+      return std::make_tuple(
+          field(
+              &Params::weight,
+              {.name = "weight",
+               .symbol = "lambda",
+               .unit = "1",
+               .doc =
+                   "lambda of (8), the pull of a measurement at most; its estimate moves by at most half of "
+                   "(10), which is proportional to it; 0 ignores all measurements",
+               .least = 0.0,
+               .most = 1e100}),
+          field(&Params::penalty, {.name = "penalty",
+                                   .symbol = "",
+                                   .unit = "",
+                                   .doc = "of the whitened residual: \"norm\" = the paper's; \"huber\" = the "
+                                          "same pull, but a Kalman "
+                                          "step as long as it is not reached; \"l1\" = sensor by sensor; "
+                                          "\"group\" = the neighbours' "
+                                          "measurements too, which then travel",
+                                   .choices = {"norm", "huber", "l1", "group"}}),
+          field(&Params::solver,
+                {.name = "solver",
+                 .symbol = "",
+                 .unit = "",
+                 .doc = "of the step: \"exact\", or \"ipopt\" as a slow cross-check of penalty "
+                        "\"norm\" in builds that have it",
+                 .choices = {"exact", "ipopt"}}),
+          field(
+              &Params::smoothing,
+              {.name = "smoothing",
+               .symbol = "epsilon",
+               .unit = "1",
+               .doc =
+                   "penalty \"norm\" only: lambda sqrt(|r|^2 + epsilon^2); solver \"ipopt\" takes 1e-6 for 0",
+               .least = 0.0,
+               .most = 1e100}),
+          field(&Params::initial_error,
+                {.name = "initial_error",
+                 .symbol = "eta0",
+                 .unit = "state",
+                 .doc = "bound on the distance of every initial estimate from the state; giving it "
+                        "asks for run-time error bounds (needs the model's process_bound)",
+                 .least = 0.0}));
+    }
+  };
+
+  using Gains = rdkf::Gains;
+
+  template <int n>
+  struct State {
+    Vec<n> x;  // xhat_i(k)
+    Vec<n> z;  // own information vector
+    std::int64_t t = 0;
+    double bound = kNaN;
+    int saturated = 0;  // steps in a row
+    bool measured = false;
+    rdkf::Workspace work;
+  };
+  template <int n>
+  struct Message {
+    int sender = 0;
+    std::int64_t t = 0;  // sample it was sent in: an old message is recognised
+    double bound = kNaN;
+    bool measured = false;  // the measurement in `extended` is one
+    Vec<n> z;
+    Vector extended;  // penalty group: z, then y filled up with zeros
+    std::span<double> values() {
+      if (extended.size() != 0) return {extended.data(), static_cast<std::size_t>(extended.size())};
+      return {z.data(), static_cast<std::size_t>(z.size())};
+    }
+    const double* information() const { return extended.size() != 0 ? extended.data() : z.data(); }
+  };
+
+  /// @throws InvalidInput, see `rdkf::setting` and the doc of each parameter
+  static Gains design(const Params& params, const Model& model, const Network& network);
+  static Check check(const Params& params, const Model& model, const Network& network);
+  /// Refuses a solver that is not there or does not fit the penalty.
+  static void require_fitting(const Params& params);
+  /// What a user should know of a run: most agents saturated for long although the plant is unstable.
+  static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
+  static int rounds(const Gains&) { return 1; }
+
+  template <int n>
+  static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
+    State<n> fresh;
+    fresh.x = fresh.z = m.z = x0;
+    fresh.bound = g.bounded ? g.initial_error : kNaN;
+    fresh.work.resize(g, g.agents[static_cast<std::size_t>(l.id)], l.states);
+    m.extended = Vector::Zero(g.penalty == rdkf::Penalty::group ? l.states + g.most_outputs : 0);
+    m.sender = l.id;
+    m.t = 0;
+    m.measured = false;
+    s = std::move(fresh);
+  }
+
+  template <int n>
+  static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
+                    Message<n>& m) noexcept {
+    const rdkf::AgentGains& a = g.agents[static_cast<std::size_t>(l.id)];
+    s.t = t;
+    rdkf::multiply(a.J, s.x.data(), s.work.product);
+    for (int k = 0; k < dimension<n>(l); ++k) s.z[k] = s.work.product[k];
+    s.measured = l.outputs > 0;
+    for (int r = 0; r < l.outputs; ++r) s.measured = s.measured && std::abs(y[r]) < kHuge;
+    double* const own = s.work.y + own_row(l, g, a) * static_cast<std::size_t>(g.most_outputs);
+    for (int r = 0; r < l.outputs; ++r) own[r] = s.measured ? y[r] : 0.0;
+    send(l, g, s, own, m);
+  }
+
+  template <int n>
+  static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
+                   Message<n>& m) noexcept {
+    const int nn = dimension<n>(l);
+    const rdkf::AgentGains& a = g.agents[static_cast<std::size_t>(l.id)];
+    rdkf::Workspace& w = s.work;
+    for (int k = 0; k < nn; ++k) w.sum[k] = 0.0;
+    double bound = g.process_bound;
+    double size = 0.0;
+    bool some = s.measured;
+    std::size_t next = 0;
+    for (std::size_t j = 0; j < a.heard.size(); ++j) {
+      const int id = a.heard[j];
+      const double* z = s.z.data();
+      double error = s.bound;
+      bool measured = s.measured;
+      if (id != l.id) {
+        while (next < inbox.size() && inbox[next].sender < id) ++next;
+        if (next < inbox.size() && inbox[next].sender == id && inbox[next].t == s.t) {
+          const Message<n>& heard = inbox[next];
+          z = heard.information();
+          error = heard.bound;
+          measured = heard.measured;
+          if (g.penalty == rdkf::Penalty::group)
+            std::copy_n(z + nn, g.most_outputs, w.y + j * static_cast<std::size_t>(g.most_outputs));
+        } else {
+          rdkf::multiply(g.agents[static_cast<std::size_t>(id)].J, s.x.data(), w.product);
+          z = w.product;
+          measured = false;
+        }
+      }
+      for (int k = 0; k < nn; ++k) w.sum[k] += z[k];
+      if (g.penalty == rdkf::Penalty::group) {
+        w.present[j] = measured ? 1 : 0;
+        some = some || measured;
+      }
+      if (!g.bounded) continue;
+      bound += a.reach[j] * error;
+      for (int k = 0; k < nn; ++k) size += std::abs(z[k]);
+    }
+    rdkf::advance(g, a, some, w);
+    for (int k = 0; k < nn; ++k) s.x[k] = w.x[k];
+    if (g.bounded) s.bound = (bound + w.deviation) * (1.0 + 1e-12) + a.rounding * size;
+    s.saturated = w.step.mu > 0.0 && some ? s.saturated + 1 : 0;
+    send(l, g, s, nullptr, m);
+  }
+
+  template <int n>
+  static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept {
+    Report r;
+    r.bound = std::isfinite(s.bound) ? s.bound : kNaN;
+    r.statistic = s.work.deviation;
+    r.threshold = g.agents[static_cast<std::size_t>(l.id)].deviation_bound;
+    r.verdict = s.t == 0 || !s.measured || g.price.lambda == 0.0 ? Verdict::silent
+                : s.work.step.mu > 0.0                           ? Verdict::suspected
+                                                                 : Verdict::cleared;
+    return r;
+  }
+  template <int n>
+  static const Vec<n>& estimate(const State<n>& s) noexcept {
+    return s.x;
+  }
+  template <int n>
+  static const AgentSet* accused(const State<n>&) noexcept {
+    static const AgentSet nobody;
+    return &nobody;
+  }
+  /// From the own estimate alone: the neighbours' vectors for the next step are not known yet.
+  template <int n>
+  static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
+    const int nn = dimension<n>(l);
+    for (int r = 0; r < l.outputs; ++r) {
+      out[r] = 0.0;
+      for (int i = 0; i < nn; ++i) {
+        double predicted = 0.0;
+        for (int k = 0; k < nn; ++k) predicted += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.x[k];
+        out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + i] * predicted;
+      }
+    }
+  }
+  template <int n>
+  static double alarm_level(const Local& l, const Gains& g, const State<n>&) noexcept {
+    return g.agents[static_cast<std::size_t>(l.id)].quiet_level;
+  }
+  static constexpr std::size_t signal_count = 5;
+  /// mu = residual multiplier (> 0: this agent is being pulled as far as it can be), deviation = |xhat - x0|
+  /// and its bound, saturated_steps = in a row, iterations of the step's solver.
+  static std::vector<std::string> signal_names() {
+    return {"mu", "deviation", "deviation_bound", "saturated_steps", "iterations"};
+  }
+  template <int n>
+  static void signals(const Local& l, const Gains& g, const State<n>& s, double* out) noexcept {
+    out[0] = s.work.step.mu;
+    out[1] = s.work.deviation;
+    out[2] = g.agents[static_cast<std::size_t>(l.id)].deviation_bound;
+    out[3] = static_cast<double>(s.saturated);
+    out[4] = static_cast<double>(s.work.step.iterations);
+  }
+
+ private:
+  static std::size_t own_row(const Local& l, const Gains& g, const rdkf::AgentGains& a) noexcept {
+    std::size_t row = 0;
+    if (g.penalty == rdkf::Penalty::group)
+      while (a.heard[row] != l.id) ++row;
+    return row;
+  }
+  /// y: own measurement, or null after the only round, when nobody reads the message any more.
+  template <int n>
+  static void send(const Local& l, const Gains& g, const State<n>& s, const double* y,
+                   Message<n>& m) noexcept {
+    m.t = s.t;
+    m.z = s.z;
+    m.bound = s.bound;
+    m.measured = s.measured && y != nullptr;
+    if (m.extended.size() == 0) return;
+    const int nn = dimension<n>(l);
+    for (int k = 0; k < nn; ++k) m.extended[k] = s.z[k];
+    for (int r = 0; r < g.most_outputs; ++r) m.extended[nn + r] = m.measured && r < l.outputs ? y[r] : 0.0;
+  }
+};
+
+/// The distributed Kalman filter (7), unprotected: the same step with penalty huber and an unbounded weight.
+struct GARRISON_EXPORT Dkf : Rdkf {
+  static constexpr std::string_view name = "dkf";
+  static constexpr std::string_view title = "Distributed Kalman filter, steady state (no protection)";
+  static constexpr std::string_view source = "(7) of Dutta, Zhang, Jin, CDC 2019";
+
+  using RunsAs = Rdkf;
+  struct Params {
+    static auto fields() { return std::make_tuple(); }
+  };
+  static Gains design(const Params& params, const Model& model, const Network& network);
+  static Check check(const Params& params, const Model& model, const Network& network);
+};
+
+}  // namespace garrison

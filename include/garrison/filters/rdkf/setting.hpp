@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the equations of the resilient distributed Kalman filter start from.
+#pragma once
+
+#include <vector>
+
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+
+namespace garrison::rdkf {
+
+/// A model and a network whose covariances, connection and detectability have been checked.
+struct GARRISON_EXPORT Setting {
+  Matrix A;                                  ///< n x n
+  std::vector<Matrix> C;                     ///< q_i x n
+  std::vector<Matrix> Sv;                    ///< q_i x q_i, covariance of the measurement noise
+  std::vector<Matrix> Sw;                    ///< n x n, what agent i takes for the covariance of w
+  std::vector<Matrix> whitener;              ///< Sv_i^-1/2, the symmetric root
+  std::vector<Matrix> M;                     ///< Sv_i^-1/2 C_i
+  std::vector<std::vector<int>> neighbours;  ///< N_i: i itself and the agents it hears, sorted; d_i of them
+
+  int agents() const { return static_cast<int>(C.size()); }
+  int states() const { return static_cast<int>(A.rows()); }
+};
+
+/// @throws InvalidInput when a covariance is missing or not positive definite (a singular one of w breaks
+/// uniqueness of (5), our notes, 4), the network is not connected, or (A, C) is not detectable
+GARRISON_EXPORT Setting setting(const Model& model, const Network& network);
+
+/// Every eigenvalue of A on or outside of the unit circle is seen by some row of C (Popov, Belevitch,
+/// Hautus); singular values below 1e-10 of the pencil's scale count as zero. A: n x n, C: m x n, m >= 0.
+GARRISON_EXPORT bool detectable(const MatrixRef& A, const MatrixRef& C);
+
+}  // namespace garrison::rdkf

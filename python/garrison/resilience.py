@@ -1,0 +1,56 @@
+"""What sharing less of an estimate costs and saves: bytes on the links against errors, honest and under attack."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from garrison import _core
+from garrison._core import partial_sharing as theory
+from garrison.filters import PartialSharing
+
+
+@dataclass(frozen=True)
+class Resilience:
+    """One number of shared entries. Errors are exact, means over the cycle of the periodic steady state.
+
+    shared: entries l per message; bytes_per_step: payload of all messages of a sample; mse: mean over agents of the
+    squared error; mse_attacked: the same under the worst coordinated covariance of the given energy; radius: of the
+    error dynamics, unstable from 1 on (both errors are then inf).
+    """
+
+    shared: int
+    bytes_per_step: int
+    mse: float
+    mse_attacked: float
+    radius: float
+
+
+def resilience_per_byte(
+    model: _core.Model,
+    network: _core.Network,
+    agents: Iterable[int],
+    *,
+    gain: float,
+    energy: float,
+    shared: Iterable[int] | None = None,
+    **params: Any,
+) -> list[Resilience]:
+    """Bytes per sample, MSE, and MSE under the worst attack of `agents` (trace of its covariance <= energy), over l.
+
+    shared: the l to try, default 1..states; params: others of filters.PartialSharing. Raises InvalidInput when an agent
+    cannot detect the state alone, or something does not fit.
+    """
+    liars = list(agents)
+    out = []
+    for entries in range(1, model.states + 1) if shared is None else shared:
+        filt = PartialSharing(gain=gain, shared=entries, **params)
+        analysis = theory.Analysis(filt, model, network)
+        radius = analysis.cycle_radius()
+        mse = attacked = float("inf")
+        if radius < 1:
+            mse = float(np.mean(analysis.periodic_mse()))
+            attacked = mse + float(analysis.worst(liars, energy)["gain"]) / model.agents
+        out.append(Resilience(entries, analysis.bytes_per_step, mse, attacked, radius))
+    return out

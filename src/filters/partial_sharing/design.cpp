@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+
+#include "garrison/filters/partial_sharing/filter.hpp"
+#include "garrison/filters/partial_sharing/setting.hpp"
+
+namespace garrison {
+namespace {
+
+std::vector<double> flat(const Matrix& m) { return {m.data(), m.data() + m.size()}; }
+
+/// Numbers of a matrix, row by row.
+std::vector<double> rows(const Matrix& m) { return flat(m.transpose()); }
+
+/// Steady gains of every agent; agents with the same sensors share the work.
+std::vector<PartialSharing::Steady> steady(const partial_sharing::Setting& s) {
+  std::vector<PartialSharing::Steady> all;
+  std::map<std::vector<double>, std::size_t> known;
+  for (int i = 0; i < s.agents(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    std::vector<double> sensor = flat(s.H[at]);
+    sensor.insert(sensor.end(), s.R[at].data(), s.R[at].data() + s.R[at].size());
+    const auto [entry, fresh] = known.emplace(std::move(sensor), all.size());
+    if (!fresh) {
+      all.push_back(all[entry->second]);
+      continue;
+    }
+    const partial_sharing::LocalGains gains = steady_gains(s, i);
+    partial_sharing::LocalRecursion recursion(s, i);
+    recursion.restart(gains.P);
+    recursion.step();
+    all.push_back({flat(gains.P), flat(recursion.consensus_gain()), flat(recursion.whitened_gain())});
+  }
+  return all;
+}
+
+}  // namespace
+
+PartialSharing::Gains PartialSharing::design(const Params& params, const Model& model,
+                                             const Network& network) {
+  const partial_sharing::Setting s = partial_sharing::make_setting(params, model, network);
+  Gains g;
+  g.gamma = s.gamma;
+  g.selection = s.selection;
+  g.Q = s.Q;
+  g.given = params.start_is_prediction;
+  g.freeze = params.gains != "varying";
+  const Matrix first = s.A * s.P0 * s.A.transpose() + s.Q;
+  g.P0 = g.given ? s.P0 : Matrix((first + first.transpose()) / 2.0);
+  for (int i = 0; i < s.agents(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Matrix W = partial_sharing::whitener(s.R[at], i);
+    g.sensors.push_back({rows(W), rows(W * s.H[at])});
+  }
+  if (params.gains == "steady") g.steady = steady(s);
+  return g;
+}
+
+}  // namespace garrison

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/filters/partial_sharing/selection.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "garrison/core/random.hpp"
+
+namespace garrison::partial_sharing {
+namespace {
+
+int wrapped(std::int64_t shift, int states) {
+  const std::int64_t rest = shift % states;
+  return static_cast<int>(rest < 0 ? rest + states : rest);
+}
+
+void require_shared(std::span<const int> shared, int states) {
+  for (std::size_t i = 0; i < shared.size(); ++i)
+    if (shared[i] < 1 || shared[i] > states)
+      refuse("shared (l) of agent " + std::to_string(i), std::to_string(shared[i]),
+             "a number of entries in 1.." + std::to_string(states), "an estimate has that many entries");
+}
+
+}  // namespace
+
+Selection::Selection(const MatrixRef& start, std::int64_t shift)
+    : states_(static_cast<int>(start.cols())),
+      shift_(wrapped(shift, static_cast<int>(start.cols()))),
+      period_(shift_ == 0 ? 1 : states_ / std::gcd(states_, shift_)) {
+  for (Eigen::Index i = 0; i < start.rows(); ++i) {
+    for (Eigen::Index a = 0; a < start.cols(); ++a) {
+      if (start(i, a) != 0.0 && start(i, a) != 1.0)
+        refuse("selection s0[" + std::to_string(i) + ", " + std::to_string(a) + "]", text(start(i, a)),
+               "0 or 1");
+      if (start(i, a) == 1.0) entries_.push_back(static_cast<int>(a));
+    }
+    first_.push_back(entries_.size());
+  }
+}
+
+Selection Selection::random(int states, std::span<const int> shared, std::int64_t shift, std::uint64_t seed) {
+  require_shared(shared, states);
+  const Random chance(seed, 0, Purpose::graph, 5);
+  Matrix start = Matrix::Zero(static_cast<Eigen::Index>(shared.size()), states);
+  std::vector<int> all(static_cast<std::size_t>(states));
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    std::iota(all.begin(), all.end(), 0);
+    for (int k = 0; k < shared[i]; ++k) {  // the first l of a shuffle
+      const double u = chance.uniform(0, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
+      const int other = k + static_cast<int>(u * (states - k));
+      std::swap(all[static_cast<std::size_t>(k)], all[static_cast<std::size_t>(other)]);
+      start(static_cast<Eigen::Index>(i), all[static_cast<std::size_t>(k)]) = 1.0;
+    }
+  }
+  return {start, shift};
+}
+
+Selection Selection::coordinated(int states, std::span<const int> shared, std::int64_t shift) {
+  require_shared(shared, states);
+  Matrix start = Matrix::Zero(static_cast<Eigen::Index>(shared.size()), states);
+  for (std::size_t i = 0; i < shared.size(); ++i)
+    start.row(static_cast<Eigen::Index>(i)).head(shared[i]).setOnes();
+  return {start, shift};
+}
+
+std::span<const int> Selection::entries(int agent) const {
+  const auto i = static_cast<std::size_t>(agent);
+  return std::span(entries_).subspan(first_[i], first_[i + 1] - first_[i]);
+}
+
+int Selection::offset(std::int64_t k) const {
+  const auto rest = static_cast<int>(((k % period_) + period_) % period_);
+  return rest * shift_ % states_;
+}
+
+Matrix Selection::at(std::int64_t k) const {
+  const int moved = offset(k);
+  Matrix s = Matrix::Zero(agents(), states_);
+  for (int i = 0; i < agents(); ++i)
+    for (const int a : entries(i)) s(i, (a + moved) % states_) = 1.0;
+  return s;
+}
+
+Vector Selection::stacked(std::int64_t k) const { return at(k).transpose().reshaped(); }
+
+Matrix Selection::frequency() const {
+  Matrix sum = Matrix::Zero(agents(), states_);
+  for (int k = 0; k < period(); ++k) sum += at(k);
+  return sum / period();
+}
+
+Matrix Selection::moments_cycle() const {
+  const auto size = static_cast<Eigen::Index>(agents()) * states_;
+  Matrix sum = Matrix::Zero(size, size);
+  for (int k = 0; k < period(); ++k) {
+    const Vector s = stacked(k);
+    sum += s * s.transpose();
+  }
+  return sum / period();
+}
+
+Matrix Selection::moments_uniform() const {
+  const int m = states_;
+  Matrix W(static_cast<Eigen::Index>(agents()) * m, static_cast<Eigen::Index>(agents()) * m);
+  for (int i = 0; i < agents(); ++i)
+    for (int j = 0; j < agents(); ++j) {
+      const double p = static_cast<double>(shared(i)) / m;
+      const double q = static_cast<double>(shared(j)) / m;
+      auto block = W.block(static_cast<Eigen::Index>(i) * m, static_cast<Eigen::Index>(j) * m, m, m);
+      block.setConstant(i == j && m > 1 ? p * (shared(i) - 1) / (m - 1) : i == j ? p : p * q);
+      if (i == j) block.diagonal().setConstant(p);
+    }
+  return W;
+}
+
+}  // namespace garrison::partial_sharing

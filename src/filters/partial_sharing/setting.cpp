@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/filters/partial_sharing/setting.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace garrison::partial_sharing {
+namespace {
+
+Matrix start_covariance(const PartialSharing::Params& p, int m) {
+  if (p.start_covariance.empty()) return p.start_variance * Matrix::Identity(m, m);
+  const auto expected = static_cast<std::size_t>(m) * static_cast<std::size_t>(m);
+  if (p.start_covariance.size() != expected)
+    refuse("start_covariance (P0)", std::to_string(p.start_covariance.size()) + " numbers",
+           std::to_string(expected) + ", row by row");
+  const Matrix P = Eigen::Map<const Matrix>(p.start_covariance.data(), m, m);
+  if (!P.allFinite()) refuse("start_covariance (P0)", "a number that is not finite", "finite numbers");
+  if ((P - P.transpose()).cwiseAbs().maxCoeff() > 1e-12 * P.cwiseAbs().maxCoeff())
+    refuse("start_covariance (P0)", "a matrix that is not symmetric", "a symmetric one");
+  const double least = Eigen::SelfAdjointEigenSolver<Matrix>(P, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  if (least < -1e-12 * P.cwiseAbs().maxCoeff())
+    refuse("start_covariance (P0)", "least eigenvalue " + text(least), "a positive semidefinite matrix");
+  return (P + P.transpose()) / 2.0;
+}
+
+std::vector<int> shared_per_agent(const PartialSharing::Params& p, int N, int m) {
+  if (!p.shared_each.empty()) {
+    if (static_cast<int>(p.shared_each.size()) != N)
+      refuse("shared_each (l)", std::to_string(p.shared_each.size()) + " numbers",
+             std::to_string(N) + ", one per agent");
+    std::vector<int> each;
+    for (const double l : p.shared_each) {
+      if (l != std::floor(l)) refuse("shared_each (l)", text(l), "whole numbers");
+      each.push_back(static_cast<int>(std::min(l, 1e9)));
+    }
+    return each;
+  }
+  return std::vector<int>(static_cast<std::size_t>(N), p.shared == 0 ? m : p.shared);
+}
+
+Selection make_selection(const PartialSharing::Params& p, int N, int m) {
+  if (!p.selection.empty()) {
+    const auto expected = static_cast<std::size_t>(N) * static_cast<std::size_t>(m);
+    if (p.selection.size() != expected)
+      refuse("selection (s0)", std::to_string(p.selection.size()) + " numbers",
+             std::to_string(expected) + ": " + std::to_string(m) + " zeros and ones for each agent");
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    return {Matrix(Eigen::Map<const Rows>(p.selection.data(), N, m)), p.shift};
+  }
+  const std::vector<int> shared = shared_per_agent(p, N, m);
+  return p.starts == "random"
+             ? Selection::random(m, shared, p.shift, static_cast<std::uint64_t>(p.selection_seed))
+             : Selection::coordinated(m, shared, p.shift);
+}
+
+}  // namespace
+
+double Setting::shared_fraction() const {
+  int most = 0;
+  for (int i = 0; i < agents(); ++i) most = std::max(most, selection.shared(i));
+  return static_cast<double>(most) / states();
+}
+
+Matrix whitener(const Matrix& R, int agent) {
+  if (R.rows() == 0) return R;
+  const Eigen::LLT<Matrix> factor(R);
+  const std::string which = "measurement_covariance[" + std::to_string(agent) + "] (R)";
+  if (factor.info() != Eigen::Success || factor.matrixLLT().diagonal().minCoeff() <= 0.0)
+    refuse(which, "a matrix that is not positive definite", "a symmetric positive definite one",
+           "a measurement without noise is not covered: give it a small variance");
+  return factor.matrixL().solve(Matrix::Identity(R.rows(), R.cols()));
+}
+
+Setting make_setting(const PartialSharing::Params& p, const Model& model, const Network& network) {
+  const int N = model.agents();
+  const int m = model.states();
+  if (model.noise().process_covariance.size() == 0)
+    refuse("process_covariance (Q)", "nothing", "a covariance in the model",
+           "the filter's gains follow from it");
+  if (model.noise().measurement_covariance.empty())
+    refuse("measurement_covariance (R)", "nothing", "one covariance per agent in the model",
+           "the filter's gains follow from it");
+  Setting s;
+  s.A = model.A();
+  const Matrix& Q = model.noise().process_covariance;
+  s.Q = (Q + Q.transpose()) / 2.0;
+  s.P0 = start_covariance(p, m);
+  for (int i = 0; i < N; ++i) {
+    s.H.push_back(model.C(i));
+    s.R.push_back(model.noise().measurement_covariance[static_cast<std::size_t>(i)]);
+    whitener(s.R.back(), i);
+    const auto heard = network.neighbours(i);
+    s.hears.emplace_back(heard.begin(), heard.end());
+  }
+  s.selection = make_selection(p, N, m);
+  s.gamma = p.gain;
+  return s;
+}
+
+std::int64_t bytes_per_step(const Setting& s) {
+  std::int64_t entries = 0;
+  for (const auto& heard : s.hears)
+    for (const int j : heard) entries += s.selection.shared(j);
+  return entries * static_cast<std::int64_t>(sizeof(double));
+}
+
+LocalRecursion::LocalRecursion(const Setting& setting, int agent)
+    : setting_(setting),
+      H_(setting.H[static_cast<std::size_t>(agent)]),
+      W_(whitener(setting.R[static_cast<std::size_t>(agent)], agent)),
+      Hw_(H_.transpose() * W_.transpose()),
+      P_(setting.P0),
+      S_(P_.rows(), P_.rows()),
+      T_(S_),
+      Kw_(P_.rows(), H_.rows()),
+      next_(S_),
+      v_(P_.rows()),
+      f_(P_.rows()) {}
+
+LocalGains LocalRecursion::step(double* change) {
+  LocalGains g;
+  g.P = P_;
+  const double moved = advance<Dynamic, 1>(
+      {P_.data(), S_.data(), T_.data(), Kw_.data(), v_.data(), f_.data(), Hw_.data(), setting_.A.data(),
+       setting_.Q.data(), static_cast<int>(H_.rows()), setting_.states()},
+      next_.data());
+  if (change != nullptr) *change = moved;
+  g.K = setting_.A * Kw_ * W_;
+  g.C = setting_.A * consensus_gain();
+  g.F = setting_.A - g.K * H_;
+  return g;
+}
+
+Matrix LocalRecursion::consensus_gain() const { return setting_.gamma * S_ * S_.transpose(); }
+
+}  // namespace garrison::partial_sharing

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Algorithm 3, and what the vehicle can certify of its gap.
+#include <algorithm>
+#include <cmath>
+
+#include "garrison/filters/platoon/bounds.hpp"
+#include "garrison/filters/platoon/view.hpp"
+
+namespace garrison::platoon {
+namespace {
+
+/// Gap to the vehicle ahead, s_{i-1} - s_i, and how far it can be from the truth.
+struct Gap {
+  double value;
+  double error;
+};
+
+}  // namespace
+
+void control(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
+  const Formation& f = shared.formation;
+  const Setting& g = shared.setting;
+  const Motion own{s.x[0], s.x[1]};
+  const VehicleMessage* ahead = l.id > 0 ? view[g.range - 1].message : nullptr;
+  const VehicleMessage* behind = l.id + 1 < l.agents ? view[g.range + 1].message : nullptr;
+  s.u = 0.0;
+  if (l.id == 0)
+    s.u += f.pull(own, f.reference_at(s.t), 0);
+  else if (ahead != nullptr)
+    s.u += f.pull(own, {ahead->prediction()[0], ahead->prediction()[1]}, -1);
+  else if (s.has_link)  // its message is missing: where our own secured sensor sees it
+    s.u += f.pull(own, {own.s - s.link[0], own.v - s.link[1]}, -1);
+  if (behind != nullptr) s.u += f.pull(own, {behind->prediction()[0], behind->prediction()[1]}, 1);
+
+  s.gap[0] = s.gap[1] = kNaN;
+  if (l.id == 0) return;
+  const auto certify = [&](const Gap& gap) {
+    const double least = gap.value - gap.error;
+    const double off = std::abs(gap.value - f.spacing) + gap.error;
+    if (!(s.gap[0] >= least)) s.gap[0] = least;
+    if (!(s.gap[1] <= off)) s.gap[1] = off;
+  };
+  if (s.has_link) certify({-s.link[0], g.mu});
+  if (ahead != nullptr && s.trouble == 0 && shared.options.bound != BoundKind::printed) {
+    const double other = s.t == 0 ? ahead->alpha() : predicted_bound(g, ahead->alpha());
+    certify({ahead->prediction()[0] - own.s, other + s.alpha});
+  }
+}
+
+}  // namespace garrison::platoon

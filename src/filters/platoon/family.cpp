@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/filters/platoon/baseline.hpp"
+#include "garrison/filters/platoon/filter.hpp"
+#include "garrison/runtime/filter_of.hpp"
+
+namespace garrison {
+FamilyInfo platoon_family() { return family_info<Platoon>(); }
+FamilyInfo platoon_baseline_family() { return family_info<PlatoonBaseline>(); }
+}  // namespace garrison

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// One sample of one vehicle: predict and send, then detect, observe and steer with what arrived.
+#include "garrison/filters/platoon/vehicle.hpp"
+
+#include <cmath>
+
+#include "garrison/filters/platoon/view.hpp"
+#include "garrison/filters/platoon/world.hpp"
+
+namespace garrison::platoon {
+namespace {
+
+bool usable(const double* y) noexcept { return std::abs(y[0]) < kHuge && std::abs(y[1]) < kHuge; }
+
+void tell(LabelSet& set, const std::vector<int>& ids) {
+  for (const int id : ids) set.insert(id);
+}
+
+}  // namespace
+
+void start(const Local& l, const Shared& shared, const Vec<2>& x0, VehicleState& s, VehicleMessage& m) {
+  VehicleState fresh;
+  fresh.x = fresh.prediction = x0;
+  fresh.alpha = shared.setting.q;
+  fresh.sets.attacked = LabelSet(shared.room);
+  fresh.sets.suspected = LabelSet(shared.room);
+  fresh.sets.free = LabelSet(shared.room_free);
+  if (!shared.priors.empty()) {
+    const Prior& prior = shared.priors[static_cast<std::size_t>(l.id)];
+    tell(fresh.sets.attacked, prior.attacked);
+    // A lone suspect is no pair, and the exact count needs none that is not proved.
+    if (!shared.options.cover) tell(fresh.sets.suspected, prior.suspected);
+    tell(fresh.sets.free, prior.free);
+  }
+  if (in_V1(l.id, l.agents, shared.setting.range))
+    fresh.gains = std::make_unique<double[]>(static_cast<std::size_t>(2 * shared.setting.range + 1));
+  if (shared.options.pairs) fresh.suspicions = std::make_unique<Suspicions>(2 * shared.setting.range + 1);
+  m = VehicleMessage{};
+  m.sender = l.id;
+  m.sets = fresh.sets;
+  s = std::move(fresh);
+}
+
+void sense(const Local& l, const Shared& shared, VehicleState& s, const double* y, std::int64_t t,
+           VehicleMessage& m) noexcept {
+  const Outputs outputs = Outputs::of(l.id, l.outputs);
+  const double T = shared.setting.period;
+  if (t > 0) {
+    const double u = std::isnan(s.applied) ? s.u : s.applied;
+    s.prediction[0] = s.x[0] + T * s.x[1];  // (15)
+    s.prediction[1] = s.x[1] + T * u;
+  }
+  s.t = t;
+  s.has_y = usable(y);
+  const bool missing = std::isnan(y[0]) || std::isnan(y[1]);
+  s.impossible = !s.has_y && (!missing || shared.options.accuse_missing);
+  s.has_link = outputs.relative && usable(y + 2);
+  for (int k = 0; k < 2; ++k) {
+    s.y[k] = s.has_y ? y[k] : 0.0;
+    s.link[k] = s.has_link ? y[2 + k] : 0.0;
+  }
+  s.applied = outputs.input && std::abs(y[outputs.at_input()]) < kHuge ? y[outputs.at_input()] : kNaN;
+  m.sender = l.id;
+  m.t = t;
+  m.has_y = s.has_y;
+  m.has_link = s.has_link;
+  for (int k = 0; k < 2; ++k) {
+    m.numbers[k] = s.y[k];
+    m.numbers[2 + k] = s.link[k];
+    m.numbers[4 + k] = s.prediction[k];
+  }
+  m.numbers[6] = s.alpha;
+  m.doubt = s.trouble != 0;
+  m.sets = s.sets;
+}
+
+void fuse(const Local& l, const Shared& shared, VehicleState& s, const Inbox<VehicleMessage>& inbox,
+          VehicleMessage& m) noexcept {
+  const View view(l.id, l.agents, shared.setting.range, s, inbox);
+  if (s.t > 0) {
+    if (shared.options.detector) {
+      for (std::size_t k = 0; k < inbox.size(); ++k) {
+        // An old message still proves what it says: sets only grow.
+        const Sets& told = inbox[k].sets;
+        if (inbox[k].doubt) s.trouble |= kHeard;
+        const bool same = s.sets.attacked == told.attacked && s.sets.suspected == told.suspected &&
+                          s.sets.free == told.free;
+        if (same) continue;
+        s.changed = true;
+        if (!s.sets.attacked.unite(told.attacked) || !s.sets.suspected.unite(told.suspected) ||
+            !s.sets.free.unite(told.free))
+          s.trouble |= kNoRoom;
+      }
+      detect(l, shared, view, s);
+    }
+    observe(l, shared, view, s);
+  }
+  control(l, shared, view, s);
+  m.t = -1;  // nobody reads this one in time; whoever gets it late must not take it for the present
+}
+
+}  // namespace garrison::platoon

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/filters/rdkf/agent_step.hpp"
+
+#include <cmath>
+
+#include "garrison/filters/rdkf/ipopt_step.hpp"
+#include "garrison/filters/rdkf/secular.hpp"
+
+namespace garrison::rdkf {
+namespace {
+
+constexpr int kMostAscents = 5000;
+constexpr double kAscentTolerance = 1e-15;
+
+struct Multiply {
+  template <int B>
+  static GARRISON_INLINE void run(const Packed* M, const double* x, double* out) {
+    product<B>(*M, x, out);
+  }
+};
+
+/// x0, then the step of `norm` and `huber` in the same kernel.
+struct Advance {
+  template <int B>
+  static GARRISON_INLINE void run(const Gains* g, const AgentGains* a, bool step, Workspace* w) {
+    product<B>(a->F, w->sum, w->x);
+    if (step) w->step = detail::solve_at<B>(a->step, g->price, w->y, w->x, w->room);
+  }
+};
+
+/// Block ascent on the dual: each block is a step of its own against the pull of all the others.
+Step ascend(const Gains& g, const AgentGains& a, Workspace& w) noexcept {
+  const int n = a.F.rows;
+  const std::size_t blocks = a.blocks.size();
+  // Pull of each block on x, behind one another, and room for a step behind them.
+  double* const pull = w.room;
+  double* const room = w.room + blocks * static_cast<std::size_t>(n);
+  std::fill_n(pull, blocks * static_cast<std::size_t>(n), 0.0);
+  Step total;
+  for (int sweep = 0; sweep < kMostAscents; ++sweep) {
+    double moved = 0.0;
+    double size = 0.0;
+    total.mu = 0.0;
+    for (std::size_t j = 0; j < blocks; ++j) {
+      const StepFactors& f = a.blocks[j];
+      if (w.present[j] == 0 || f.outputs() == 0) continue;
+      double* const own = pull + j * static_cast<std::size_t>(n);
+      for (int k = 0; k < n; ++k) w.product[k] = w.x[k] - own[k];
+      for (int k = 0; k < n; ++k) w.x[k] = w.product[k];
+      const Step one = solve(f, g.price, w.y + j * static_cast<std::size_t>(g.most_outputs), w.x, room);
+      total.iterations += one.iterations;
+      total.mu = std::max(total.mu, one.mu);
+      for (int k = 0; k < n; ++k) {
+        const double now = w.x[k] - w.product[k];
+        moved = std::max(moved, std::abs(now - own[k]));
+        size = std::max(size, std::abs(w.x[k]));
+        own[k] = now;
+      }
+    }
+    if (!(moved > kAscentTolerance * size)) break;
+  }
+  return total;
+}
+
+Step by_ipopt(const Gains& g, const AgentGains& a, Workspace& w) noexcept {
+  const Eigen::Map<const Vector> y(w.y, a.M.rows());
+  return solve_ipopt(a.Q, a.M, a.whitener * y, g.price, w.x);
+}
+
+}  // namespace
+
+void Workspace::resize(const Gains& g, const AgentGains& a, int states) {
+  const auto n = static_cast<std::size_t>(padded(states));
+  std::size_t step_room = std::max(a.step.room(), a.box.room());
+  for (const StepFactors& f : a.blocks)
+    step_room = std::max(step_room, f.room() + a.blocks.size() * static_cast<std::size_t>(states));
+  const auto measurements =
+      static_cast<std::size_t>(g.most_outputs) * std::max<std::size_t>(1, a.blocks.size());
+  memory.assign(3 * n + step_room + measurements, 0.0);
+  sum = memory.data();
+  x = sum + n;
+  product = x + n;
+  room = product + n;
+  y = room + step_room;
+  present.assign(a.blocks.size(), 0);
+}
+
+void multiply(const Packed& M, const double* x, double* out) noexcept { run_widest<Multiply>(&M, x, out); }
+
+void advance(const Gains& g, const AgentGains& a, bool measured, Workspace& w) noexcept {
+  const int n = a.F.rows;
+  const bool plain = !g.ipopt && (g.penalty == Penalty::norm || g.penalty == Penalty::huber);
+  w.step = {};
+  run_widest<Advance>(&g, &a, measured && plain, &w);
+  if (measured && !plain)
+    w.step = g.penalty == Penalty::group ? ascend(g, a, w)
+             : g.penalty == Penalty::l1  ? solve_box(a.box, g.price.lambda, w.y, w.x, w.room)
+                                         : by_ipopt(g, a, w);
+  w.deviation = 0.0;
+  if (!measured) return;
+  multiply(a.F, w.sum, w.product);  // x0 once more
+  double square = 0.0;
+  for (int k = 0; k < n; ++k) square += (w.x[k] - w.product[k]) * (w.x[k] - w.product[k]);
+  w.deviation = std::sqrt(square);
+}
+
+}  // namespace garrison::rdkf

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Cholesky>
+
+#include "garrison/filters/rdkf/analysis.hpp"
+#include "garrison/filters/rdkf/filter.hpp"
+#include "garrison/filters/rdkf/ipopt_step.hpp"
+#include "penalties.hpp"
+
+namespace garrison {
+namespace rdkf {
+
+Penalty penalty_named(const std::string& name) {
+  return name == "huber"   ? Penalty::huber
+         : name == "l1"    ? Penalty::l1
+         : name == "group" ? Penalty::group
+                           : Penalty::norm;
+}
+
+namespace {
+
+Matrix inverse(const Matrix& S) { return Eigen::LLT<Matrix>(S).solve(Matrix::Identity(S.rows(), S.cols())); }
+
+/// Below this whitened residual of the prediction the dual solution stays inside of the ball: |u| <= |rho| /
+/// min d.
+double quiet_level(const StepFactors& f, double lambda) {
+  double least = kInfinity;
+  for (int i = 0; i < f.outputs(); ++i) least = std::min(least, f.d[static_cast<std::size_t>(i)]);
+  return least == 0.0 ? 0.0 : lambda * least;
+}
+
+void factor(AgentGains& a, const Setting& s, const Matrix& Q, std::size_t i, const Gains& g) {
+  switch (g.penalty) {
+    case Penalty::norm:
+    case Penalty::huber:
+      a.step = step_factors(s.whitener[i], s.C[i], Q, g.penalty);
+      a.quiet_level = quiet_level(a.step, g.price.lambda);
+      break;
+    case Penalty::l1:
+      a.box = box_factors(s.whitener[i], s.C[i], Q);
+      break;
+    case Penalty::group:
+      for (const int j : a.heard) {
+        const auto k = static_cast<std::size_t>(j);
+        a.blocks.push_back(step_factors(s.whitener[k], s.C[k], Q, Penalty::norm));
+      }
+      break;
+  }
+  if (g.ipopt) {
+    a.Q = Q;
+    a.M = s.M[i];
+    a.whitener = s.whitener[i];
+  }
+}
+
+/// Fills g.agents; the rest of g is set.
+void design_agents(Gains& g, const Setting& s) {
+  const SteadyState steady = steady_state(s);
+  for (std::size_t i = 0; i < s.C.size(); ++i)
+    g.most_outputs = std::max(g.most_outputs, static_cast<int>(s.C[i].rows()));
+  for (std::size_t i = 0; i < s.C.size(); ++i) {
+    AgentGains a;
+    a.heard = s.neighbours[i];
+    a.J = Packed(Eigen::LLT<Matrix>(steady.Pbar[i]).solve(s.A));
+    const Matrix F = inverse(steady.Q[i]) / static_cast<double>(a.heard.size());
+    a.F = Packed(0.5 * (F + F.transpose()));
+    factor(a, s, steady.Q[i], i, g);
+    a.deviation_bound = deviation_bound(s, steady, static_cast<int>(i), g.price.lambda, g.penalty);
+    if (g.bounded) {
+      a.reach = prior_error_norms(s, steady, static_cast<int>(i));
+      a.rounding = 4.0 * s.states() * std::numeric_limits<double>::epsilon() * F.norm();
+    }
+    g.agents.push_back(std::move(a));
+  }
+}
+
+}  // namespace
+}  // namespace rdkf
+
+void Rdkf::require_fitting(const Params& p) {
+  if (p.smoothing > 0.0 && p.penalty != "norm")
+    refuse("rdkf.smoothing", text(p.smoothing) + " with penalty \"" + p.penalty + "\"",
+           "0, or penalty \"norm\"");
+  if (p.solver != "ipopt") return;
+  if (p.penalty != "norm")
+    refuse("rdkf.solver", "\"ipopt\" with penalty \"" + p.penalty + "\"", "\"exact\", or penalty \"norm\"");
+  rdkf::require_ipopt();
+}
+
+Rdkf::Gains Rdkf::design(const Params& p, const Model& model, const Network& network) {
+  require_fitting(p);
+  Gains g;
+  g.penalty = rdkf::penalty_named(p.penalty);
+  g.price = {p.weight, p.smoothing};
+  g.ipopt = p.solver == "ipopt";
+  g.bounded = !std::isnan(p.initial_error);
+  if (g.bounded) {
+    g.initial_error = p.initial_error;
+    g.process_bound = model.noise().process_bound;
+    if (std::isnan(g.process_bound))
+      refuse("process_bound", "none", "a bound on |w|",
+             "the run-time error bound needs it; 0 when there is no noise");
+  }
+  rdkf::design_agents(g, rdkf::setting(model, network));
+  return g;
+}
+
+Rdkf::Gains Dkf::design(const Params&, const Model& model, const Network& network) {
+  Gains g;
+  g.penalty = rdkf::Penalty::huber;
+  g.price = {kInfinity, 0.0};
+  rdkf::design_agents(g, rdkf::setting(model, network));
+  for (auto& agent : g.agents) agent.deviation_bound = kNaN;  // there is none
+  return g;
+}
+
+}  // namespace garrison

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/filters/rdkf/filter.hpp"
+#include "garrison/runtime/filter_of.hpp"
+
+namespace garrison {
+// In one place: both run the same engine.
+FamilyInfo rdkf_family() { return family_info<Rdkf>(); }
+FamilyInfo dkf_family() { return family_info<Dkf>(); }
+}  // namespace garrison
