@@ -6,8 +6,8 @@ shift
 cd "$(dirname "$0")/.."
 mkdir -p build/log
 # The Python module, the tests and the benchmarks compile the same library: with ccache only once, if all of them
-# call the compiler by the same name.
-export CXX=${CXX:-g++}
+# call the compiler by the same name and in the same locale (Python sets one for pip where there is none).
+export CXX=${CXX:-g++} LC_ALL=C.UTF-8
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-$(command -v ccache)}
 log=build/log/${name//[^[:alnum:]]/-}.log
 printf '== %s ... ' "$name"

@@ -31,6 +31,7 @@ from garrison._core import (
 )
 from garrison.checks import Check, check
 from garrison.fitting import Fit, fit
+from garrison.lmi import lmi_gains
 from garrison.mitigation import Mitigated, replay_mitigated
 from garrison.resilience import Resilience, resilience_per_byte
 from garrison.run import Run, central_kalman, replay, simulate
@@ -59,6 +60,7 @@ __all__ = [
     "filters",
     "fit",
     "lambda0",
+    "lmi_gains",
     "observable",
     "one_step_sparse_observable",
     "partial_sharing",

@@ -167,7 +167,8 @@ def _limited_table(scenario: Scenario, main: Row) -> str:
 
 
 def _figure(figure: Any, note: str = "") -> str:
-    return f"<figure>{_svg(figure)}<figcaption>{note}</figcaption></figure>"
+    caption = f"<figcaption>{note}</figcaption>" if note else ""
+    return f"<figure>{_svg(figure)}{caption}</figure>"
 
 
 def _animation(run: Run) -> str:

@@ -127,3 +127,20 @@ def test_exposure_says_what_a_constant_attack_can_do() -> None:
     found = theory.exposure(setting, K, false_alarm=0.01, detection=0.9)[0]
     assert found["seen_by"] == 0
     assert found["largest_harm"] == pytest.approx(found["harm_per_unit"] * found["smallest_seen"])
+
+
+def test_gains_of_the_lmi_are_stable_where_a_plain_choice_is_not() -> None:
+    pytest.importorskip("cvxpy")
+    rng = np.random.default_rng(4)
+    for _ in range(3):
+        A = rng.normal(size=(3, 3))
+        A *= 1.05 / np.abs(np.linalg.eigvals(A)).max()
+        C = rng.normal(size=(4, 3))
+        W = np.eye(4) / 2 + np.roll(np.eye(4), 1, axis=1) / 2
+        setting = theory.Setting(A=A, C=C, W=W, U=(W > 0).astype(float))
+        assert theory.error_radius(setting, [np.zeros((3, 3))] * 4) > 1
+        K = gr.lmi_gains(setting)
+        assert theory.error_radius(setting, K) < 1
+    hopeless = theory.Setting(A=np.eye(3) * 1.2, C=np.zeros((4, 3)), W=W, U=np.eye(4))
+    with pytest.raises(gr.DesignInfeasible, match="spectral radius"):
+        gr.lmi_gains(hopeless, iterations=2)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conditions and bounds of theorems 1, 2 and 4.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "facts.hpp"
 #include "garrison/filters/platoon/bounds.hpp"
@@ -9,6 +11,16 @@
 #include "garrison/filters/platoon/theorems.hpp"
 
 namespace garrison {
+namespace {
+
+/// Where a threshold has to lie, to four digits.
+std::string interval(double lo, double hi) {
+  std::array<char, 80> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "in (%.4g, %.4g)", lo, hi);
+  return buffer.data();
+}
+
+}  // namespace
 
 Check Platoon::check(const Params& p, const Model& model, const Network& network) {
   using namespace platoon;
@@ -18,11 +30,10 @@ Check Platoon::check(const Params& p, const Model& model, const Network& network
   Check c;
   const auto safe = beta_interval_safe(s);
   const auto printed = beta_interval(s);
-  const std::string range = "in (" + text(safe.lo) + ", " + text(safe.hi) + ")";
-  c.conditions.push_back({"threshold beta", s.beta, range, s.beta > safe.lo && s.beta < safe.hi,
+  c.conditions.push_back({"threshold beta", s.beta, interval(safe.lo, safe.hi),
+                          s.beta > safe.lo && s.beta < safe.hi,
                           "the error bound contracts without any detection"});
-  c.conditions.push_back({"threshold beta, Theorem 1", s.beta,
-                          "in (" + text(printed.lo) + ", " + text(printed.hi) + ")",
+  c.conditions.push_back({"threshold beta, Theorem 1", s.beta, interval(printed.lo, printed.hi),
                           s.beta > printed.lo && s.beta < printed.hi, "as printed, for some omega", false});
   c.conditions.push_back({"Assumption 4", p.gv, "> T g_s, and T^2 g_s - 2 T g_v > -4/sigma_max",
                           assumption4(s.vehicles, s.period, p.gs, p.gv), "the controlled string is stable"});
