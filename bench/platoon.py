@@ -7,9 +7,8 @@ from timing import Rows, Tasks, cpu, interleaved, summary
 STEPS = 20
 
 
-def _steps(vehicles: int, attacked: bool) -> float:
-    """Processor seconds per step on one thread, after the start."""
-    model, net = gr.platoon.model(vehicles, 0.01), gr.Network.band(vehicles, 3)
+def _string(vehicles: int) -> tuple[gr.Model, gr.Network, gr.Filter, np.ndarray]:
+    """Model, network, filter and starting states."""
     filter = gr.filters.Platoon(
         threshold=200.0,
         attacked=3,
@@ -21,6 +20,12 @@ def _steps(vehicles: int, attacked: bool) -> float:
         gv=50.0,
     )
     start = np.column_stack([-20.0 * np.arange(vehicles), np.full(vehicles, 10.0)])
+    return gr.platoon.model(vehicles, 0.01), gr.Network.band(vehicles, 3), filter, start
+
+
+def _steps(vehicles: int, attacked: bool) -> float:
+    """Processor seconds per step on one thread, after the start."""
+    model, net, filter, start = _string(vehicles)
     middle = vehicles // 2
     attack = gr.attacks.Random(agents=[middle, middle + 1, middle + 5], law="normal", size=1e3) if attacked else ()
 
@@ -36,18 +41,7 @@ def _steps(vehicles: int, attacked: bool) -> float:
 
 def _check(vehicles: int) -> None:
     """The detector finds the attackers and every bound holds before anything is timed."""
-    model, net = gr.platoon.model(vehicles, 0.01), gr.Network.band(vehicles, 3)
-    filter = gr.filters.Platoon(
-        threshold=200.0,
-        attacked=3,
-        process_noise=0.1,
-        measurement_noise=0.1,
-        initial_error=300.0,
-        reference=[0.0, 10.0],
-        gs=50.0,
-        gv=50.0,
-    )
-    start = np.column_stack([-20.0 * np.arange(vehicles), np.full(vehicles, 10.0)])
+    model, net, filter, start = _string(vehicles)
     attack = gr.attacks.Random(agents=[5, 6, 9], law="normal", size=1e3)
     run = gr.simulate(model, net, filter, steps=12, start=start, attack=attack, keep=["report"])
     assert run.error is not None and run.bound is not None
