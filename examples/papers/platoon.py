@@ -377,13 +377,10 @@ def main() -> Rows:
     )
     for name in ("detector", *kinds):
         delay.add_column(name)
-    short = Experiment(args.runs, steps=60)
-    found = delays(short, kinds)
-    for name, cells in found.items():
+    for name, cells in delays(Experiment(args.runs, steps=60), kinds).items():
         delay.add_row(name, *cells)
     console.print(delay)
     console.print(f"figures in {folder}")
-    main.delays = found  # type: ignore[attr-defined]
     return rows
 
 
