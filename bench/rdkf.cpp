@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The convex step of rdkf: exact with cached and with fresh factors, and through Ipopt's C++ interface.
 #include "bench.hpp"
+#include "garrison/filters/rdkf/fresh_step.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"
 #include "garrison/filters/rdkf/steady_state.hpp"
 #include "garrison/runtime/family.hpp"
@@ -10,7 +11,8 @@ using namespace garrison::rdkf;
 
 namespace {
 
-/// Solutions (n x instances) and seconds per solve. b, x0: one column per instance; one Q and M for all.
+/// Solutions (n x instances; NaN = not solved) and seconds per solve. b, x0: one column per instance; one Q
+/// and M for all.
 std::pair<Matrix, double> solve_all(const Matrix& Q, const Matrix& M, const Matrix& b, const Matrix& x0,
                                     double lambda, const std::string& how, int repeats) {
   const Matrix root = Matrix::Identity(M.rows(), M.rows());
@@ -25,9 +27,9 @@ std::pair<Matrix, double> solve_all(const Matrix& Q, const Matrix& M, const Matr
       if (how == "cached")
         solve(cached, {lambda, 0.0}, b.col(k).data(), at, room.data());
       else if (how == "fresh")
-        solve(step_factors(root, M, Q, Penalty::norm), {lambda, 0.0}, b.col(k).data(), at, room.data());
+        solve_fresh(Q, M, Penalty::norm, {lambda, 0.0}, b.col(k).data(), at);
       else
-        solve_ipopt(Q, M, b.col(k), {lambda, kIpoptSmoothing}, at);
+        x.col(k) *= solve_ipopt(Q, M, b.col(k), {lambda, kIpoptSmoothing}, at).iterations < 0 ? kNaN : 1.0;
     }
   return {x, (cpu_seconds() - begin) / (repeats * static_cast<double>(b.cols()))};
 }

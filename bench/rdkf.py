@@ -64,6 +64,7 @@ def step(n: int, q: int, repeats: int) -> Rows:
     """Seeds 0..2 in turn; a solution worse than ours by less than rounding voids nothing, a better one does."""
     data = [problems(n, q, seed) for seed in range(3)]
     solvers = [Clarabel(*d) for d in data]
+    failed = 0
     for d, solver in zip(data, solvers, strict=True):
         ours = objective(*d, peers.rdkf_solve_all(*d, WEIGHT, "cached", 1)[0])
         assert np.allclose(ours, objective(*d, peers.rdkf_solve_all(*d, WEIGHT, "fresh", 1)[0]), rtol=1e-12)
@@ -71,6 +72,8 @@ def step(n: int, q: int, repeats: int) -> Rows:
         assert (ours <= theirs * (1 + 1e-12)).all() and np.allclose(ours, theirs, rtol=1e-4), "Clarabel disagrees"
         if peers.rdkf_ipopt_available():
             nlp = objective(*d, peers.rdkf_solve_all(*d, WEIGHT, "ipopt", 1)[0])
+            failed += int(np.isnan(nlp).sum())
+            nlp = np.where(np.isnan(nlp), ours, nlp)
             assert (ours <= nlp * (1 + 1e-12)).all() and np.allclose(ours, nlp, rtol=1e-3), "Ipopt disagrees"
 
     def timed(how: str, count: int) -> Any:
@@ -82,7 +85,7 @@ def step(n: int, q: int, repeats: int) -> Rows:
         "Clarabel, called directly": lambda: float(np.mean([cpu(s.solve) / INSTANCES for s in solvers])),
     }
     if peers.rdkf_ipopt_available():
-        rows["Ipopt, C++ interface"] = timed("ipopt", 1)
+        rows[f"Ipopt, C++ interface, {failed} of {3 * INSTANCES} unsolved"] = timed("ipopt", 1)
     return summary(interleaved(rows, repeats), "exact, cached factors")
 
 

@@ -3,6 +3,7 @@
 #include "bindings.hpp"
 #include "garrison/filters/rdkf/analysis.hpp"
 #include "garrison/filters/rdkf/box_step.hpp"
+#include "garrison/filters/rdkf/fresh_step.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"
 
 using namespace garrison;
@@ -48,9 +49,7 @@ py::dict one_step(const MatrixRef& Q, const MatrixRef& M, const VectorRef& b, co
     std::vector<double> room(f.room());
     step = solve_box(f, weight, b.data(), x.data(), room.data());
   } else {
-    const StepFactors f = step_factors(root, M, Q, kind);
-    std::vector<double> room(f.room());
-    step = solve(f, price, b.data(), x.data(), room.data());
+    step = solve_fresh(Q, M, kind, price, b.data(), x.data());
   }
   const double residual = (b - M * x).norm();
   const double objective = (weight == 0.0 ? 0.0 : weight * residual) + (x - x0).dot(Q * (x - x0));

@@ -111,3 +111,31 @@ def test_wind_scenario(wind: Path) -> None:
     assert rows["central Kalman filter", True]["mean_error"] > 4 * signal
     pulled = rows["rdkf, huber", True]["limited"]
     assert set(sorted(pulled, key=lambda k: -pulled[k])[:3]) == {"DUB", "CLO", "ROS"}
+
+
+def test_clarabel_finds_the_same_minimum() -> None:
+    """Second-order cone form of (8) on 200 random problems from seed 20261125; needs the extra `lmi` or `bench`."""
+    clarabel = pytest.importorskip("clarabel")
+    sparse = pytest.importorskip("scipy.sparse")
+    rng = np.random.default_rng(20261125)
+    quiet = clarabel.DefaultSettings()
+    quiet.verbose = False
+    worst = 0.0
+    for instance in range(200):
+        n, q = (int(v) for v in rng.integers(1, 21, 2))
+        M, root, x0 = rng.normal(size=(q, n)), rng.normal(size=(n, n)), rng.normal(size=n)
+        Q = root @ root.T / n + 0.1 * np.eye(n)
+        b = M @ x0 + (20.0, 1e-3, 1.0)[instance % 3] * rng.normal(size=q)
+        weight = float(rng.uniform(0.1, 5.0))
+        # min weight t + (x - x0)'Q(x - x0), |b - M x| <= t
+        P = sparse.csc_matrix(np.triu(np.block([[2 * Q, np.zeros((n, 1))], [np.zeros((1, n + 1))]])))
+        rows = sparse.csc_matrix(np.block([[np.zeros((1, n)), -np.ones((1, 1))], [M, np.zeros((q, 1))]]))
+        cones = [clarabel.SecondOrderConeT(q + 1)]
+        linear, right = np.append(-2 * Q @ x0, weight), np.append(0.0, b)
+        found = np.array(clarabel.DefaultSolver(P, linear, rows, right, cones, quiet).solve().x[:n])
+        theirs = weight * np.linalg.norm(b - M @ found) + (found - x0) @ Q @ (found - x0)
+        ours = theory.step(Q, M, b, x0, weight)["objective"]
+        assert ours <= theirs * (1 + 1e-12) + 1e-15
+        worst = max(worst, (theirs - ours) / (1e-3 + ours))
+    print(f"Clarabel's objective above ours by {worst:.1e} at most")
+    assert worst < 1e-5

@@ -9,6 +9,7 @@
 #include "../../cases.hpp"
 #include "../../random_system.hpp"
 #include "garrison/filters/rdkf/box_step.hpp"
+#include "garrison/filters/rdkf/fresh_step.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"
 
 using namespace garrison;
@@ -52,6 +53,11 @@ TEST_CASE("single problems of every kind have the reference solution") {
     const Solution huber = solved(step_factors(root, M, Q, Penalty::huber), lambda, b, x0);
     CHECK(agree_entries(norm.x, vector(out["x"])));
     CHECK(agree_entries(huber.x, vector(out["x_huber"])));
+    for (const Penalty penalty : {Penalty::norm, Penalty::huber}) {
+      Vector x = x0;
+      solve_fresh(Q, M, penalty, {lambda, 0.0}, b.data(), x.data());
+      CHECK(agree_entries(x, vector(out[penalty == Penalty::norm ? "x" : "x_huber"])));
+    }
     const StepFactors f = step_factors(root, M, Q, Penalty::norm);
     CHECK(agree_entries(solved(f, lambda, b, x0, number(in["eps"])).x, vector(out["x_smoothed"])));
     const BoxFactors box = box_factors(root, M, Q);
@@ -76,6 +82,7 @@ TEST_CASE("3000 random problems over 12 decades fulfil the optimality conditions
   Rng rng(20261124);
   double worst_residual = 0.0;
   double worst_gradient = 0.0;
+  double worst_fresh = 0.0;
   int most = 0;
   long total = 0;
   int saturated = 0;
@@ -117,6 +124,11 @@ TEST_CASE("3000 random problems over 12 decades fulfil the optimality conditions
     worst_gradient = std::max(worst_gradient, gradient.norm() / weight);
     CHECK(s.u.norm() <= lambda * (1.0 + 1e-12));
     if (s.step.mu > 1e-9) CHECK(s.u.norm() >= lambda * (1.0 - 1e-12));
+    Vector x = x0;
+    const Step fresh = solve_fresh(Q, M, penalty, {lambda, 0.0}, b.data(), x.data());
+    // One minimiser: 2 Q (x - s.x) = M'(u - s.u), and mu times either u is the same residual within rounding.
+    worst_fresh = std::max(worst_fresh, (2.0 * (Q * (x - s.x))).norm() / (weight + 1e-300));
+    CHECK(std::abs(fresh.mu - s.step.mu) * s.u.norm() <= 1e-12 * scale + 1e-9 * s.step.mu * s.u.norm());
     most = std::max(most, s.step.iterations);
     total += s.step.iterations;
     saturated += s.step.mu > 0.0 ? 1 : 0;
@@ -124,7 +136,9 @@ TEST_CASE("3000 random problems over 12 decades fulfil the optimality conditions
   std::cout << "rdkf step: 3000 problems from seed 20261124, " << saturated
             << " saturated, optimality residual " << worst_residual << " and " << worst_gradient
             << ", iterations at most " << most << ", mean "
-            << static_cast<double>(total) / std::max(saturated, 1) << "\n";
+            << static_cast<double>(total) / std::max(saturated, 1)
+            << "; without factors made before: distance " << worst_fresh << "\n";
+  CHECK(worst_fresh <= 1e-12);
   CHECK(worst_residual <= 1e-12);
   CHECK(worst_gradient <= 1e-12);
 }
@@ -144,6 +158,19 @@ TEST_CASE("huge and degenerate data stay finite") {
   CHECK(solved(nothing, 1.0, Vector(0), x0).x == x0);
   CHECK_THROWS_WITH_AS(step_factors(M, M, -M, Penalty::norm), doctest::Contains("not positive definite"),
                        InvalidInput);
+  for (const double v : {0.0, 1e-300, 1e-160, 1e154, 1e200, 1e300}) {
+    Vector x = x0;
+    solve_fresh(Matrix::Identity(2, 2), M, Penalty::norm, {1.0, 0.0}, Vector{{v, -v}}.data(), x.data());
+    CAPTURE(v);
+    CHECK(x.norm() <= 0.5 * (1.0 + 1e-12));
+  }
+  Vector x = x0;
+  CHECK_THROWS_WITH_AS(solve_fresh(-M, M, Penalty::norm, {1.0, 0.0}, x0.data(), x.data()),
+                       doctest::Contains("not positive definite"), InvalidInput);
+  CHECK(std::isinf(solve_fresh(M, M, Penalty::norm, {0.0, 0.0}, x0.data(), x.data()).mu));
+  CHECK(x == x0);
+  solve_fresh(M, Matrix(0, 2), Penalty::norm, {1.0, 0.0}, x0.data(), x.data());
+  CHECK(x == x0);
 }
 
 TEST_CASE("elementwise penalty: optimality of 500 random problems, with dependent rows and q > n") {
