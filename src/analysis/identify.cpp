@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/analysis/identify.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 #include <string>
+
+#include "core/solvers.hpp"
 
 namespace garrison {
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/analysis/modes.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+
+#include "core/solvers.hpp"
 
 namespace garrison {
 

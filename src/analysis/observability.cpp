@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/analysis/observability.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <functional>
 
+#include "core/solvers.hpp"
 #include "garrison/analysis/subsets.hpp"
 #include "row_groups.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "symmetric_eigen.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "core/solvers.hpp"
 
 namespace garrison::detail {
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/attacks/message.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "core/solvers.hpp"
 
 namespace garrison {
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/core/model.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <utility>
+
+#include "core/solvers.hpp"
 
 namespace garrison {
 namespace {

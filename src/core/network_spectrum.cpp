@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // lambda_2 and lambda_max of the Laplacian: dense for small networks, Lanczos for large ones.
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
+#include "core/solvers.hpp"
 #include "garrison/core/network.hpp"
 
 namespace garrison {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/lfre.hpp"
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
-
+#include "core/solvers.hpp"
 #include "garrison/analysis/observability.hpp"
 #include "garrison/runtime/filter_of.hpp"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plant.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "core/solvers.hpp"
 
 namespace garrison::detail {
 namespace {

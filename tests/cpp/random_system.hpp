@@ -2,10 +2,10 @@
 // Random plants and networks for tests.
 #pragma once
 
-#include <Eigen/SVD>
 #include <random>
 #include <vector>
 
+#include "core/solvers.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 

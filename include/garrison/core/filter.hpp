@@ -3,6 +3,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -52,6 +53,20 @@ struct Report {
 template <int n>
 constexpr int dimension(const Local& local) {
   return n == Dynamic ? local.states : n;
+}
+
+/// C A x, what agent `local` measures next where the plant is at x: the `expected` of most families.
+template <int n>
+inline void next_measurement(const Local& local, const double* x, double* out) noexcept {
+  const int nn = dimension<n>(local);
+  for (int r = 0; r < local.outputs; ++r) {
+    out[r] = 0.0;
+    for (int i = 0; i < nn; ++i) {
+      double predicted = 0.0;
+      for (int k = 0; k < nn; ++k) predicted += local.A[static_cast<std::ptrdiff_t>(k) * nn + i] * x[k];
+      out[r] += local.C[static_cast<std::ptrdiff_t>(r) * nn + i] * predicted;
+    }
+  }
 }
 
 /// A filter family F for state dimension n (1..8, or Dynamic).

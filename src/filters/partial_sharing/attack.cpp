@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/partial_sharing/attack.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
+
+#include "core/solvers.hpp"
 
 namespace garrison::partial_sharing {
 namespace {

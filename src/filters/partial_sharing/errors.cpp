@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/partial_sharing/errors.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+
+#include "core/solvers.hpp"
 
 namespace garrison::partial_sharing {
 namespace {

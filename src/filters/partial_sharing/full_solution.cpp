@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/partial_sharing/full_solution.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/solvers.hpp"
 
 namespace garrison::partial_sharing {
 namespace {

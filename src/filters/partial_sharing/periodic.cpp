@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Over one cycle of selections the error dynamics are one matrix: its radius decides, and doubling solves.
-#include <Eigen/Eigenvalues>
 
+#include "core/solvers.hpp"
 #include "garrison/filters/partial_sharing/errors.hpp"
 
 namespace garrison::partial_sharing {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/partial_sharing/setting.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "core/solvers.hpp"
 
 namespace garrison::partial_sharing {
 namespace {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/partial_sharing/stability.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "core/solvers.hpp"
 
 namespace garrison::partial_sharing {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The limit of the local Riccati recursion (11).
-#include <Eigen/LU>
 #include <optional>
 
+#include "core/solvers.hpp"
 #include "garrison/filters/partial_sharing/setting.hpp"
 
 namespace garrison::partial_sharing {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/platoon/loop.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "core/solvers.hpp"
 #include "garrison/filters/platoon/formation.hpp"
 
 namespace garrison::platoon {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/analysis.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
+
+#include "core/solvers.hpp"
 
 namespace garrison::rdkf {
 namespace {

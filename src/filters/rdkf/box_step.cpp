@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/box_step.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
+
+#include "core/solvers.hpp"
 
 namespace garrison::rdkf {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Eigenvalues>
 
+#include "core/solvers.hpp"
 #include "garrison/filters/rdkf/analysis.hpp"
 #include "garrison/filters/rdkf/filter.hpp"
 #include "penalties.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Cholesky>
 
+#include "core/solvers.hpp"
 #include "garrison/filters/rdkf/analysis.hpp"
 #include "garrison/filters/rdkf/filter.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/setting.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <complex>
+
+#include "core/solvers.hpp"
 
 namespace garrison::rdkf {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/steady_state.hpp"
 
-#include <Eigen/Cholesky>
+#include "core/solvers.hpp"
 
 namespace garrison::rdkf {
 namespace {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/step.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
-
+#include "core/solvers.hpp"
 #include "garrison/filters/rdkf/secular.hpp"
 
 namespace garrison::rdkf {

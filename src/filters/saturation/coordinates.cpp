@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/saturation/coordinates.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
 #include <string>
+
+#include "core/solvers.hpp"
 
 namespace garrison::saturation {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "facts.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "core/solvers.hpp"
 #include "garrison/core/chebyshev.hpp"
 
 namespace garrison::saturation::detail {

@@ -2,8 +2,7 @@
 // Design: from parameters, model and network to what the agents need.
 #include "garrison/filters/saturation/filter.hpp"
 
-#include <Eigen/SVD>
-
+#include "core/solvers.hpp"
 #include "facts.hpp"
 #include "garrison/filters/saturation/constants.hpp"
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
+#include "core/solvers.hpp"
 #include "garrison/filters/structural/setting.hpp"
 
 namespace garrison::structural::detail {

@@ -2,11 +2,11 @@
 // Alarms, windows of residuals, templates, and what an attack can do before it is seen.
 #include "garrison/filters/structural/detection.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "blocks.hpp"
+#include "core/solvers.hpp"
 
 namespace garrison::structural {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/structural/errors.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "blocks.hpp"
+#include "core/solvers.hpp"
 
 namespace garrison::structural {
 namespace {

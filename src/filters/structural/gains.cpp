@@ -2,11 +2,11 @@
 // Choice of a design, and the spectral radius of large networks.
 #include "garrison/filters/structural/gains.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "blocks.hpp"
+#include "core/solvers.hpp"
 #include "garrison/core/params.hpp"
 #include "garrison/filters/structural/errors.hpp"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coupled Riccati recursion, joint Kalman recursion, projection.
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "blocks.hpp"
+#include "core/solvers.hpp"
 #include "garrison/filters/structural/gains.hpp"
 
 namespace garrison::structural {

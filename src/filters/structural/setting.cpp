@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/structural/setting.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <string>
+
+#include "core/solvers.hpp"
 
 namespace garrison::structural {
 namespace {

@@ -3,9 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "../random_system.hpp"
+#include "core/solvers.hpp"
 #include "garrison/filters/central_kalman.hpp"
 
 using namespace garrison;

@@ -3,10 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
-
 #include "../random_system.hpp"
+#include "core/solvers.hpp"
 #include "garrison/analysis/observability.hpp"
 
 using namespace garrison;

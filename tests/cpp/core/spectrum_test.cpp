@@ -2,9 +2,9 @@
 // Spectra and weights, on both sides of the size where the dense solver gives way to Lanczos.
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <numbers>
 
+#include "core/solvers.hpp"
 #include "garrison/core/network.hpp"
 
 using namespace garrison;

@@ -3,9 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
-
 #include "../random_system.hpp"
+#include "core/solvers.hpp"
 
 using namespace garrison;
 

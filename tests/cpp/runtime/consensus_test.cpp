@@ -3,10 +3,10 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cstring>
 
 #include "../random_system.hpp"
+#include "core/solvers.hpp"
 #include "garrison/core/average.hpp"
 #include "garrison/core/chebyshev.hpp"
 

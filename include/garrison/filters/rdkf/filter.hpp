@@ -222,15 +222,7 @@ struct GARRISON_EXPORT Rdkf {
   /// From the own estimate alone: the neighbours' vectors for the next step are not known yet.
   template <int n>
   static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
-    const int nn = dimension<n>(l);
-    for (int r = 0; r < l.outputs; ++r) {
-      out[r] = 0.0;
-      for (int i = 0; i < nn; ++i) {
-        double predicted = 0.0;
-        for (int k = 0; k < nn; ++k) predicted += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.x[k];
-        out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + i] * predicted;
-      }
-    }
+    next_measurement<n>(l, s.x.data(), out);
   }
   template <int n>
   static double alarm_level(const Local& l, const Gains& g, const State<n>&) noexcept {

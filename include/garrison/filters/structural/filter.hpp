@@ -51,88 +51,7 @@ struct GARRISON_EXPORT Structural {
     bool isolate = false;
     bool accuse_missing = false;
 
-    static auto fields() {
-      return std::make_tuple(
-          field(&Params::design, {.name = "design",
-                                  .symbol = "K",
-                                  .unit = "",
-                                  .doc = "how the gains are found; auto: riccati, else kalman, else h2",
-                                  .choices = {"auto", "riccati", "kalman", "h2", "projection"}}),
-          field(&Params::share, {.name = "share",
-                                 .symbol = "U",
-                                 .unit = "",
-                                 .doc = "whose measurements an agent uses besides its own",
-                                 .choices = {"neighbours", "none"}}),
-          field(&Params::self_weight,
-                {.name = "self_weight",
-                 .symbol = "W_ii",
-                 .unit = "1",
-                 .doc = "weight of an agent's own estimate, the rest spread evenly over its neighbours; left "
-                        "out: 1/(degree + 1). Small ones stabilise more",
-                 .least = 0.0,
-                 .most = 1.0}),
-          field(&Params::weights, {.name = "weights",
-                                   .symbol = "W",
-                                   .unit = "1",
-                                   .doc = "N*N mixing weights row by row, instead of self_weight",
-                                   .least = 0.0}),
-          field(&Params::sharing, {.name = "sharing",
-                                   .symbol = "U",
-                                   .unit = "1",
-                                   .doc = "N*N numbers 0 or 1 row by row, instead of share",
-                                   .least = 0.0,
-                                   .most = 1.0}),
-          field(&Params::gain, {.name = "gain",
-                                .symbol = "K",
-                                .unit = "1",
-                                .doc = "N*n*n numbers, K_i row by row, agent by agent, instead of design"}),
-          field(&Params::false_alarm, {.name = "false_alarm",
-                                       .symbol = "1 - kappa",
-                                       .unit = "1",
-                                       .doc = "probability per sample of an alarm without an attack",
-                                       .least = 0.0,
-                                       .most = 1.0,
-                                       .open = true}),
-          field(&Params::test, {.name = "test",
-                                .symbol = "r",
-                                .unit = "",
-                                .doc = "what is tested: y - c'x after the update, or before it (innovation)",
-                                .choices = {"residual", "innovation"}}),
-          field(&Params::window,
-                {.name = "window",
-                 .symbol = "T",
-                 .unit = "samples",
-                 .doc = "1: a test per sample; more: chi-square over so many residuals, exact covariance",
-                 .least = 1,
-                 .most = 1000}),
-          field(&Params::alarm_after, {.name = "alarm_after",
-                                       .symbol = "",
-                                       .unit = "samples",
-                                       .doc = "tests in a row above the threshold before the verdict",
-                                       .least = 1,
-                                       .most = 1e6}),
-          field(&Params::clear_after, {.name = "clear_after",
-                                       .symbol = "",
-                                       .unit = "samples",
-                                       .doc = "tests in a row below it before the verdict is taken back",
-                                       .least = 1,
-                                       .most = 1e6}),
-          field(&Params::settle,
-                {.name = "settle",
-                 .symbol = "",
-                 .unit = "samples",
-                 .doc = "samples without a test after the start or a loss; -1: until rho^k < 0.01",
-                 .least = -1,
-                 .most = 1e6}),
-          field(&Params::isolate, {.name = "isolate",
-                                   .symbol = "",
-                                   .unit = "",
-                                   .doc = "leave the own measurement out while the alarm lasts"}),
-          field(&Params::accuse_missing, {.name = "accuse_missing",
-                                          .symbol = "",
-                                          .unit = "",
-                                          .doc = "a missing own measurement counts as an alarm"}));
-    }
+    static auto fields();
   };
 
   /// What agent i needs of an agent it hears (or of itself).
@@ -297,14 +216,7 @@ struct GARRISON_EXPORT Structural {
   }
   template <int n>
   static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
-    const int nn = dimension<n>(l);
-    if (l.outputs == 0) return;
-    out[0] = 0.0;
-    for (int i = 0; i < nn; ++i) {
-      double next = 0.0;
-      for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.x[k];
-      out[0] += l.C[i] * next;
-    }
+    next_measurement<n>(l, s.x.data(), out);
   }
   /// The innovation that a single-sample test lets pass when all else is as predicted.
   template <int n>
@@ -407,3 +319,5 @@ struct GARRISON_EXPORT Structural {
 };
 
 }  // namespace garrison
+
+#include "garrison/filters/structural/params.hpp"

@@ -2,10 +2,9 @@
 // The local recursion (11) and the exact covariance (29).
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <iostream>
 
+#include "core/solvers.hpp"
 #include "garrison/runtime/simulate.hpp"
 #include "random_setting.hpp"
 

@@ -2,9 +2,8 @@
 // Random problems for the tests of the partial-sharing filter.
 #pragma once
 
-#include <Eigen/Eigenvalues>
-
 #include "../../random_system.hpp"
+#include "core/solvers.hpp"
 #include "garrison/filters/partial_sharing/errors.hpp"
 
 namespace garrison::test {

@@ -3,8 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
-
+#include "core/solvers.hpp"
 #include "garrison/filters/platoon/bounds.hpp"
 #include "garrison/filters/platoon/loop.hpp"
 #include "random_platoon.hpp"

@@ -2,9 +2,8 @@
 // Random models with covariances for the tests of the resilient distributed Kalman filter.
 #pragma once
 
-#include <Eigen/Eigenvalues>
-
 #include "../../random_system.hpp"
+#include "core/solvers.hpp"
 
 namespace garrison::test {
 

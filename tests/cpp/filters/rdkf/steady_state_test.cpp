@@ -4,9 +4,8 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
-
 #include "../../cases.hpp"
+#include "core/solvers.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

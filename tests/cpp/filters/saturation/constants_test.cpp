@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/saturation/constants.hpp"
 
-#include <Eigen/Dense>
-
+#include "core/solvers.hpp"
 #include "filters/saturation/cases.hpp"
 #include "filters/saturation/random_setting.hpp"
 #include "garrison/filters/saturation/adaptive.hpp"

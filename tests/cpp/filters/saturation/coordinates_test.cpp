@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/saturation/coordinates.hpp"
 
-#include <Eigen/Dense>
 #include <random>
 
+#include "core/solvers.hpp"
 #include "filters/saturation/cases.hpp"
 #include "garrison/filters/saturation/feasibility.hpp"
 

@@ -2,9 +2,7 @@
 // Exact moments against their defining recursions and against simulation.
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
+#include "core/solvers.hpp"
 #include "garrison/filters/structural/detection.hpp"
 #include "garrison/filters/structural/gains.hpp"
 #include "random_setting.hpp"
