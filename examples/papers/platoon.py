@@ -14,10 +14,9 @@ from typing import Any
 
 import garrison as gr
 import numpy as np
+from claims import Rows, claim, print_claims, print_table
 from garrison.verify import platoon as cases
 from matplotlib.figure import Figure
-from rich.console import Console
-from rich.table import Table
 
 T, SPACING, GAIN, STEPS = 0.01, 20.0, 50.0, 500
 X0 = np.array([[200, 10], [100, 8], [50, 6], [20, 4], [0, 2]], dtype=float)
@@ -126,13 +125,6 @@ def plot(path: Path, title: str, curves: dict[str, np.ndarray], label: str, log:
     figure.savefig(path, dpi=120)
 
 
-Rows = list[list[str]]
-
-
-def row(name: str, what: str, ok: bool, why: str = "") -> list[str]:
-    return [name, what, "confirmed" if ok else "not confirmed", why]
-
-
 def figure4(e: Experiment, folder: Path) -> Rows:
     runs = e.run(platoon(1), [2])
     eta = {i: np.max([r.error[0, :, i - 1] for r in runs], axis=0) for i in (1, 3)}
@@ -152,26 +144,26 @@ def figure4(e: Experiment, folder: Path) -> Rows:
     runs[0].animate(folder / "string.gif")
     gaps = -np.diff(ends[False][:, 0])
     return [
-        row(
+        claim(
             "4a: errors stay below their bounds",
             f"{len(runs)} runs",
             all(bool((r.error <= r.bound).all()) for r in runs),
             "with the bound that holds; the printed (17) happens to hold here too",
         ),
-        row("4a: small after 20 steps", f"eta_1 {eta[1][20]:.3g}, eta_3 {eta[3][20]:.3g}", eta[1][20] < 0.3),
-        row(
+        claim("4a: small after 20 steps", f"eta_1 {eta[1][20]:.3g}, eta_3 {eta[3][20]:.3g}", eta[1][20] < 0.3),
+        claim(
             "4a: vehicle 1 ends better than the attacked vehicle 3",
             f"mean of the last 50: {eta[1][-50:].mean():.3g} against {eta[3][-50:].mean():.3g}",
             eta[1][-50:].mean() < eta[3][-50:].mean(),
         ),
-        row("4b: gaps tend to 20", " ".join(f"{g:.4g}" for g in gaps), bool(np.abs(gaps - 20).max() < 1)),
-        row(
+        claim("4b: gaps tend to 20", " ".join(f"{g:.4g}" for g in gaps), bool(np.abs(gaps - 20).max() < 1)),
+        claim(
             "4b: velocities reach v_0 (noise as printed)",
             " ".join(f"{v:.3g}" for v in ends[False][:, 1]),
             bool(np.abs(ends[False][:, 1]).max() < 1),
             "one-sided process noise of mean .035 per step acts as an offset of 3.5 m/s",
         ),
-        row(
+        claim(
             "4b: velocities reach v_0 (symmetric noise)",
             " ".join(f"{v:.3g}" for v in ends[True][:, 1]),
             bool(np.abs(ends[True][:, 1]).max() < 1),
@@ -197,19 +189,19 @@ def figure5(e: Experiment, folder: Path) -> Rows:
         for r in rs
     )
     return [
-        row(
+        claim(
             "5a: phi falls with the noise, at the end",
             " ".join(f"{v:.3g}" for v in last),
             bool(np.all(np.diff(last) > 0)),
         ),
-        row(
+        claim(
             "5a: phi falls with the noise, at every time",
             "t = 150: " + " ".join(f"{v:.4g}" for v in early),
             bool(np.all(np.diff(early) > 0)),
             "the drift of one-sided noise happens to shorten the transient",
         ),
-        row("5b: all four attacks are handled", "phi(500) " + " ".join(f"{v:.3g}" for v in final), max(final) < 6),
-        row("Lemma 1: nobody falsely accused or cleared", f"{4 * e.runs} runs", clean, "with the corrected (28)"),
+        claim("5b: all four attacks are handled", "phi(500) " + " ".join(f"{v:.3g}" for v in final), max(final) < 6),
+        claim("Lemma 1: nobody falsely accused or cleared", f"{4 * e.runs} runs", clean, "with the corrected (28)"),
     ]
 
 
@@ -226,23 +218,23 @@ def figure6(e: Experiment, folder: Path) -> Rows:
     end = {name: c[-50:].mean() for name, c in curves.items()}
     ours = end["Algorithms 1-3"]
     return [
-        row(
+        claim(
             "6: Algorithms 1-3 beat PWM and PTD",
             " ".join(f"{k} {v:.3g}" for k, v in end.items()),
             ours < end["PWM"] / 10,
         ),
-        row(
+        claim(
             "6: PWM never settles",
             f"last 50 between {curves['PWM'][-50:].min():.3g} and {curves['PWM'][-50:].max():.3g}",
             curves["PWM"][-50:].min() > 50,
         ),
-        row(
+        claim(
             "6: Algorithms 1-3 beat PBE",
             f"{ours:.4g} against {end['PBE']:.4g}",
             ours < 0.98 * end["PBE"],
             "the paper does not define PBE; with our definition the two are equal within 2 %",
         ),
-        row(
+        claim(
             "6: Algorithms 1-3 are best at all times",
             f"t = 100: {curves['Algorithms 1-3'][100]:.4g} against {curves['Algorithms 1+3'][100]:.4g} of 1+3",
             all(curves["Algorithms 1-3"][100] <= c[100] for c in curves.values()),
@@ -274,7 +266,7 @@ def theory() -> Rows:
     rows = []
     found = gr.check(platoon(1), gr.platoon.model(5, T), gr.Network.band(5, 2))
     rows.append(
-        row(
+        claim(
             "Theorem 2: asymptotic bounds, b = 1",
             f"safe limit {found['limit of rho']:.4g}, tau {found['limit of tau']:.4g}",
             abs(found["limit of rho"] - 0.8092) < 1e-3,
@@ -284,7 +276,7 @@ def theory() -> Rows:
     for b, beta in ((1, 3.0), (2, 3.0)):
         lo, hi = gr.platoon.beta_interval(gr.platoon.Setting(attacked=b, beta=beta, **setting))
         rows.append(
-            row(
+            claim(
                 f"section 7: beta = 3 is admissible for b = {b}",
                 f"Theorem 1 needs beta in ({lo:.4g}, {hi:.4g})",
                 lo < beta < hi,
@@ -294,7 +286,7 @@ def theory() -> Rows:
     static = gr.platoon.Setting(attacked=1, beta=3.0, adaptive=False, **setting)
     printed = gr.platoon.theorem1(static, distance=2)["alpha1"]
     rows.append(
-        row(
+        claim(
             "Theorem 1: alpha1 tells where the error goes, static beta = 3",
             f"alpha1 {printed:.4g}, limit of the recursion {gr.platoon.safe_limit(static):.4g}",
             bool(printed < 10),
@@ -303,7 +295,7 @@ def theory() -> Rows:
     )
     four = gr.platoon.theorem4(5, T, GAIN, GAIN, 0.1, 1.355)
     rows.append(
-        row(
+        claim(
             "Theorem 4: a useful bound on phi, N = 5",
             f"printed {four['bound']:.3g}, corrected {four['bound_safe']:.3g}, "
             f"sharper {four['bound_sharp']:.3g}; true .5",
@@ -311,7 +303,7 @@ def theory() -> Rows:
             "xi is far too conservative; summed powers help, not enough",
         )
     )
-    for name, claim in (
+    for name, text in (
         ("process_noise_counterexample", "Proposition 1: the printed (17) is a bound"),
         ("lemma1_counterexample", "Lemma 1: no false accusation with the printed (17)"),
     ):
@@ -323,7 +315,7 @@ def theory() -> Rows:
         ok = other["bound_holds_everywhere"] if name.startswith("process") else not other["false_attacked"]
         why = f"case {name}: printed bound holds {other['bound_holds_everywhere']}, accuses a clean sensor "
         why += f"{other['false_attacked']}; the valid bound: {ours['bound_holds_everywhere']}, {ours['false_attacked']}"
-        rows.append(row(claim, f"N = {case['inputs']['params']['N']}", ok, why))
+        rows.append(claim(text, f"N = {case['inputs']['params']['N']}", ok, why))
     return rows
 
 
@@ -336,12 +328,12 @@ def twenty(runs: int, folder: Path) -> Rows:
     results[0].plot().savefig(folder / "string20.png", dpi=110)
     held = all(bool((r.error <= r.bound)[np.isfinite(r.bound)].all()) for r in results)
     return [
-        row(
+        claim(
             "N = 20: errors stay below their bounds",
             f"{runs} runs, final error {results[0].error[0, -1].mean():.3g}",
             held,
         ),
-        row(
+        claim(
             "N = 20: the formation converges",
             f"phi {phi[0]:.3g} -> {phi[500]:.3g} at 500, {phi[-1]:.3g} at 900",
             phi[-1] < 0.25 * phi[0],
@@ -364,23 +356,14 @@ def main() -> Rows:
         + theory()
         + twenty(max(1, args.runs // 10), folder)
     )
-    console = Console(width=150)
-    table = Table(title=f"{args.runs} runs", title_justify="left")
-    for name in ("claim", "what came out", "verdict", "why"):
-        table.add_column(name, overflow="fold")
-    for entry in rows:
-        table.add_row(*entry)
-    console.print(table)
+    print_claims(f"{args.runs} runs", rows)
     kinds = ("random", "DoS", "bias", "replay")
-    delay = Table(
-        title="steps until S^a = {2, 3} is known: first vehicle / all five (replay starts at 12)", title_justify="left"
+    print_table(
+        "steps until S^a = {2, 3} is known: first vehicle / all five (replay starts at 12)",
+        ("detector", *kinds),
+        [[name, *cells] for name, cells in delays(Experiment(args.runs, steps=60), kinds).items()],
     )
-    for name in ("detector", *kinds):
-        delay.add_column(name)
-    for name, cells in delays(Experiment(args.runs, steps=60), kinds).items():
-        delay.add_row(name, *cells)
-    console.print(delay)
-    console.print(f"figures in {folder}")
+    print(f"figures in {folder}")
     return rows
 
 

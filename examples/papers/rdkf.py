@@ -18,10 +18,9 @@ matplotlib.use("Agg")
 
 import garrison as gr
 import numpy as np
+from claims import claim, print_claims, print_table
 from garrison._core import rdkf as theory
 from matplotlib.figure import Figure
-from rich.console import Console
-from rich.table import Table
 
 N, STATES, SENSORS, STEPS = 10, 20, 14, 50
 EDGES = [(1, 3), (1, 4), (1, 8), (2, 9), (3, 8), (5, 6), (5, 7), (6, 8), (7, 8), (8, 10), (9, 10), (6, 7)]
@@ -100,7 +99,7 @@ class Page:
         self.rows: list[list[str]] = []
 
     def claim(self, text: str, found: str, holds: bool, why: str = "") -> None:
-        self.rows.append([text, found, "confirmed" if holds else "not confirmed", why])
+        self.rows.append(claim(text, found, holds, why))
 
 
 def simulations(page: Page, seeds: int, folder: Path) -> None:
@@ -310,20 +309,14 @@ def main() -> list[list[str]]:
     simulations(page, args.seeds, folder)
     convergence(page)
     lasting = persistent(page, args.seeds, folder)
-    console = Console(width=150)
-    table = Table(title="Dutta, Zhang, Jin, CDC 2019", title_justify="left")
-    for name in ("claim", "what came out", "verdict", "why"):
-        table.add_column(name, overflow="fold")
-    for row in page.rows:
-        table.add_row(*row)
-    console.print(table)
-    table = Table(title="A coordinated false trajectory for ever, n = 4, 3 sensors per agent", title_justify="left")
-    for name in ("radius of A", "attackers of 10", "error at k = 75", "at k = 150", "bound for every attack"):
-        table.add_column(name, justify="right")
-    for row in lasting:
-        table.add_row(*row)
-    console.print(table)
-    console.print(f"figures in {folder}")
+    print_claims("Dutta, Zhang, Jin, CDC 2019", page.rows)
+    print_table(
+        "A coordinated false trajectory for ever, n = 4, 3 sensors per agent",
+        ("radius of A", "attackers of 10", "error at k = 75", "at k = 150", "bound for every attack"),
+        lasting,
+        justify="right",
+    )
+    print(f"figures in {folder}")
     return page.rows
 
 

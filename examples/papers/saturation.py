@@ -18,9 +18,8 @@ matplotlib.use("Agg")
 
 import garrison as gr
 import numpy as np
+from claims import claim, print_claims
 from matplotlib.figure import Figure
-from rich.console import Console
-from rich.table import Table
 
 N, STEPS = 30, 500
 A = np.array([[1.0, 0.1], [0.0, 1.0]])
@@ -124,12 +123,12 @@ def theory(e: Experiment) -> list[list[str]]:
         found = None if np.isnan(least) else int(least)
         ok = found == fewest and gr.lambda0(C, s).lower == 12 - s
         rows.append(
-            [
+            claim(
                 f"condition (9) can be met with s = {s}",
                 f"lambda_0 = {gr.lambda0(C, s).lower:g}, fewest rounds {found or 'none'}",
-                "confirmed" if found and s != 6 else "not confirmed",
+                bool(found) and s != 6,
                 "" if ok and found else "lambda_0 > s fails: the paper's own s = 6 is outside all its theorems",
-            ]
+            )
         )
     return rows
 
@@ -138,8 +137,8 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
     """All figures, and the rows of the table."""
     rows: list[list[str]] = []
 
-    def claim(text: str, found: str, holds: bool, why: str = "") -> None:
-        rows.append([text, found, "confirmed" if holds else "not confirmed", why])
+    def add(text: str, found: str, holds: bool, why: str = "") -> None:
+        rows.append(claim(text, found, holds, why))
 
     def numbers(curve: np.ndarray) -> str:
         return " ".join(f"{curve[t]:.3g}" for t in TIMES)
@@ -153,12 +152,12 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
         "eta_i(t)",
     )
     jumps = [abs(mean[t + 10, 9] - mean[t - 2, 9]) > 0.2 for t in (125, 250)]
-    claim("4a: errors fluctuate at the switches, then settle", f"sensor 10: {numbers(mean[:, 9])}", all(jumps))
+    add("4a: errors fluctuate at the switches, then settle", f"sensor 10: {numbers(mean[:, 9])}", all(jumps))
 
     by_rounds = {f"L={L}": e.worst(algorithm1(3, L), moving()) for L in (1, 2, 3, 4, 10)}
     plot(folder / "fig4b.png", "Fig. 4b: beta 3, moving set", by_rounds, "eta_max(t)")
     at240 = [by_rounds[f"L={L}"][240] for L in (1, 2, 3, 4)]
-    claim(
+    add(
         "4b: more rounds, smaller error",
         "t = 240, L = 1..4: " + " ".join(f"{v:.3g}" for v in at240),
         bool(np.all(np.diff(at240) < 0)),
@@ -167,7 +166,7 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
 
     by_beta = {f"beta={b:g}": e.worst(algorithm1(b, 4), moving()) for b in (0.1, 5, 2000)}
     plot(folder / "fig4c.png", "Fig. 4c: L 4, moving set", by_beta, "eta_max(t)")
-    claim(
+    add(
         "4c: beta = 5 beats 0.1 and 2000",
         f"beta 5: {numbers(by_beta['beta=5'])}",
         by_beta["beta=5"][-1] < min(by_beta["beta=0.1"][-1], by_beta["beta=2000"][-1]),
@@ -181,7 +180,7 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
         {f"sensor {i}": mean[:, i - 1] for i in (3, 5, 10, 26)},
         "eta_i(t)",
     )
-    claim(
+    add(
         "5a: with a fixed set the errors are steady",
         f"sensor 3: {numbers(mean[:, 2])}",
         abs(mean[500, 2] - mean[240, 2]) < 0.05,
@@ -190,8 +189,8 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
     by_rounds = {f"L={L}": e.worst(algorithm1(3, L), fixed()) for L in (0, 1, 2, 3, 4, 10)}
     plot(folder / "fig5b.png", "Fig. 5b: beta 3, fixed set", by_rounds, "eta_max(t)")
     last = [by_rounds[f"L={L}"][-1] for L in (1, 2, 3, 4, 10)]
-    claim("5b: L = 0 diverges", f"{numbers(by_rounds['L=0'])}", by_rounds["L=0"][-1] > 1000)
-    claim(
+    add("5b: L = 0 diverges", f"{numbers(by_rounds['L=0'])}", by_rounds["L=0"][-1] > 1000)
+    add(
         "5b: more rounds, smaller error (fixed set)",
         "L = 1 2 3 4 10: " + " ".join(f"{v:.3g}" for v in last),
         bool(np.all(np.diff(last) < 0)),
@@ -200,12 +199,12 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
     by_beta = {f"beta={b:g}": e.worst(algorithm1(b, 4), fixed()) for b in (0.1, 1, 5, 2000)}
     plot(folder / "fig5c.png", "Fig. 5c: L 4, fixed set", by_beta, "eta_max(t)")
     last = [by_beta[f"beta={b:g}"][-1] for b in (0.1, 1, 5, 2000)]
-    claim(
+    add(
         "5c: beta = 5 gives a stable error, 0.1 and 2000 do not",
         "beta 0.1 1 5 2000: " + " ".join(f"{v:.3g}" for v in last),
         last[2] < 10 < min(last[0], last[3]),
     )
-    claim(
+    add(
         "5c: beta = 5 is a good choice",
         f"beta 1 gives {last[1]:.3g}, beta 5 {last[2]:.3g}",
         last[2] <= last[1],
@@ -231,12 +230,12 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
         by_count[f"|A|={count}"] = np.mean(curves, axis=0)
     plot(folder / "fig6.png", "Fig. 6: beta 5, L 4, random sets", by_count, "eta_max(t)")
     last = [curve[-1] for curve in by_count.values()]
-    claim(
+    add(
         "6: more attacked sensors, larger error",
         "0 3 .. 18: " + " ".join(f"{v:.3g}" for v in last),
         bool(np.all(np.diff(last) > 0)),
     )
-    claim(
+    add(
         "6: unstable from half of the sensors on",
         f"12 attacked: {last[4]:.3g}",
         last[4] < 30,
@@ -259,19 +258,19 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
             proved = sum(set(r.first_accused()) == set(FIXED) for r in results)
     plot(folder / "fig7.png", "Fig. 7: L 5, beta 3, fixed set", compared, "eta_A(t), eta_Ac(t)")
     final = {k: v[-1] for k, v in compared.items()}
-    claim(
+    add(
         "7: Algorithms 1 and 2 stay bounded, the others diverge",
         " ".join(f"{v:.3g}" for v in final.values()),
         max(final["Algorithm 1, honest"], final["Algorithm 2, honest"])
         < 10
         < min(final["scalar gain, honest"], final["LFRE, honest"]) / 10,
     )
-    claim(
+    add(
         "7: Algorithm 2 has smaller errors than Algorithm 1",
         f"{final['Algorithm 2, honest']:.3g} against {final['Algorithm 1, honest']:.3g}",
         final["Algorithm 2, honest"] < final["Algorithm 1, honest"],
     )
-    claim(
+    add(
         "7: all attacked sensors are detected",
         f"in {proved} of {e.runs} runs",
         proved == e.runs,
@@ -289,18 +288,10 @@ def main() -> list[list[str]]:
     folder.mkdir(parents=True, exist_ok=True)
     e = Experiment(args.runs)
     lambda2, lambda_max = e.net.laplacian_spectrum()
-    console = Console(width=150)
-    console.print(
-        f"graph: {len(e.net.edges)} edges, lambda_2 {lambda2:.6f}, lambda_max {lambda_max:.6f}; {args.runs} runs"
-    )
+    print(f"graph: {len(e.net.edges)} edges, lambda_2 {lambda2:.6f}, lambda_max {lambda_max:.6f}; {args.runs} runs")
     rows = simulations(e, folder) + theory(e)
-    table = Table(title=f"Numbers at t = {', '.join(map(str, TIMES))} where there are six", title_justify="left")
-    for name in ("claim", "what came out", "verdict", "why"):
-        table.add_column(name, overflow="fold")
-    for row in rows:
-        table.add_row(*row)
-    console.print(table)
-    console.print(f"figures in {folder}")
+    print_claims(f"Numbers at t = {', '.join(map(str, TIMES))} where there are six", rows)
+    print(f"figures in {folder}")
     return rows
 
 

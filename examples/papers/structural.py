@@ -19,11 +19,10 @@ matplotlib.use("Agg")
 
 import garrison as gr
 import numpy as np
+from claims import claim, print_claims, print_table
 from garrison import structural as theory
 from garrison import structure
 from matplotlib.figure import Figure
-from rich.console import Console
-from rich.table import Table
 
 AGENTS = ["beta", "alpha1", "gamma", "alpha2"]
 MEASURED = [0, 5, 6, 9]
@@ -137,7 +136,7 @@ class Page:
         self.table: list[list[str]] = []
 
     def claim(self, text: str, found: str, holds: bool, why: str = "") -> None:
-        self.rows.append([text, found, "confirmed" if holds else "not confirmed", why])
+        self.rows.append(claim(text, found, holds, why))
 
     def structure(self) -> None:
         system = structure.System(structure.Pattern.of(self.hub.A))
@@ -405,20 +404,13 @@ def main() -> list[list[str]]:
         page.drawing,
     ):
         part()
-    console = Console(width=150)
-    table = Table(title="Agents in the order beta, alpha1, gamma, alpha2", title_justify="left")
-    for name in ("claim", "what came out", "verdict", "why"):
-        table.add_column(name, overflow="fold")
-    for row in page.rows:
-        table.add_row(*row)
-    console.print(table)
-    table = Table(title="False-alarm rates of the exact thresholds", title_justify="left")
-    for name in ("system", "m", "asked", *AGENTS, "Monte Carlo error"):
-        table.add_column(name)
-    for row in page.table:
-        table.add_row(*row)
-    console.print(table)
-    console.print(f"figures in {folder}")
+    print_claims("Agents in the order beta, alpha1, gamma, alpha2", page.rows)
+    print_table(
+        "False-alarm rates of the exact thresholds",
+        ("system", "m", "asked", *AGENTS, "Monte Carlo error"),
+        page.table,
+    )
+    print(f"figures in {folder}")
     return page.rows
 
 
