@@ -4,6 +4,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+#: the object `inputs` of a case
+Inputs = dict[str, Any]
+Array = NDArray[np.float64]
 
 RELATIVE = 1e-9
 ABSOLUTE = 1e-12
@@ -50,6 +55,11 @@ def array(value: Any) -> Any:
         except (ValueError, TypeError):
             return value
     return number(value)
+
+
+def numbers(value: Any) -> Array:
+    """Nested lists as an array; null and the texts nan, inf, -inf are not finite."""
+    return np.asarray(array(value), dtype=float)
 
 
 def _numbers(value: Any) -> Any:

@@ -4,12 +4,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import garrison as gr
 from garrison import _core
 from garrison._core import platoon as theory
-from garrison.verify.compare import NOT_UNDERSTOOD, array
+from garrison.verify.compare import NOT_UNDERSTOOD, Array, Inputs, numbers
+from garrison.verify.platoon_formulas import pieces
 
 NAME = "platoon"
 #: relative tolerances other than the common one, by the end of the field's name
@@ -17,8 +17,6 @@ TOLERANCES = {"/l1": 1e-8}
 #: properties of the data that need instrumentation
 INFORMATIVE = frozenset({"smallest_decision_margin"})
 
-Inputs = dict[str, Any]
-Array = NDArray[np.float64]
 
 _SETS = ("attacked", "suspected", "free")
 #: switches that the cases fix; another value is another algorithm
@@ -28,11 +26,6 @@ _FIXED = {"gain_div": 0, "bound_div": 0, "test28": "xbar", "runs": "maximal", "t
 def recognises(inputs: Inputs) -> bool:
     """Inputs that only this family has."""
     return bool({"y_rel", "n_rel", "spacing", "eta"} & inputs.keys()) and not {"A", "C"} & inputs.keys()
-
-
-def _numbers(value: Any) -> Array:
-    """Nested lists as an array; null and the texts nan, inf, -inf are not finite."""
-    return np.asarray(array(value), dtype=float)
 
 
 def _system(p: Inputs, recorded_inputs: bool = False) -> tuple[gr.Model, gr.Network]:
@@ -71,7 +64,7 @@ def _require_shapes(i: Inputs) -> None:
         if key not in i:
             continue
         try:
-            got: Any = _numbers(i[key]).shape
+            got: Any = numbers(i[key]).shape
         except (ValueError, TypeError):
             got = "rows of different lengths"
         if got != shape:
@@ -81,7 +74,7 @@ def _require_shapes(i: Inputs) -> None:
 def _steering(i: Inputs) -> dict[str, Any]:
     keys = {"spacing": "spacing", "gs": "gs", "gv": "gv"}
     found = {name: float(i[key]) for name, key in keys.items() if key in i}
-    return found | {"reference": _numbers(i["ref"]).ravel().tolist()}
+    return found | {"reference": numbers(i["ref"]).ravel().tolist()}
 
 
 def _pairs(sets: list[list[int]]) -> list[float]:
@@ -114,7 +107,7 @@ def _filter(i: Inputs, **more: Any) -> _core.Filter:
 
 def _measurements(i: Inputs) -> Array:
     """Rows as garrison has them: absolute, relative and applied input, vehicle by vehicle."""
-    y_abs, y_rel, u = (_numbers(i[key]) for key in ("y_abs", "y_rel", "u"))
+    y_abs, y_rel, u = (numbers(i[key]) for key in ("y_abs", "y_rel", "u"))
     rows = []
     for vehicle in range(y_abs.shape[1]):
         rows.append(y_abs[:, vehicle])
@@ -132,14 +125,14 @@ def _replay(i: Inputs, **more: Any) -> gr.Run:
         model,
         net,
         measurements=_measurements(i),
-        truth=_numbers(i["x"]) if "x" in i else None,
-        start=_numbers(i["xhat_init"]),
+        truth=numbers(i["x"]) if "x" in i else None,
+        start=numbers(i["xhat_init"]),
         keep=("estimate", "report", "signals", "details"),
     )
 
 
 def _disturbances(i: Inputs, attack: Array, factor: Array | None = None) -> Array:
-    d, n_abs, n_rel = (_numbers(i[key]) for key in ("d", "n_abs", "n_rel"))
+    d, n_abs, n_rel = (numbers(i[key]) for key in ("d", "n_abs", "n_rel"))
     rows = np.zeros((*d.shape[:2], theory.DISTURBANCES))
     rows[..., 0:2] = d
     rows[..., 2:4] = n_abs + attack
@@ -155,8 +148,8 @@ def _closed_loop(i: Inputs, filter: _core.Filter, noise: Array, attack: Any = ()
         net,
         filter,
         steps=len(noise) - 1,
-        x0=_numbers(i["x_init"]),
-        start=_numbers(i["xhat_init"]),
+        x0=numbers(i["x_init"]),
+        start=numbers(i["xhat_init"]),
         noise=noise,
         attack=attack,
         keep=("estimate", "report", "signals", "measurements", "details"),
@@ -233,7 +226,7 @@ def _of_run(i: Inputs, run: gr.Run) -> dict[str, Any]:
     out["false_free"] = bool(_members(run, "free") & attacked)
     if run.error is not None and run.truth is not None:
         out["bound_holds_everywhere"] = _bound_holds(run)
-        ref = _numbers(i["ref"])
+        ref = numbers(i["ref"])
         desired = ref[:, None, :] - np.arange(N)[None, :, None] * np.array([float(i["spacing"]), 0.0])
         tracking = np.linalg.norm(run.truth[0] - desired, axis=2)
         out["phi"] = run.error[0].mean(axis=1) + tracking.mean(axis=1)
@@ -273,7 +266,7 @@ def _loop(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
     noises = {"d", "n_abs", "n_rel", "x_init"} <= i.keys()
     recorded = {"y_abs", "y_rel", "u"} <= i.keys()
     if noises:
-        a = _numbers(i["a"]) if "a" in i else np.zeros_like(_numbers(i["n_abs"]))
+        a = numbers(i["a"]) if "a" in i else np.zeros_like(numbers(i["n_abs"]))
         run = _closed_loop(i, _filter(i), _disturbances(i, a))
         out = _of_run(i, run)
         if recorded and not _agrees(i, run):
@@ -293,7 +286,7 @@ def _agrees(i: Inputs, run: gr.Run) -> bool:
     for key in ("y_abs", "y_rel", "u", "x"):
         if key not in i:
             continue
-        wanted = _numbers(i[key])
+        wanted = numbers(i[key])
         known = np.isfinite(wanted) & np.isfinite(got[key])
         scale = float(np.abs(wanted[known]).max(initial=0.0))
         if float(np.abs(got[key] - wanted)[known].max(initial=0.0)) > 1e-9 * scale + 1e-12:
@@ -314,10 +307,10 @@ def _baselines(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
     ids = [label - 1 for label in i.get("attacked_set", [])]
     factor = None
     attack: Any = ()
-    a = _numbers(i["a"]) if "a" in i else np.zeros_like(_numbers(i["n_abs"]))
+    a = numbers(i["a"]) if "a" in i else np.zeros_like(numbers(i["n_abs"]))
     if "w" in i and i.get("kind", "random") == "random":
-        factor = np.zeros_like(_numbers(i["w"]))
-        factor[:, ids] = _numbers(i["w"])[:, ids]
+        factor = np.zeros_like(numbers(i["w"]))
+        factor[:, ids] = numbers(i["w"])[:, ids]
     elif "a" not in i and i.get("kind") is not None:
         if str(i["kind"]).lower() not in _ATTACKS:
             return {name: NOT_UNDERSTOOD for name in expected}
@@ -334,149 +327,11 @@ def _baselines(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
-def _setting(p: Inputs) -> Any:
-    return theory.Setting(
-        vehicles=p["N"],
-        range=p["L"],
-        period=p["T"],
-        attacked=p["b"],
-        eps=p["eps"],
-        mu=p["mu"],
-        q=p["q"],
-        varpi=p["varpi"],
-        beta=p["beta"],
-        adaptive=p["threshold"] == "adaptive",
-    )
-
-
-def _none(value: Any) -> Any:
-    """null where a number does not exist."""
-    if isinstance(value, dict):
-        return {k: _none(v) for k, v in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _interval(ends: tuple[float, float]) -> list[float] | None:
-    return None if math.isnan(ends[0]) else list(ends)
-
-
-def _design_row(row: Inputs) -> dict[str, Any]:
-    p = row["params"]
-    s = _setting(p)
-    known = {"free_in_reach": 2 * p["L"] + 1 - p["b"], "proved": p["b"]}
-    at = {key: [float(w) for w in row.get(key, {})] for key in ("beta1_bar", "beta2_bar", "prop2", "f3", "f4")}
-    names = {key: list(row.get(key, {})) for key in at}
-    functions = {
-        "beta1_bar": theory.beta1_bar,
-        "beta2_bar": theory.beta2_bar,
-        "prop2": theory.proposition2,
-        "f3": theory.f3,
-        "f4": theory.f4,
-    }
-    out: dict[str, Any] = {
-        "params": p,
-        "norm_A": s.norm_A,
-        "mubar": s.mubar,
-        "beta0": s.beta0,
-        "k0": s.k0,
-        "omega_interval": _interval(theory.omega_interval(s)),
-        "beta_interval": _interval(theory.beta_interval(s)),
-        "beta_interval_safe": _interval(theory.beta_interval_safe(s)),
-        "rho_limit_safe_no_detection": _none(theory.safe_limit(s)),
-    }
-    for key, function in functions.items():
-        out[key] = {name: function(s, w) for name, w in zip(names[key], at[key], strict=True)}
-    distances: dict[str, Any] = {key: row[key] for key in ("jdist_T0", "jdist_detected") if key in row}
-    for suffix, more in (("T0", {}), ("detected", known)):
-        if f"jdist_{suffix}" not in distances:
-            continue
-        distance = distances[f"jdist_{suffix}"]
-        out[f"theorem1_{suffix}"] = _none(theory.theorem1(s, distance=distance, **more))
-        out[f"theorem2_{suffix}"] = _none(theory.theorem2(s, distance=distance, **more))
-    return out | distances
-
-
-def _theorem4(row: Inputs) -> dict[str, Any]:
-    loop: tuple[int, float, float, float] = (row["N"], row["T"], row["gs"], row["gv"])
-    copied = {key: row[key] for key in ("N", "T", "gs", "gv", "eps", "alpha_hat") if key in row}
-    out = copied | {
-        "assumption4": theory.assumption4(*loop),
-        "ok": theory.assumption4(*loop),
-        "grounded_eigs": theory.grounded_eigenvalues(row["N"]),
-        **theory.loop_factors(*loop),
-    }
-    out["schur"] = out["rho"] < 1.0
-    if {"eps", "alpha_hat"} <= row.keys():
-        out |= theory.theorem4(*loop, row["eps"], row["alpha_hat"])
-    return {key: _none(value) for key, value in out.items()}
-
-
-def _partition(row: Inputs) -> dict[str, Any]:
-    N, L = row["N"], row["L"]
-    net = gr.Network.band(N, L)
-    inner = [v for v in range(N) if theory.in_V1(v, N, L)]
-    outer = [v for v in range(N) if v not in inner]
-    return {
-        "N": N,
-        "L": L,
-        "V1": [v + 1 for v in inner],
-        "V21": [v + 1 for v in outer if v < L],
-        "V2": [v + 1 for v in outer],
-        "neighbours": [[v + 1 for v in net.neighbours(vehicle)] for vehicle in range(N)],
-        "nbar": [[v + 1 for v in theory.nearest(vehicle, N)] for vehicle in range(-1, N)],
-    }
-
-
-def _runs(row: Inputs) -> dict[str, Any]:
-    runs, count = theory.runs(row["labels"])
-    return {"labels": row["labels"], "runs": runs, "count": count}
-
-
-def _gains(row: Inputs, eta: dict[str, Any]) -> dict[str, Any]:
-    k = {
-        label: theory.gain(
-            row["beta"], *_numbers(value), attacked=int(label) in row["attacked"], free=int(label) in row["free"]
-        )
-        for label, value in eta.items()
-    }
-    return row | {"k": k}
-
-
-def _j_choice(row: Inputs) -> dict[str, Any]:
-    j = theory.best_source(
-        row["i"] - 1,
-        row.get("N", 7),
-        row.get("L", 2),
-        [label - 1 for label in row["free"]],
-        by_bound=row["tie"] == "bound",
-        alpha=[float(v) for v in row["alpha_prev"]],
-    )
-    return row | {"j": j + 1 if j >= 0 else None}
-
-
-def _pieces(inputs: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
-    """Formulas without time; the inputs stand in the expected rows."""
-    evaluators = {
-        "rows": _design_row,
-        "theorem4": _theorem4,
-        "assumption4": _theorem4,
-        "partition": _partition,
-        "runs": _runs,
-        "gains": lambda row: _gains(row, row.get("eta", inputs.get("eta", {}))),
-        "j_choice": _j_choice,
-    }
-    return {
-        key: [evaluators[key](row) for row in rows]
-        for key, rows in expected.items()
-        if key in evaluators and isinstance(rows, list)
-    }
-
-
 def evaluate(inputs: Any, expected: Any) -> Any:
     """Recompute every expected field from the inputs; keys that are not known stay away."""
     if isinstance(inputs, list):
         return [evaluate(i, e) for i, e in zip(inputs, expected, strict=True)]
-    out = _pieces(inputs, expected)
+    out = pieces(inputs, expected)
     if "params" not in inputs or "ref" not in inputs:
         return out
     _require_shapes(inputs)
@@ -495,7 +350,7 @@ def use(inputs: Inputs, template: dict[str, Any], scope: str | None) -> None:
 def survive(inputs: Inputs, template: dict[str, Any], paths: list[str]) -> dict[str, Any]:
     """Outputs of a case that has to be survived, for the paths that its rules look at."""
     _require_shapes(inputs)
-    run = _closed_loop(inputs, _filter(inputs), _disturbances(inputs, _numbers(inputs["a"])))
+    run = _closed_loop(inputs, _filter(inputs), _disturbances(inputs, numbers(inputs["a"])))
     out = _of_run(inputs, run)
     # bad.py reads an error and its bound, and the accused under `sets`.
     attacked: dict[int, list[int]] = {}

@@ -5,12 +5,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import garrison as gr
 from garrison import _core
 from garrison._core import rdkf as theory
-from garrison.verify.compare import Within, array
+from garrison.verify.compare import Array, Inputs, Within, array
 
 NAME = "rdkf"
 #: relative tolerances other than the common one, by the end of the field's name
@@ -19,9 +18,6 @@ TOLERANCES = {"xhat_l1": 1e-8, "x_l1": 1e-8, "xhat_group": 1e-6}
 INFORMATIVE = frozenset({"max_relative_difference_to_clarabel", "l1_violation", "other_start_difference", "sweeps"})
 #: a multiplier above this counts as a residual that is not zero; below, rounding decides
 _NOT_ZERO = 1e-9
-
-Inputs = dict[str, Any]
-Array = NDArray[np.float64]
 
 
 def recognises(inputs: Inputs) -> bool:

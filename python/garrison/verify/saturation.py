@@ -4,19 +4,15 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import garrison as gr
 from garrison import _core
 from garrison._core import saturation as theory
-from garrison.verify.compare import NOT_UNDERSTOOD, array
+from garrison.verify.compare import NOT_UNDERSTOOD, Array, Inputs, array
 
 NAME = "saturation"
 #: relative tolerances other than the common one, by the end of the field's name
 TOLERANCES = {"design/beta": 1e-6, "design/bound": 1e-6, "bound_at_design_beta": 1e-6}
-
-Inputs = dict[str, Any]
-Array = NDArray[np.float64]
 
 
 def recognises(inputs: Inputs) -> bool:

@@ -4,19 +4,16 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import garrison as gr
 from garrison import structural as theory
 from garrison import structure
-from garrison.verify.compare import NOT_COMPARED, array
+from garrison.verify.compare import NOT_COMPARED, Array, Inputs, array, numbers
 
 NAME = "structural"
 #: relative tolerances other than the common one, by the end of the field's name
 TOLERANCES: dict[str, float] = {}
 
-Inputs = dict[str, Any]
-Array = NDArray[np.float64]
 #: fields that the cases' README says are not to be compared; they are returned as they are
 INFORMATIVE = frozenset(
     {"isolated_h2_at_most/rho", "isolation_ratio_reached", "hungarian_picks", "exact_picks", "approx_cost"}
@@ -34,17 +31,13 @@ def recognises(inputs: Inputs) -> bool:
     )
 
 
-def _matrix(value: Any) -> Array:
-    return np.asarray(array(value), dtype=float)
-
-
 # Structure -----------------------------------------------------------------------------------------------------
 
 
 def _pattern(i: Inputs) -> structure.Pattern:
     if "edges" in i:
         return structure.Pattern(i["n"], i["n"], [tuple(e) for e in i["edges"]])
-    return structure.Pattern.of(_matrix(i["A"]))
+    return structure.Pattern.of(numbers(i["A"]))
 
 
 def _structure(pattern: structure.Pattern, measured: list[Any]) -> dict[str, Any]:
@@ -68,7 +61,7 @@ def _structure(pattern: structure.Pattern, measured: list[Any]) -> dict[str, Any
 
 
 def _network_conditions(i: Inputs, types: list[str]) -> dict[str, bool]:
-    W, U = _matrix(i["W_pattern"]), _matrix(i["U"])
+    W, U = numbers(i["W_pattern"]), numbers(i["U"])
     count, _ = structure.strong_components(structure.Pattern.of(W))
     hubs = [k for k, t in enumerate(types) if t == "alpha"]
     return {
@@ -84,7 +77,7 @@ def _structure_case(i: Inputs) -> dict[str, Any]:
     out = _structure(pattern, i["measured"])
     out["name"] = i.get("name")
     if "W_pattern" in i and "U" in i:
-        W, U = _matrix(i["W_pattern"]), _matrix(i["U"])
+        W, U = numbers(i["W_pattern"]), numbers(i["U"])
         out["network_conditions"] = _network_conditions(i, out["types"])
         own = np.eye(len(U))
         for key, links in (("distributed_observable", U), ("distributed_observable_without_hubs", own)):
@@ -112,29 +105,29 @@ def _mitigation(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
 
 
 def _setting(i: Inputs) -> theory.Setting:
-    given = {k: _matrix(i[k]) for k in ("A", "C", "W", "U", "E", "R") if k in i}
+    given = {k: numbers(i[k]) for k in ("A", "C", "W", "U", "E", "R") if k in i}
     given["C"] = given["C"].reshape(-1, given["A"].shape[0])
     return theory.Setting(**given)
 
 
 def _gains(i: Inputs) -> list[Array]:
-    return list(_matrix(i["K"]))
+    return list(numbers(i["K"]))
 
 
 def _run(i: Inputs, y: Array) -> gr.Run:
-    A, C, W, U = (_matrix(i[k]) for k in ("A", "C", "W", "U"))
+    A, C, W, U = (numbers(i[k]) for k in ("A", "C", "W", "U"))
     links = np.argwhere((W != 0) | (U != 0))
     net = gr.Network([(int(b), int(a)) for a, b in links if a != b], agents=len(C), directed=True)
     model = gr.Model(A, C)
-    gain = _matrix(i["K"]).ravel().tolist()
+    gain = numbers(i["K"]).ravel().tolist()
     filter = gr.filters.Structural(weights=W.ravel().tolist(), sharing=U.ravel().tolist(), gain=gain)
     keep = ("estimate", "signals")
-    truth = _matrix(i["x_true"]) if "x_true" in i else None
-    return gr.replay(filter, model, net, measurements=y, truth=truth, start=_matrix(i["xhat0"]), keep=keep)
+    truth = numbers(i["x_true"]) if "x_true" in i else None
+    return gr.replay(filter, model, net, measurements=y, truth=truth, start=numbers(i["xhat0"]), keep=keep)
 
 
 def _estimates(i: Inputs, setting: theory.Setting, expected: dict[str, Any]) -> dict[str, Any]:
-    y = _matrix(i["y"])
+    y = numbers(i["y"])
     run = _run(i, y)
     assert run.estimate is not None
     x, r = run.estimate[0], run.signals["residual"][0, 1:]
@@ -146,7 +139,7 @@ def _estimates(i: Inputs, setting: theory.Setting, expected: dict[str, Any]) -> 
     # Without the true states the errors cannot be recomputed.
     out["mse_over_time"] = NOT_COMPARED if run.error is None else run.error[0, 1:] ** 2 / x.shape[-1]
     if "tau" in i:
-        clean = _run(i, y - _matrix(i["tau"]))
+        clean = _run(i, y - numbers(i["tau"]))
         assert clean.estimate is not None
         without = clean.signals["residual"][0, 1:]
         out["residual_without_attack"] = without
@@ -213,9 +206,9 @@ def _windows(i: Inputs, residual: Array, x: dict[str, Any], window: int, diagona
 def _levels(i: Inputs) -> dict[str, Any]:
     out: dict[str, Any] = {"m_of_false_alarm": [theory.level_of_false_alarm(fa) for fa in (0.1, 0.01, 0.001)]}
     if "m" in i:
-        out["kappa"] = [theory.kappa(m) for m in np.atleast_1d(_matrix(i["m"]))]
+        out["kappa"] = [theory.kappa(m) for m in np.atleast_1d(numbers(i["m"]))]
     if {"mean", "std", "theta"} <= i.keys():
-        out["power"] = [theory.power(i["mean"], i["std"], t) for t in np.atleast_1d(_matrix(i["theta"]))]
+        out["power"] = [theory.power(i["mean"], i["std"], t) for t in np.atleast_1d(numbers(i["theta"]))]
     return out
 
 
@@ -297,7 +290,7 @@ def _isolated(setting: theory.Setting, start: list[Array], expected: dict[str, A
 
 
 def _scalar(i: Inputs) -> dict[str, Any]:
-    gain, radius = theory.best_scalar_gain(float(_matrix(i["A"])[0, 0]), _matrix(i["W"]))
+    gain, radius = theory.best_scalar_gain(float(numbers(i["A"])[0, 0]), numbers(i["W"]))
     return {"best_rho": radius, "best_gain": gain, "schur_gain_exists": radius < 1.0}
 
 
@@ -305,7 +298,7 @@ def _scalar(i: Inputs) -> dict[str, Any]:
 
 
 def _assignments(i: Inputs) -> dict[str, Any]:
-    cost = _matrix(i["cost"])
+    cost = numbers(i["cost"])
     pattern = _pattern(i)
     per_class = structure.cheapest_per_class(cost, i["classes"])
     exact = structure.cheapest_rank_sensors(pattern, cost)
@@ -351,16 +344,16 @@ def _overlap(i: Inputs) -> dict[str, Any]:
 
 
 def _saturated(i: Inputs, beta: float, rounds: int, expected: dict[str, Any]) -> dict[str, Any]:
-    adjacency, C = _matrix(i["adjacency"]), _matrix(i["C"])
+    adjacency, C = numbers(i["adjacency"]), numbers(i["C"])
     links = np.argwhere(np.triu(adjacency, 1))
     net = gr.Network([(int(a), int(b)) for a, b in links], agents=len(C))
     filter = gr.filters.Saturation(threshold=beta, rounds=rounds)
-    start = _matrix(i["xhat0"])
+    start = numbers(i["xhat0"])
     run = gr.replay(
         filter,
-        gr.Model(_matrix(i["A"]), C),
+        gr.Model(numbers(i["A"]), C),
         net,
-        measurements=_matrix(i["y"]),
+        measurements=numbers(i["y"]),
         start=start,
         keep=("estimate", "signals"),
     )
@@ -404,7 +397,7 @@ def evaluate(inputs: Any, expected: Any) -> Any:
 
 def use(inputs: Inputs, template: dict[str, Any], scope: str | None) -> None:
     """Use the inputs as the template does, and let any refusal through."""
-    y = _matrix(inputs["y"]) if "y" in inputs else None
+    y = numbers(inputs["y"]) if "y" in inputs else None
     evaluate(inputs, template.get("expected", {"m": 2.0}))
     if y is not None and not np.isfinite(y).all():
         _require_alarm(inputs, y)
