@@ -28,7 +28,10 @@ LOOKS = {
     "attacked": ("X", "#D55E00", "proved attacked"),
     "silent": ("s", "#888888", "no measurement"),
 }
-_LINES = [("#0072B2", "-"), ("#009E73", "--"), ("#D55E00", "-."), ("#444444", ":"), ("#CC79A7", (0, (5, 1)))]
+_COLOURS = ("#0072B2", "#009E73", "#D55E00", "#444444", "#CC79A7", "#E69F00", "#56B4E9", "#8C6D31")
+_DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 1)))
+#: eight colours and seven dashes in turn: 56 lines before two look alike
+_LINES = [(_COLOURS[k % len(_COLOURS)], _DASHES[k % len(_DASHES)]) for k in range(len(_COLOURS) * len(_DASHES))]
 
 
 def _axes(figure: Any, *place: int) -> Any:
@@ -130,7 +133,7 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figu
     figure = figure or Figure(figsize=(9.2, 4.6), layout="constrained")
     ax = _axes(figure)
     shown = [row for row in rows if row.error is not None and (row.attacked or not scenario.attacks)]
-    for row, (colour, style) in zip(shown, _LINES * 3, strict=False):
+    for row, (colour, style) in zip(shown, _LINES, strict=False):
         error = np.nanmean(row.error, axis=(0, 2))[1:]  # type: ignore[arg-type]
         width = max(1, min(30, len(error) // 20))
         smooth = np.convolve(error, np.ones(width) / width, mode="valid")
