@@ -22,20 +22,21 @@ struct Reached {
 
 Reached reach(const Pattern& lists, const std::vector<int>& partner, const std::vector<int>& partner_across) {
   Reached out;
-  std::vector<char> seen(partner.size(), 0);
+  out.side.reserve(partner.size());
+  out.across.reserve(partner.size());
   for (std::size_t v = 0; v < partner.size(); ++v)
-    if (partner[v] < 0) {
-      seen[v] = 1;
-      out.side.push_back(static_cast<int>(v));
-    }
+    if (partner[v] < 0) out.side.push_back(static_cast<int>(v));
+  // Marked are the vertices across: most entries lead to one that has been seen, and end there.
+  std::vector<char> marks(partner_across.size(), 0);
+  char* const seen = marks.data();
   const int* start = lists.start();
   const int* index = lists.index();
   for (std::size_t k = 0; k < out.side.size(); ++k) {
     const int v = out.side[k];
     for (int p = start[v]; p < start[v + 1]; ++p) {
+      if (std::exchange(seen[index[p]], 1) != 0) continue;
       const int back = partner_across[static_cast<std::size_t>(index[p])];
-      if (back < 0 || seen[static_cast<std::size_t>(back)] != 0) continue;
-      seen[static_cast<std::size_t>(back)] = 1;
+      if (back < 0) continue;
       out.side.push_back(back);
       out.across.push_back(index[p]);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/analysis/structure/matching.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,15 @@ namespace {
 Matching nothing_matched(const Pattern& pattern) {
   return {std::vector<int>(static_cast<std::size_t>(pattern.columns()), -1),
           std::vector<int>(static_cast<std::size_t>(pattern.rows()), -1), 0};
+}
+
+/// Nothing matched from the other side, in the memory of `m`.
+Matching turned_and_cleared(Matching m) {
+  std::swap(m.row_of, m.column_of);
+  std::fill(m.row_of.begin(), m.row_of.end(), -1);
+  std::fill(m.column_of.begin(), m.column_of.end(), -1);
+  m.size = 0;
+  return m;
 }
 
 /// Each column takes the first row that is free, until one finds none. Enough for a full diagonal, bands and
@@ -79,7 +89,7 @@ Matching maximum_matching(Sides& sides) {
     if (auto found = from_columns(pattern, std::move(first))) return *std::move(found);
     return matching_by_phases(pattern, sides.rows());
   }
-  auto found = from_columns(sides.rows(), nothing_matched(sides.rows()));
+  auto found = from_columns(sides.rows(), turned_and_cleared(std::move(first)));
   if (!found) found = matching_by_phases(sides.rows(), pattern);
   std::swap(found->row_of, found->column_of);
   return *std::move(found);
