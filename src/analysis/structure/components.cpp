@@ -15,60 +15,63 @@ Components strong_components(const Pattern& links) {
   found.of.assign(static_cast<std::size_t>(n), 0);
   // low[v]: 0 = not seen, else the least visit number reached so far. When the component of v is complete,
   // low[v] becomes kDone + its number, which no minimum takes.
-  int* low = found.of.data();
+  int* const low = found.of.data();
   constexpr int kDone = std::numeric_limits<int>::min();
-  struct Frame {
+  struct Step {
     int vertex;
-    int next;  // entry of its column that is looked at
-    int end;
-    int number;
+    int next;  // entry of its column that is looked at; complemented once low[vertex] has been lowered
   };
-  // The path of the search grows from the left of one array, the vertices that wait for their component from
-  // the right of another; together they never hold more than n.
-  const auto path = std::make_unique_for_overwrite<Frame[]>(static_cast<std::size_t>(n) + 1);
-  const auto waiting = std::make_unique_for_overwrite<int[]>(static_cast<std::size_t>(n) + 1);
-  const int* start = links.start();
-  const int* index = links.index();
+  // The path of the search and the vertices that wait for their component; together never more than n. Kept
+  // small, since pages of fresh memory are a good part of the cost.
+  const auto path_memory = std::make_unique_for_overwrite<Step[]>(static_cast<std::size_t>(n) + 1);
+  const auto waiting_memory = std::make_unique_for_overwrite<int[]>(static_cast<std::size_t>(n) + 1);
+  Step* const path = path_memory.get();
+  int* const waiting = waiting_memory.get();
+  const int* const start = links.start();
+  const int* const index = links.index();
   int visits = 0;
   int waits = 0;
   for (int root = 0; root < n; ++root) {
     if (low[root] != 0) continue;
     int depth = 0;
     low[root] = ++visits;
-    path[0] = {root, start[root], start[root + 1], visits};
+    path[0] = {root, start[root]};
     while (depth >= 0) {
-      Frame& top = path[static_cast<std::size_t>(depth)];
-      int least = low[top.vertex];
+      const int v = path[depth].vertex;
+      const int next = path[depth].next;
+      bool lowered = next < 0;
+      int p = lowered ? ~next : next;
+      const int end = start[v + 1];
+      int least = low[v];
       int child = -1;
-      int p = top.next;
-      for (; p < top.end; ++p) {
+      for (; p < end; ++p) {
         const int seen = low[index[p]];
         if (seen == 0) {
           child = index[p];
           break;
         }
         // A finished vertex is negative; as unsigned it is larger than every visit number.
-        if (static_cast<unsigned>(seen) < static_cast<unsigned>(least)) least = seen;
+        if (static_cast<unsigned>(seen) < static_cast<unsigned>(least)) {
+          least = seen;
+          lowered = true;
+        }
       }
-      low[top.vertex] = least;
+      low[v] = least;
       if (child >= 0) {
-        top.next = p;  // looked at again after the child, whose low is known then
+        path[depth].next = lowered ? ~p : p;  // looked at again after the child, whose low is known then
         low[child] = ++visits;
-        path[static_cast<std::size_t>(++depth)] = {child, start[child], start[child + 1], visits};
+        path[++depth] = {child, start[child]};
         continue;
       }
-      const int v = top.vertex;
-      const int number = top.number;
       --depth;
-      if (least != number) {
-        waiting[static_cast<std::size_t>(waits++)] = v;
+      if (lowered) {
+        waiting[waits++] = v;
         continue;
       }
       // v is the root of its component: its members wait behind the last vertex seen before v. (A waiting
-      // member has low >= number; earlier ones are below.)
+      // member has low >= that of v; earlier ones are below.)
       const int mark = kDone + found.count++;
-      while (waits > 0 && low[waiting[static_cast<std::size_t>(waits - 1)]] >= number)
-        low[waiting[static_cast<std::size_t>(--waits)]] = mark;
+      while (waits > 0 && low[waiting[waits - 1]] >= least) low[waiting[--waits]] = mark;
       low[v] = mark;
     }
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "garrison/analysis/structure/components.hpp"
+#include "sides.hpp"
 
 namespace garrison::structure {
 namespace {
@@ -21,20 +22,21 @@ struct Reached {
 
 Reached reach(const Pattern& lists, const std::vector<int>& partner, const std::vector<int>& partner_across) {
   Reached out;
-  std::vector<char> seen(partner.size(), 0);
+  out.side.reserve(partner.size());
+  out.across.reserve(partner.size());
   for (std::size_t v = 0; v < partner.size(); ++v)
-    if (partner[v] < 0) {
-      seen[v] = 1;
-      out.side.push_back(static_cast<int>(v));
-    }
+    if (partner[v] < 0) out.side.push_back(static_cast<int>(v));
+  // Marked are the vertices across: most entries lead to one that has been seen, and end there.
+  std::vector<char> marks(partner_across.size(), 0);
+  char* const seen = marks.data();
   const int* start = lists.start();
   const int* index = lists.index();
   for (std::size_t k = 0; k < out.side.size(); ++k) {
     const int v = out.side[k];
     for (int p = start[v]; p < start[v + 1]; ++p) {
+      if (std::exchange(seen[index[p]], 1) != 0) continue;
       const int back = partner_across[static_cast<std::size_t>(index[p])];
-      if (back < 0 || seen[static_cast<std::size_t>(back)] != 0) continue;
-      seen[static_cast<std::size_t>(back)] = 1;
+      if (back < 0) continue;
       out.side.push_back(back);
       out.across.push_back(index[p]);
     }
@@ -44,26 +46,22 @@ Reached reach(const Pattern& lists, const std::vector<int>& partner, const std::
 
 /// Strong components of the square part, a vertex being a column with its matched row.
 void fine_blocks(const Pattern& pattern, const std::vector<char>& part, Decomposition& d) {
-  const int* row_of = d.matching.row_of.data();
-  const int* column_of = d.matching.column_of.data();
-  std::vector<int> number(static_cast<std::size_t>(pattern.columns()), -1);
+  const int* const row_of = d.matching.row_of.data();
+  std::vector<int> vertex(static_cast<std::size_t>(pattern.rows()), -1);  // of each row
   std::vector<int> columns;
+  columns.reserve(static_cast<std::size_t>(d.matching.size));
   for (int j = 0; j < pattern.columns(); ++j)
     if (part[static_cast<std::size_t>(j)] == square) {
-      number[static_cast<std::size_t>(j)] = static_cast<int>(columns.size());
+      vertex[static_cast<std::size_t>(row_of[j])] = static_cast<int>(columns.size());
       columns.push_back(j);
     }
-  const bool whole = static_cast<int>(columns.size()) == pattern.columns();
   std::vector<int> start{0};
   std::vector<int> index;
   start.reserve(columns.size() + 1);
   index.reserve(static_cast<std::size_t>(pattern.entries()));
   for (const int j : columns) {
-    for (const int i : pattern.column(j)) {
-      const int other = column_of[i];
-      if (other < 0 || number[static_cast<std::size_t>(other)] < 0) continue;
-      index.push_back(whole ? other : number[static_cast<std::size_t>(other)]);
-    }
+    for (const int i : pattern.column(j))
+      if (vertex[static_cast<std::size_t>(i)] >= 0) index.push_back(vertex[static_cast<std::size_t>(i)]);
     start.push_back(static_cast<int>(index.size()));
   }
   const auto components =
@@ -81,13 +79,8 @@ void fine_blocks(const Pattern& pattern, const std::vector<char>& part, Decompos
   }
 }
 
-}  // namespace
-
-Decomposition dulmage_mendelsohn(const Pattern& pattern) {
-  return dulmage_mendelsohn(pattern, maximum_matching(pattern));
-}
-
-Decomposition dulmage_mendelsohn(const Pattern& pattern, Matching matching) {
+Decomposition decompose(Sides& sides, Matching matching) {
+  const Pattern& pattern = sides.columns();
   Decomposition d;
   d.matching = std::move(matching);
   std::vector<char> part(static_cast<std::size_t>(pattern.columns()), square);
@@ -98,13 +91,26 @@ Decomposition dulmage_mendelsohn(const Pattern& pattern, Matching matching) {
     for (const int j : d.hor_cols) part[static_cast<std::size_t>(j)] = horizontal;
   }
   if (d.matching.size < pattern.rows()) {
-    auto from_rows = reach(pattern.transposed(), d.matching.column_of, d.matching.row_of);
+    auto from_rows = reach(sides.rows(), d.matching.column_of, d.matching.row_of);
     d.ver_rows = std::move(from_rows.side);
     d.ver_cols = std::move(from_rows.across);
     for (const int j : d.ver_cols) part[static_cast<std::size_t>(j)] = vertical;
   }
   fine_blocks(pattern, part, d);
   return d;
+}
+
+}  // namespace
+
+Decomposition dulmage_mendelsohn(const Pattern& pattern) {
+  Sides sides(pattern);
+  Matching matching = maximum_matching(sides);
+  return decompose(sides, std::move(matching));
+}
+
+Decomposition dulmage_mendelsohn(const Pattern& pattern, Matching matching) {
+  Sides sides(pattern);
+  return decompose(sides, std::move(matching));
 }
 
 std::vector<int> reachable_columns(const Pattern& pattern, const Matching& matching,

@@ -74,17 +74,17 @@ Pattern Pattern::of(const MatrixRef& M, double tolerance) {
 Pattern Pattern::transposed() const {
   Pattern t;
   t.rows_ = columns();
-  t.start_.assign(static_cast<std::size_t>(rows_) + 1, 0);
+  t.start_.assign(static_cast<std::size_t>(rows_) + 2, 0);
   t.index_.resize(index_.size());
-  int* count = t.start_.data();
-  for (const int i : index_) ++count[i + 1];
-  for (int i = 0; i < rows_; ++i) count[i + 1] += count[i];
-  std::vector<int> next(t.start_.begin(), t.start_.end() - 1);
-  int* place = next.data();
-  int* out = t.index_.data();
-  const int* in = index_.data();
+  // Counted two places further on: after the sums place[i + 1] is the start of row i, and has become that of
+  // row i + 1 when all its entries are in place.
+  int* const place = t.start_.data();
+  int* const out = t.index_.data();
+  for (const int i : index_) ++place[i + 2];
+  for (int i = 1; i <= rows_; ++i) place[i + 1] += place[i];
   for (int j = 0; j < columns(); ++j)
-    for (int p = start()[j]; p < start()[j + 1]; ++p) out[place[in[p]]++] = j;
+    for (int p = start()[j]; p < start()[j + 1]; ++p) out[place[index()[p] + 1]++] = j;
+  t.start_.pop_back();
   return t;
 }
 

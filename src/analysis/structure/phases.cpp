@@ -11,8 +11,7 @@ using Ints = std::unique_ptr<int[]>;
 Ints ints(int count) { return std::make_unique_for_overwrite<int[]>(static_cast<std::size_t>(count) + 1); }
 
 /// Fills `m` by Karp and Sipser's rules.
-void karp_sipser(const Pattern& columns, Matching& m) {
-  const Pattern rows = columns.transposed();
+void karp_sipser(const Pattern& columns, const Pattern& rows, Matching& m) {
   const int n = columns.columns();
   const int* const cs = columns.start();
   const int* const ci = columns.index();
@@ -161,11 +160,11 @@ void phases(const Pattern& pattern, Matching& m) {
 
 }  // namespace
 
-Matching matching_by_phases(const Pattern& pattern) {
-  Matching m{std::vector<int>(static_cast<std::size_t>(pattern.columns()), -1),
-             std::vector<int>(static_cast<std::size_t>(pattern.rows()), -1), 0};
-  karp_sipser(pattern, m);
-  phases(pattern, m);
+Matching matching_by_phases(const Pattern& columns, const Pattern& rows) {
+  Matching m{std::vector<int>(static_cast<std::size_t>(columns.columns()), -1),
+             std::vector<int>(static_cast<std::size_t>(columns.rows()), -1), 0};
+  karp_sipser(columns, rows, m);
+  phases(columns, m);
   return m;
 }
 

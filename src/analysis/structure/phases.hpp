@@ -10,6 +10,6 @@ namespace garrison::structure {
 /// column takes the free row with the fewest neighbours. Then Pothen and Fan's phases with lookahead and
 /// alternating direction (Duff, Kaya, Ucar 2011); what a failed search reaches in a phase without success
 /// before it is left out for good.
-Matching matching_by_phases(const Pattern& pattern);
+Matching matching_by_phases(const Pattern& columns, const Pattern& rows);
 
 }  // namespace garrison::structure

@@ -62,7 +62,7 @@ Augmenter with_sensors(const Pattern& stacked, const Matching& own) {
   start.column_of.resize(static_cast<std::size_t>(stacked.rows()), -1);
   Augmenter search(stacked, std::move(start));
   for (int j = 0; j < stacked.columns(); ++j)
-    if (search.matching().row_of[static_cast<std::size_t>(j)] < 0) search.augment(j);
+    if (search.row_of(j) < 0) search.augment(j);
   return search;
 }
 
@@ -76,7 +76,7 @@ Observability System::observability(const Sensors& sensors) const {
   for (std::size_t c = 0; c < times.size(); ++c)
     o.output_connected = o.output_connected && (parent_[c] == 0 || times[c] > 0);
   const Pattern all = A_.stacked(sensors);
-  o.rank_condition = with_sensors(all, parts_.matching).matching().size == states();
+  o.rank_condition = with_sensors(all, parts_.matching).size() == states();
   return o;
 }
 
@@ -126,7 +126,7 @@ std::vector<std::vector<int>> System::substitutes(const Sensors& sensors) const 
     std::vector<char> rank_ok(static_cast<std::size_t>(states()), 0);
     std::vector<int> left;
     for (int j = 0; j < states(); ++j)
-      if (search.matching().row_of[static_cast<std::size_t>(j)] < 0 && !search.augment(j)) left.push_back(j);
+      if (search.row_of(j) < 0 && !search.augment(j)) left.push_back(j);
     if (left.empty()) rank_ok.assign(rank_ok.size(), 1);
     if (left.size() == 1)
       for (const int j : reachable_columns(all, search.matching(), left))

@@ -26,7 +26,7 @@ GARRISON_EXPORT Matching maximum_matching(const Pattern& pattern);
 /// the lexicographically first choice (transversal matroid).
 GARRISON_EXPORT Matching maximum_matching(const Pattern& pattern, std::span<const int> last);
 
-/// Augmenting paths from single columns, on a matching of its own. Iterative; all memory is taken once.
+/// Augmenting paths from single columns, on a matching of its own. Iterative.
 class GARRISON_EXPORT Augmenter {
  public:
   /// `pattern` must outlive this.
@@ -34,22 +34,45 @@ class GARRISON_EXPORT Augmenter {
   explicit Augmenter(const Pattern& pattern);
 
   /// Tries to match `column` (unmatched) by an augmenting path; matched columns stay matched.
-  bool augment(int column);
+  bool augment(int column) { return matched_at_once(column) || search(column); }
   /// Entries looked at by all searches so far.
   long long work() const { return work_; }
   /// Removes a row: nothing is matched to it any more, now or later. Its column becomes unmatched.
   void remove_row(int row);
-  const Matching& matching() const { return matching_; }
-  Matching take() { return std::move(matching_); }
+  int row_of(int column) const { return matching_.row_of[static_cast<std::size_t>(column)]; }
+  int size() const { return matching_.size; }
+  Matching matching() const { return Augmenter(*this).take(); }
+  /// The matching, without a copy; this is of no use afterwards.
+  Matching take();
 
  private:
-  const Pattern* pattern_;
-  Matching matching_;
-  std::vector<int> free_from_;  // per column: its entries before this one are matched rows
-  std::vector<int> next_;       // per column on the path: entry to descend to next
-  std::vector<int> stamp_;      // per column: search that visited it, or dead
-  std::vector<int> path_;
-  std::vector<int> visited_;
+  // What a search reads of a vertex lies side by side: it is the cache misses that cost.
+  struct Column {
+    int start;      // of its entries; they end where the next column starts
+    int free_from;  // entries before this one are matched rows
+  };
+  struct Row {
+    int column;  // it is matched to, or why there is none
+    int stamp;   // search that passed it, or dead
+  };
+  struct Step {
+    int column;
+    int row;   // it is matched to; the column before it on the path may take that
+    int next;  // entry to descend to next
+    int end;
+  };
+
+  int free_row(int column);
+  bool matched_at_once(int column);
+  bool search(int column);
+  void shift_path(int row);
+
+  const int* index_;
+  Matching matching_;  // its column_of is out of date until taken
+  std::vector<Column> columns_;
+  std::vector<Row> rows_;
+  std::vector<Step> path_;
+  std::vector<int> passed_;  // rows of this search
   int search_ = 0;
   long long work_ = 0;
 };

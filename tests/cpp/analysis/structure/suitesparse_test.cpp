@@ -63,6 +63,19 @@ TEST_CASE(
   same_parts(test::random_pattern(rng, 40'000, 40'000, 120'000));
 }
 
+TEST_CASE(
+    "deficient patterns, on which searches column by column are given up, are CXSparse's from both sides") {
+  test::Rng rng(23);
+  for (int k = 0; k < 20; ++k) {
+    const int rows = test::whole(rng, 2000, 3000);
+    const int columns = rows + (k % 3 - 1) * rows / 50;
+    CAPTURE(k);
+    const Pattern p = test::random_pattern(rng, rows, columns, 3 * rows);
+    CHECK(test::valid(p, maximum_matching(p)));
+    same_parts(p);
+  }
+}
+
 TEST_CASE("structural rank and strong components are BTF's on 1500 random patterns") {
   test::Rng rng(22);
   for (int k = 0; k < 1500; ++k) {
