@@ -3,6 +3,7 @@
 m = 8 states, two measurements per agent, l = 4 shared entries, random geometric graph of mean degree 6.
 """
 
+import importlib.util
 import time
 from collections.abc import Callable
 from typing import Any
@@ -63,13 +64,20 @@ class Task:
         return x
 
 
+def _installed(module: str, package: str) -> bool:
+    """Says so if not. Only a package that is not there: a name that it lacks is an error of ours."""
+    if importlib.util.find_spec(module) is not None:
+        return True
+    print(f"{package} is not installed: its row is left out (pip install {package.lower().replace(' ', '')})")
+    return False
+
+
 def _jax(task: Task) -> Callable[[], np.ndarray] | None:
     """JAX vmap over agents, scan over samples, if it is installed."""
-    try:
-        import jax
-    except ImportError:
-        print("JAX is not installed: its rows are left out (pip install jax)")
+    if not _installed("jax", "JAX"):
         return None
+    import jax
+
     jax.config.update("jax_enable_x64", True)
     jnp = jax.numpy
     A, Q, I2 = jnp.asarray(task.A), jnp.asarray(task.Q), OUTPUTS
@@ -105,48 +113,58 @@ def _jax(task: Task) -> Callable[[], np.ndarray] | None:
     return lambda: np.asarray(compiled(P0, y).block_until_ready())
 
 
-def _filterpy(task: Task, agents: int) -> Callable[[], None] | None:
+def _alone(task: Task, agents: int) -> np.ndarray:
+    """Estimates after one predict and update from N(0, I)."""
+    P = task.A @ task.A.T + task.Q
+    H, R = task.H[:agents], task.R[:agents]
+    PHt = P @ H.transpose(0, 2, 1)
+    K = PHt @ np.linalg.inv(H @ PHt + R)
+    return np.einsum("nij,nj->ni", K, task.y[0, :agents])
+
+
+def _filterpy(task: Task, agents: int) -> Callable[[], np.ndarray] | None:
     """FilterPy, agent by agent, predict and update only (it knows no consensus)."""
-    try:
-        from filterpy.kalman import KalmanFilter
-    except ImportError:
-        print("FilterPy is not installed: its row is left out (pip install filterpy)")
+    if not _installed("filterpy", "FilterPy"):
         return None
+    from filterpy.kalman import KalmanFilter
+
     filters = []
     for i in range(agents):
         f = KalmanFilter(dim_x=STATES, dim_z=OUTPUTS)
-        f.F, f.Q, f.H, f.R, f.P = task.A, task.Q, task.H[i], task.R[i], np.eye(STATES)
+        f.F, f.Q, f.H, f.R = task.A, task.Q, task.H[i], task.R[i]
         filters.append(f)
 
-    def run() -> None:
+    def run() -> np.ndarray:
         for i, f in enumerate(filters):
+            f.x, f.P = np.zeros((STATES, 1)), np.eye(STATES)
             f.predict()
             f.update(task.y[0, i])
+        return np.array([f.x[:, 0] for f in filters])
 
     return run
 
 
-def _stonesoup(task: Task, agents: int) -> Callable[[], None] | None:
+def _stonesoup(task: Task, agents: int) -> Callable[[], np.ndarray] | None:
     """Stone Soup, agent by agent, predict and update only."""
-    try:
-        import datetime
-
-        from stonesoup.models.measurement.linear import LinearGaussian
-        from stonesoup.models.transition.linear import LinearTimeInvariantTransitionModel
-        from stonesoup.predictor.kalman import KalmanPredictor
-        from stonesoup.types.detection import Detection
-        from stonesoup.types.hypothesis import SingleHypothesis
-        from stonesoup.types.state import GaussianState
-        from stonesoup.updater.kalman import KalmanUpdater
-    except ImportError:
-        print("Stone Soup is not installed: its row is left out (pip install stonesoup)")
+    if not _installed("stonesoup", "Stone Soup"):
         return None
+    import datetime
+
+    from stonesoup.models.measurement.linear import LinearGaussian
+    from stonesoup.models.transition.linear import LinearGaussianTimeInvariantTransitionModel
+    from stonesoup.predictor.kalman import KalmanPredictor
+    from stonesoup.types.detection import Detection
+    from stonesoup.types.hypothesis import SingleHypothesis
+    from stonesoup.types.state import GaussianState
+    from stonesoup.updater.kalman import KalmanUpdater
+
     start = datetime.datetime(2026, 1, 1)
     later = start + datetime.timedelta(seconds=1)
-    predictor = KalmanPredictor(LinearTimeInvariantTransitionModel(transition_matrix=task.A, covariance_matrix=task.Q))
+    predictor = KalmanPredictor(
+        LinearGaussianTimeInvariantTransitionModel(transition_matrix=task.A, covariance_matrix=task.Q)
+    )
     updaters = []
     for i in range(agents):
-        model = LinearGaussian(ndim_state=STATES, mapping=tuple(range(STATES)), noise_covar=np.eye(STATES))
         H = task.H[i]
 
         class Rows(LinearGaussian):
@@ -163,10 +181,13 @@ def _stonesoup(task: Task, agents: int) -> Callable[[], None] | None:
         state = GaussianState(np.zeros((STATES, 1)), np.eye(STATES), timestamp=start)
         updaters.append((KalmanUpdater(model), model, state, task.y[0, i][:, None]))
 
-    def run() -> None:
+    def run() -> np.ndarray:
+        estimates = []
         for updater, model, state, y in updaters:
             prediction = predictor.predict(state, timestamp=later)
-            updater.update(SingleHypothesis(prediction, Detection(y, timestamp=later, measurement_model=model)))
+            detection = Detection(y, timestamp=later, measurement_model=model)
+            estimates.append(updater.update(SingleHypothesis(prediction, detection)).mean)
+        return np.array(estimates, dtype=float)[:, :, 0]
 
     return run
 
@@ -191,6 +212,7 @@ def steps(agents: int, count: int, repeats: int) -> Rows:
     for name, make in (("FilterPy, predict and update", _filterpy), ("Stone Soup, predict and update", _stonesoup)):
         peer = make(task, few)
         if peer is not None:
+            assert np.abs(peer() - _alone(task, few)).max() < 1e-9, f"{name} disagrees"
             rows[name] = lambda peer=peer: cpu(peer) / few
     table = summary(interleaved(rows, repeats), "ours, covariance step")
     for row in table:

@@ -5,6 +5,8 @@
 #include <utility>
 
 #define GARRISON_INLINE __attribute__((always_inline)) inline
+/// The same for a lambda.
+#define GARRISON_INLINED __attribute__((always_inline))
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define GARRISON_TARGET(isa) __attribute__((target(isa)))

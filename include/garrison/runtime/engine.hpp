@@ -16,6 +16,7 @@
 #include "garrison/runtime/consensus.hpp"
 #include "garrison/runtime/mailroom.hpp"
 #include "garrison/runtime/runner.hpp"
+#include "garrison/runtime/together.hpp"
 #include "garrison/runtime/workers.hpp"
 
 namespace garrison {
@@ -64,6 +65,8 @@ class Engine final : public Runner {
       for (Eigen::Index r = 0; r < C.rows(); ++r)
         for (Eigen::Index c = 0; c < C.cols(); ++c) rows_.push_back(C(r, c));
     }
+    if constexpr (StepsTogether<F, n>)
+      together_.join(states_.data(), states_.size(), [this](std::size_t k) { return local(k); });
   }
 
   void reset(const Matrix& x0, Link* link) override {
@@ -72,6 +75,7 @@ class Engine final : public Runner {
       const Vec<n> start = x0.col(places_[k].id);
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
     }
+    if constexpr (StepsTogether<F, n>) together_.start(*gains_, [this](std::size_t k) { return local(k); });
     mail_.fill();
     bytes_ = static_cast<std::int64_t>(sizeof(double)) * mail_.numbers_per_round() * F::rounds(*gains_);
     overflows_ = 0;
@@ -80,6 +84,11 @@ class Engine final : public Runner {
   void step(std::int64_t t, const double* y) override {
     if constexpr (Averages<F, n>)
       if (mail_.perfect()) return step_at_once(t, y);
+    if constexpr (StepsTogether<F, n>)
+      if (mail_.perfect() && together_.agreed())
+        return together_.step(
+            *gains_, local(0), t, [&](std::size_t k) { return y + places_[k].first_output; }, mail_.wiring(),
+            workers_);
     each([&](std::size_t k, Message* out) {
       F::template sense<n>(local(k), *gains_, states_[k], y + places_[k].first_output, t, out[k]);
     });
@@ -156,9 +165,15 @@ class Engine final : public Runner {
     const int L = F::rounds(*gains_);
     for (int round = 0; round < L; ++round) {
       mail_.collect(t, round, finite);
-      each([&](std::size_t k, Message* out) {
-        F::template fuse<n>(local(k), *gains_, states_[k], mail_.inbox(k), round, out[k]);
-      });
+      if constexpr (StepsTogether<F, n>) {
+        const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
+        together_.fuse(*gains_, local(0), inbox, mail_.outgoing(), workers_);
+        mail_.post();
+      } else {
+        each([&](std::size_t k, Message* out) {
+          F::template fuse<n>(local(k), *gains_, states_[k], mail_.inbox(k), round, out[k]);
+        });
+      }
     }
   }
 
@@ -250,6 +265,7 @@ class Engine final : public Runner {
   Mailroom<Message> mail_;
   Workers workers_;
   Aligned<State> states_;
+  [[no_unique_address]] typename detail::TogetherOf<F, n>::type together_;
   std::vector<Place> places_;
   Aligned<double> rows_;  // of all C_i
   std::vector<std::size_t> position_;

@@ -14,6 +14,12 @@
 
 namespace garrison {
 
+/// Who hears whom: agent k hears slots[first[k]] .. slots[first[k + 1] - 1], in order of public id.
+struct Wiring {
+  const std::size_t* first;
+  const std::uint32_t* slots;
+};
+
 /// One array of messages: a ring of buffers (one message per agent, in the engine's order) and behind them a
 /// place per lying edge. On perfect links every agent reads its neighbours' slots of the current buffer.
 /// Faults only rewrite slots: a lost message leaves its slot out, a late one points into an older buffer, a
@@ -61,6 +67,7 @@ class Mailroom {
     return sum;
   }
 
+  Wiring wiring() const { return {first_.data(), slots_.data()}; }
   bool perfect() const { return link_ == nullptr || link_->perfect(); }
   /// Where agents write; becomes current with `post`.
   Message* outgoing() { return messages_.data() + base(posted_); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/partial_sharing/filter.hpp"
+#include "garrison/filters/partial_sharing/together.hpp"
 #include "garrison/runtime/filter_of.hpp"
 
 namespace garrison {

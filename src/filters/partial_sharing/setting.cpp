@@ -54,6 +54,19 @@ Selection make_selection(const PartialSharing::Params& p, int N, int m) {
              : Selection::coordinated(m, shared, p.shift);
 }
 
+Matrix full(const Vector& triangle, int m) {
+  Matrix all(m, m);
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j <= i; ++j) all(i, j) = all(j, i) = triangle(packed(i, j));
+  return all;
+}
+
+/// Doubles that a step of a LocalRecursion works on.
+int room(int m, int q) {
+  using Kernel = Recursion<Dynamic, 1>;
+  return 2 * m + q + Kernel::scratch(m) + q * Kernel::scratch_per_row(m);
+}
+
 }  // namespace
 
 double Setting::shared_fraction() const {
@@ -111,27 +124,36 @@ LocalRecursion::LocalRecursion(const Setting& setting, int agent)
       W_(whitener(setting.R[static_cast<std::size_t>(agent)], agent)),
       Hw_(H_.transpose() * W_.transpose()),
       P_(setting.P0),
-      S_(P_.rows(), P_.rows()),
-      T_(S_),
       Kw_(P_.rows(), H_.rows()),
-      next_(S_),
-      v_(P_.rows()),
-      f_(P_.rows()) {}
+      packed_P_(packed(setting.states())),
+      packed_G_(packed_P_.size()),
+      scratch_(room(setting.states(), static_cast<int>(H_.rows()))) {}
 
 LocalGains LocalRecursion::step(double* change) {
+  using One = Block<1>;
+  using Kernel = Recursion<Dynamic, 1>;
+  const int m = setting_.states();
+  const int q = static_cast<int>(H_.rows());
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j <= i; ++j) packed_P_(packed(i, j)) = P_(i, j);
+  double* const own = scratch_.data() + 2 * m + q;
+  One::type* const P = One::of(packed_P_.data());
+  Kernel recursion(One::of(own), One::of(own + Kernel::scratch(m)), m, q);
+  recursion.factor(P, 1);
+  for (int r = 0; r < q; ++r) recursion.use_row(r, One::of(Hw_.col(r).data()));
+  explicit_gains<Dynamic>(recursion, setting_.gamma, m, q, scratch_.data(), Kw_.data(), packed_G_.data(), 1);
+  One::type moved{};
+  recursion.predict(setting_.A.data(), setting_.Q.data(), P, 1, moved == moved, moved);
+  if (change != nullptr) *change = moved[0];
   LocalGains g;
   g.P = P_;
-  const double moved = advance<Dynamic, 1>(
-      {P_.data(), S_.data(), T_.data(), Kw_.data(), v_.data(), f_.data(), Hw_.data(), setting_.A.data(),
-       setting_.Q.data(), static_cast<int>(H_.rows()), setting_.states()},
-      next_.data());
-  if (change != nullptr) *change = moved;
+  P_ = full(packed_P_, m);
   g.K = setting_.A * Kw_ * W_;
   g.C = setting_.A * consensus_gain();
   g.F = setting_.A - g.K * H_;
   return g;
 }
 
-Matrix LocalRecursion::consensus_gain() const { return setting_.gamma * S_ * S_.transpose(); }
+Matrix LocalRecursion::consensus_gain() const { return full(packed_G_, setting_.states()); }
 
 }  // namespace garrison::partial_sharing

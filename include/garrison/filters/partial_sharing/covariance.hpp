@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The local covariance recursion (11) of one agent, in square-root form.
+// The local covariance recursion (11) of several agents side by side, in square-root form.
 //
-// With S S' = P_i, measurements whitened by R_i (unit noise) and taken one after the other (Potter):
-//   f = S'h,  alpha = 1 + f'f,  k = S f / alpha,  S <- S - S f f' / (alpha + sqrt(alpha))
-// then S S' = (I - Kf H) P_i, the filtered covariance, and
-//   P_i(k+1) = (A S)(A S)' + Q                     the matrix of (11), never in Joseph's two products
-//   K_i = A Kf of (9),  C_i = gamma A S S'         gamma A barM_i^-1 of the paper (note 1), no inverse of P
-// alpha >= 1 and P is a sum of squares: nothing can fail, whatever R, P0 and A are. A pivot of S that is
-// rounding of zero is zero, so singular P0 and Q are ordinary input.
+// P_i(k) = L D L' (unit lower triangle, diagonal), a measurement row h of unit noise after the other:
+//   l = M'L'h,  g = D l,  alpha = 1 + l'g,  M <- M (I - g l' / (alpha + sqrt(alpha))),     M = I at first
+// since (I - b g l') D (I - b g l')' = D - g g'/alpha, which is Potter's update without a root of P. Then
+//   (I - Kf H) P_i = L M D M'L'                     the filtered covariance; its gain times innovations is
+//   Kf e = L sum_r M_(r-1) g_r (e_r - h_r'(Kf e so far)) / alpha_r
+//   P_i(k+1) = (A L M) D (A L M)' + Q               the matrix of (11), never in Joseph's two products
+//   K_i = A Kf of (9),  C_i = gamma A L M D M'L'    gamma A barM_i^-1 of the paper (note 1), no inverse of P
+// alpha >= 1, D >= 0, and P is a sum of squares: nothing can fail, whatever R, P0 and A are. A pivot that is
+// rounding of zero is zero, so singular P0 and Q are ordinary input. No agent's numbers meet those of
+// another, and every entry sums in one order: the bits are the same for any number of agents side by side.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "garrison/core/block.hpp"
 #include "garrison/core/clones.hpp"
@@ -19,119 +22,195 @@
 
 namespace garrison::partial_sharing {
 
-/// Where one agent's recursion works; all matrices column by column, m x m unless said otherwise.
-struct Recursion {
-  double* P;        ///< in: P(k), exactly symmetric; out: P(k+1)
-  double* S;        ///< out: square root of the filtered covariance
-  double* T;        ///< out: its transpose
-  double* K;        ///< out: gain of the whitened innovations, outputs columns of m: A K W is K_i
-  double* v;        ///< scratch, m
-  double* f;        ///< scratch, m
-  const double* H;  ///< whitened rows W H_i, outputs rows of m
-  const double* A;
-  const double* Q;
-  int outputs;
-  int states;
-};
-
 /// Sizes beyond this are not carried on: the recursion stands still rather than overflow.
 inline constexpr double kLargestVariance = 1e150;
-
-namespace kernel {
-
-template <int n, int B>
-GARRISON_INLINE void axpy(double factor, const double* x, double* y, int m) {
-  if constexpr (n == Dynamic) {
-    for (int i = 0; i < m; ++i) y[i] += factor * x[i];
-  } else {
-    constexpr int W = block_of(n, B);
-    for (int i = 0; i < n; i += W) *Block<W>::of(y + i) += factor * *Block<W>::of(x + i);
-  }
-}
-template <int n, int B>
-GARRISON_INLINE void zero(double* y, int m) {
-  const int count = n == Dynamic ? m : n;
-  for (int i = 0; i < count; ++i) y[i] = 0.0;
-}
-
-/// S lower triangular with S S' = P, T = S'; pivots that are rounding of zero give a zero column.
-template <int n, int B>
-GARRISON_INLINE void square_root(const double* P, double* S, double* T, int mm) {
-  const int m = n == Dynamic ? mm : n;
-  for (int i = 0; i < m * m; ++i) S[i] = P[i];
-  for (int k = 0; k < m; ++k) {
-    double* const column = S + k * m;
-    const double pivot = column[k];
-    if (!(pivot > 4e-16 * m * P[k * m + k])) {
-      zero<n, B>(column, m);
-    } else {
-      const double inverse = 1.0 / std::sqrt(pivot);
-      for (int i = 0; i < m; ++i) column[i] *= inverse;
-      for (int i = 0; i < k; ++i) column[i] = 0.0;
-      for (int j = k + 1; j < m; ++j) axpy<n, B>(-column[j], column, S + j * m, m);
-    }
-    for (int i = 0; i < m; ++i) T[i * m + k] = column[i];
-  }
-}
-
-template <int n, int B>
-GARRISON_INLINE void use_row(const Recursion& r, int row) {
-  const int m = n == Dynamic ? r.states : n;
-  const double* const h = r.H + row * m;
-  zero<n, B>(r.f, m);
-  zero<n, B>(r.v, m);
-  for (int c = 0; c < m; ++c) axpy<n, B>(h[c], r.T + c * m, r.f, m);
-  double square = 0.0;
-  for (int c = 0; c < m; ++c) square += r.f[c] * r.f[c];
-  const double alpha = 1.0 + square;
-  for (int c = 0; c < m; ++c) axpy<n, B>(r.f[c], r.S + c * m, r.v, m);
-  double* const gain = r.K + row * m;
-  for (int i = 0; i < m; ++i) gain[i] = r.v[i] / alpha;
-  for (int before = 0; before < row;
-       ++before) {  // gains for one common innovation instead of one after the other
-    double seen = 0.0;
-    for (int i = 0; i < m; ++i) seen += h[i] * r.K[before * m + i];
-    axpy<n, B>(-seen, gain, r.K + before * m, m);
-  }
-  const double beta = 1.0 / (alpha + std::sqrt(alpha));
-  for (int c = 0; c < m; ++c) axpy<n, B>(-beta * r.f[c], r.v, r.S + c * m, m);
-  for (int c = 0; c < m; ++c) axpy<n, B>(-beta * r.v[c], r.f, r.T + c * m, m);
-}
-
-/// P <- (A S)(A S)' + Q; returns the largest change of an entry over the largest entry. Uses v.
-template <int n, int B>
-GARRISON_INLINE double predict(const Recursion& r, double* next) {
-  const int m = n == Dynamic ? r.states : n;
-  for (int i = 0; i < m * m; ++i) next[i] = r.Q[i];
-  for (int c = 0; c < m; ++c) {
-    zero<n, B>(r.v, m);
-    for (int k = 0; k < m; ++k) axpy<n, B>(r.S[c * m + k], r.A + k * m, r.v, m);
-    for (int j = 0; j < m; ++j) axpy<n, B>(r.v[j], r.v, next + j * m, m);
-  }
-  double change = 0.0;
-  double size = 0.0;
-  for (int i = 0; i < m * m; ++i) {
-    change = std::max(change, std::abs(next[i] - r.P[i]));
-    size = std::max(size, std::abs(next[i]));
-  }
-  if (!(size < kLargestVariance)) return 0.0;
-  for (int i = 0; i < m * m; ++i) r.P[i] = next[i];
-  return size > 0.0 ? change / size : 0.0;
-}
-
-}  // namespace kernel
-
-/// One step of (9) and (11). `next`: scratch, m x m. Returns how much P changed, relative to its largest
-/// entry; 0 also when it would have grown beyond kLargestVariance and was left as it is. B: doubles per
-/// register.
-template <int n, int B>
-GARRISON_INLINE double advance(const Recursion& r, double* next) noexcept {
-  kernel::square_root<n, B>(r.P, r.S, r.T, r.states);
-  for (int row = 0; row < r.outputs; ++row) kernel::use_row<n, B>(r, row);
-  return kernel::predict<n, B>(r, next);
-}
-
 /// Change up to which the recursion counts as converged: rounding.
 inline constexpr double kConverged = 2e-15;
+/// Pivots below this have no reciprocal.
+inline constexpr double kLeastPivot = 1e-290;
+
+/// Where entry (i, j), j <= i, of a symmetric or lower triangular matrix is; also the number of entries
+/// before row i.
+constexpr int packed(int i, int j = 0) { return i * (i + 1) / 2 + j; }
+
+/// `body(i)` for i = 0..m-1, unrolled where n is known.
+template <int n, class Body>
+GARRISON_INLINE void for_each_state(int m, const Body& body) {
+  if constexpr (n == Dynamic)
+    for (int i = 0; i < m; ++i) body(i);
+  else
+    [&]<int... i>(std::integer_sequence<int, i...>) GARRISON_INLINED {
+      (body(std::integral_constant<int, i>{}), ...);
+    }(std::make_integer_sequence<int, n>{});
+}
+
+/// One step of B agents. Matrices are packed; entries of one agent are `stride` values apart.
+template <int n, int B>
+class Recursion {
+ public:
+  using V = typename Block<B>::type;
+
+  /// Values of scratch: of its own, and for every measurement row.
+  static constexpr int scratch(int m) { return 2 * packed(m) + 5 * m + m * m; }
+  static constexpr int scratch_per_row(int m) { return 3 * m + 2; }
+
+  GARRISON_INLINE Recursion(V* scratch, V* rows, int states, int outputs) : states_(states), q(outputs) {
+    L = scratch;
+    c = L + packed(states);
+    d = c + packed(states);
+    h = d + states;
+    v = h + states;
+    x = v + states;
+    b = x + states;
+    F = b + states;
+    raw = rows;
+    l = raw + outputs * states;
+    g = l + outputs * states;
+    reciprocal = g + outputs * states;
+    beta = reciprocal + outputs;
+  }
+
+  /// P = L D L'; pivots that are rounding of zero give a zero in D.
+  GARRISON_INLINE void factor(const V* P, int stride) {
+    for_each_state<n>(m(), [&](auto j) GARRISON_INLINED {
+      V pivot = P[packed(j, j) * stride];
+      const V size = pivot;
+      for (int k = 0; k < j; ++k) pivot -= L[packed(j, k)] * c[packed(j, k)];
+      const auto counts = pivot > 4e-16 * m() * size + kLeastPivot;
+      d[j] = counts ? pivot : V{};
+      const V inverse = counts ? 1.0 / pivot : V{};
+      for (int i = j + 1; i < m(); ++i) {
+        V sum = P[packed(i, j) * stride];
+        for (int k = 0; k < j; ++k) sum -= L[packed(i, k)] * c[packed(j, k)];
+        c[packed(i, j)] = sum;  // L D
+        L[packed(i, j)] = sum * inverse;
+      }
+    });
+  }
+
+  /// Row r = 0, 1, .. of the whitened measurements.
+  GARRISON_INLINE void use_row(int r, const V* row) {
+    V* const lr = l + r * m();
+    V* const gr = g + r * m();
+    transposed(row, raw + r * m());
+    for (int j = 0; j < m(); ++j) lr[j] = raw[r * m() + j];
+    for (int s = 0; s < r; ++s) reflect(beta[s], l + s * m(), g + s * m(), lr);
+    for (int j = 0; j < m(); ++j) gr[j] = d[j] * lr[j];
+    V alpha;
+    dot(lr, gr, alpha);
+    alpha += 1.0;
+    V root = alpha;
+    for (int lane = 0; lane < B; ++lane) root[lane] = std::sqrt(root[lane]);
+    reciprocal[r] = 1.0 / alpha;
+    beta[r] = 1.0 / (alpha + root);
+  }
+
+  /// out += Kf e + gamma (I - Kf H) P u
+  GARRISON_INLINE void correct(const V* e, const V* u, double gamma, V* out) {
+    transposed(u, v);
+    for (int r = 0; r < q; ++r) reflect(beta[r], l + r * m(), g + r * m(), v);
+    for (int j = 0; j < m(); ++j) v[j] *= d[j];
+    for (int r = q; r-- > 0;) reflect(beta[r], g + r * m(), l + r * m(), v);
+    for (int j = 0; j < m(); ++j) x[j] = V{};
+    for (int r = 0; r < q; ++r) {
+      V t;
+      dot(raw + r * m(), x, t);
+      t = (e[r] - t) * reciprocal[r];
+      for (int j = 0; j < m(); ++j) h[j] = g[r * m() + j] * t;
+      for (int s = r; s-- > 0;) reflect(beta[s], g + s * m(), l + s * m(), h);
+      for (int j = 0; j < m(); ++j) x[j] += h[j];
+    }
+    for (int j = 0; j < m(); ++j) x[j] += gamma * v[j];
+    for_each_state<n>(m(), [&](auto i) GARRISON_INLINED {
+      V sum = x[i];
+      for (int j = 0; j < i; ++j) sum += L[packed(i, j)] * x[j];
+      out[i] += sum;
+    });
+  }
+
+  /// P(k) -> P(k+1) for agents that are `live`, all ones in their lanes. `change`: how much P changed,
+  /// relative to its largest entry; 0 also when it would have grown beyond kLargestVariance and was left as
+  /// it is. A, Q: column by column.
+  template <class Mask>
+  GARRISON_INLINE void predict(const double* A, const double* Q, V* P, int stride, const Mask& live,
+                               V& change) {
+    V* const next = c;
+    V moved{};
+    V size{};
+    V trace{};
+    for (int i = 0; i < m(); ++i) {
+      V fixed[n == Dynamic ? 1 : n];
+      V* const row = n == Dynamic ? b : fixed;
+      scaled_row(A, i, row);
+      for (int j = 0; j <= i; ++j) {
+        V sum;
+        dot(row, F + j * m(), sum);
+        sum += Q[j * m() + i];
+        next[packed(i, j)] = sum;
+        const V apart = sum - P[packed(i, j) * stride];
+        const V distance = apart < 0.0 ? -apart : apart;
+        moved = moved < distance ? distance : moved;
+      }
+      const V diagonal = next[packed(i, i)];  // the largest entry is among these
+      size = size < diagonal ? diagonal : size;
+      trace += diagonal;
+    }
+    const auto moves = live & (trace < kLargestVariance);
+    for (int k = 0; k < packed(m()); ++k) {
+      const V old = P[k * stride];
+      P[k * stride] = moves ? next[k] : old;
+    }
+    const auto counts = moves & (size > 0.0);
+    change = counts ? moved / size : V{};
+  }
+
+ private:
+  GARRISON_INLINE int m() const { return n == Dynamic ? states_ : n; }
+
+  /// s't; even and odd entries for themselves, which halves the wait for sums
+  GARRISON_INLINE void dot(const V* s, const V* t, V& out) const {
+    V sum[2]{};
+    for_each_state<n>(m(), [&](auto k) GARRISON_INLINED {
+      if (k < 2)
+        sum[k] = s[k] * t[k];
+      else
+        sum[k % 2] += s[k] * t[k];
+    });
+    out = sum[0];
+    if (m() > 1) out += sum[1];
+  }
+  /// y <- (I - factor s t') y
+  GARRISON_INLINE void reflect(const V& factor, const V* s, const V* t, V* y) const {
+    V along;
+    dot(t, y, along);
+    along *= factor;
+    for_each_state<n>(m(), [&](auto j) GARRISON_INLINED { y[j] -= along * s[j]; });
+  }
+  /// out = L'y
+  GARRISON_INLINE void transposed(const V* y, V* out) const {
+    for_each_state<n>(m(), [&](auto j) GARRISON_INLINED {
+      V sum = y[j];
+      for (int k = j + 1; k < m(); ++k) sum += L[packed(k, j)] * y[k];
+      out[j] = sum;
+    });
+  }
+  /// Row i of F = A L M, and of F D.
+  GARRISON_INLINE void scaled_row(const double* A, int i, V* row) {
+    for_each_state<n>(m(), [&](auto j) GARRISON_INLINED { row[j] = V{} + A[j * m() + i]; });
+    for_each_state<n>(m(), [&](auto k) GARRISON_INLINED {
+      for (int j = 0; j < k; ++j) row[j] += A[k * m() + i] * L[packed(k, j)];
+    });
+    for (int r = 0; r < q; ++r) reflect(beta[r], l + r * m(), g + r * m(), row);
+    for_each_state<n>(m(), [&](auto j) GARRISON_INLINED {
+      F[i * m() + j] = row[j];
+      row[j] *= d[j];
+    });
+  }
+
+  int states_;
+  int q;
+  V *L, *c, *d, *h, *v, *x, *b, *F;    // matrices packed, F row by row
+  V *raw, *l, *g, *reciprocal, *beta;  // of every row: L'h, l, g, 1/alpha, b
+};
 
 }  // namespace garrison::partial_sharing

@@ -10,7 +10,8 @@
 // so that A z_i(t) is xhat_i(k+1) of (10): K_i = A Kf (9) and C_i = gamma (A - K_i H_i) P_i. The estimate of
 // time t is z_i(t), which has seen y_i(t); the paper's xhat_i(k+1) is the prediction from it. Gains follow
 // (11), which sees no data: they are frozen once they have converged, and a missing measurement leaves them
-// alone.
+// alone. A z_i(t) is computed with z_i(t), so that `sense` only has to send it. Numbers are kept in groups of
+// agents side by side (group.hpp); an agent on its own is a group of one.
 //
 // Where we leave the print (our notes): C_i has no inverse of P_i, so singular covariances and agents without
 // sensors are ordinary; entries j did not share, or that are missing, too old or beyond kHuge, count as
@@ -22,7 +23,6 @@
 #include <memory>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "garrison/core/block.hpp"
@@ -31,8 +31,9 @@
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
-#include "garrison/filters/partial_sharing/covariance.hpp"
+#include "garrison/filters/partial_sharing/group.hpp"
 #include "garrison/filters/partial_sharing/selection.hpp"
+#include "garrison/filters/partial_sharing/update.hpp"
 
 namespace garrison {
 
@@ -79,18 +80,10 @@ struct GARRISON_EXPORT PartialSharing {
   };
 
   template <int n>
-  static constexpr std::size_t kSquare = n == Dynamic ? 1 : static_cast<std::size_t>(n) * n;
-
-  template <int n>
   struct State {
-    Vec<n> z;  // estimate at t
-    Vec<n> x;  // xhat_i(k), the prediction of the same time
+    std::shared_ptr<partial_sharing::Group<n>> group;  // with the agent's numbers in lane `lane`
+    int lane = 0;
     std::int64_t t = 0;
-    bool given = false;
-    bool frozen = false;
-    Verdict verdict = Verdict::cleared;
-    double statistic = kNaN;
-    std::unique_ptr<double[]> room;  // P, G, K, y, and scratch where n is not known when compiling
     AgentSet nobody;
   };
 
@@ -112,74 +105,39 @@ struct GARRISON_EXPORT PartialSharing {
   static Gains design(const Params& params, const Model& model, const Network& network);
   static int rounds(const Gains&) { return 1; }
 
+  /// A state that has been given its lane of a group stays there.
   template <int n>
-  static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
-    State<n> fresh;
-    fresh.z = fresh.x = x0;
-    fresh.given = g.given;
-    const auto nn = static_cast<std::size_t>(dimension<n>(l));
-    const auto q = static_cast<std::size_t>(l.outputs);
-    const std::size_t scratch = n == Dynamic ? 3 * nn * nn + 5 * nn : 0;
-    fresh.room = std::make_unique<double[]>(2 * nn * nn + q * nn + q + scratch);
-    std::copy_n(g.P0.data(), nn * nn, fresh.room.get());
-    if (!g.steady.empty()) {
-      const Steady& limit = g.steady[static_cast<std::size_t>(l.id)];
-      std::copy(limit.P.begin(), limit.P.end(), fresh.room.get());
-      std::copy(limit.G.begin(), limit.G.end(), fresh.room.get() + nn * nn);
-      std::copy(limit.K.begin(), limit.K.end(), fresh.room.get() + 2 * nn * nn);
-      fresh.frozen = true;
-    }
-    m.count = g.selection.shared(l.id);
-    if constexpr (n == Dynamic) {
-      m.value.assign(static_cast<std::size_t>(m.count), 0.0);
-      m.entry.assign(static_cast<std::size_t>(m.count), 0);
-    }
-    m.t = -1;
-    s = std::move(fresh);
-  }
+  static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m);
 
   template <int n>
   static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
                     Message<n>& m) noexcept {
     const int nn = dimension<n>(l);
-    if (s.given)
-      s.x = s.z;
-    else
-      multiply<n>(l.A, s.z.data(), s.x.data(), nn);
-    s.given = false;
     s.t = t;
-    std::copy_n(y, l.outputs, measurements(l, s));
+    for (int r = 0; r < l.outputs; ++r) s.group->at(s.group->y, r, s.lane) = y[r];
+    const double* const x = s.group->prediction(s.lane);
     const int moved = g.selection.offset(t - 1);
     const auto own = g.selection.entries(l.id);
     for (std::size_t k = 0; k < own.size(); ++k) {
       const int a = own[k] + moved < nn ? own[k] + moved : own[k] + moved - nn;
       m.entry[k] = a;
-      m.value[k] = s.x[a];
+      m.value[k] = x[a];
     }
     m.t = t;
   }
 
   template <int n>
   static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
-                   Message<n>& m) noexcept {
-    using Kernel = Update<n>;
-    if constexpr (n == 4 || n == 8)  // where wide registers pay; every instruction set compiles it once more
-      run_widest<Kernel>(&l, &g, &s, &inbox);
-    else
-      Kernel::template run<2>(&l, &g, &s, &inbox);
-    m.t = -1;  // nothing to say before the next sample
-  }
+                   Message<n>& m) noexcept;
 
   template <int n>
-  static Report report(const Local&, const Gains&, const State<n>& s) noexcept {
-    Report r;
-    r.statistic = s.statistic;
-    r.verdict = s.verdict;
-    return r;
-  }
+  static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept;
+
   template <int n>
-  static const Vec<n>& estimate(const State<n>& s) noexcept {
-    return s.z;
+  static Vec<n> estimate(const State<n>& s) noexcept {
+    Vec<n> z(s.group->m);
+    for (int i = 0; i < s.group->m; ++i) z[i] = s.group->at(s.group->z, i, s.lane);
+    return z;
   }
   template <int n>
   static const AgentSet* accused(const State<n>& s) noexcept {
@@ -188,14 +146,10 @@ struct GARRISON_EXPORT PartialSharing {
   template <int n>
   static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
     const int nn = dimension<n>(l);
+    const double* const x = s.group->prediction(s.lane);
     for (int r = 0; r < l.outputs; ++r) {
       out[r] = 0.0;
-      for (int i = 0; i < nn; ++i) {
-        double predicted = s.given ? s.z[i] : 0.0;
-        for (int k = 0; k < nn && !s.given; ++k)
-          predicted += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.z[k];
-        out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + i] * predicted;
-      }
+      for (int i = 0; i < nn; ++i) out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + i] * x[i];
     }
   }
   template <int n>
@@ -209,25 +163,25 @@ struct GARRISON_EXPORT PartialSharing {
   static void signals(const Local& l, const Gains& g, const State<n>& s, double* out) noexcept {
     const int nn = dimension<n>(l);
     out[0] = 0.0;
-    for (int i = 0; i < nn; ++i)
-      out[0] += s.room[static_cast<std::size_t>(i) * (static_cast<std::size_t>(nn) + 1)];
-    out[1] = s.frozen ? 1.0 : 0.0;
+    for (int i = 0; i < nn; ++i) out[0] += s.group->at(s.group->P, partial_sharing::packed(i, i), s.lane);
+    out[1] = s.group->frozen[static_cast<std::size_t>(s.lane)] ? 1.0 : 0.0;
     out[2] = static_cast<double>(g.selection.shared(l.id));
   }
 
- private:
+  /// The agents of a whole network in groups (runtime/together.hpp).
   template <int n>
-  static double* measurements(const Local& l, const State<n>& s) noexcept {
-    const auto nn = static_cast<std::size_t>(dimension<n>(l));
-    return s.room.get() + (2 * nn + static_cast<std::size_t>(l.outputs)) * nn;
-  }
+  class Together;
 
-  /// The numbers of one update, as the kernel needs them.
+ private:
+  static partial_sharing::Common common(const Local& l, const Gains& g) noexcept {
+    return {l.A, g.Q.data(), g.gamma, g.freeze};
+  }
+  /// sum_j S_j (xbar_j - xhat_i)
   template <int n>
-  struct Update;
+  static void disagreement(const State<n>& s, const Inbox<Message<n>>& inbox, double* u) noexcept;
 };
 
 }  // namespace garrison
 
+#include "garrison/filters/partial_sharing/agent.hpp"
 #include "garrison/filters/partial_sharing/params.hpp"
-#include "garrison/filters/partial_sharing/update.hpp"

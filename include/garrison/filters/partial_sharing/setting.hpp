@@ -49,8 +49,8 @@ class GARRISON_EXPORT LocalRecursion {
   void restart(const Matrix& P) { P_ = P; }
   /// Gains of this k; moves on to P_i(k+1). `change`, if given, receives how much P changed.
   LocalGains step(double* change = nullptr);
-  /// Gains of the whitened innovations and gamma times the filtered covariance after `step`, as the filter
-  /// keeps them.
+  /// Gains of the whitened innovations and gamma times the filtered covariance of the last `step`, as the
+  /// filter keeps them.
   const Matrix& whitened_gain() const { return Kw_; }
   Matrix consensus_gain() const;
 
@@ -59,8 +59,8 @@ class GARRISON_EXPORT LocalRecursion {
   const Matrix& H_;
   Matrix W_;   // whitener of R_i
   Matrix Hw_;  // m x n_i: whitened rows as columns
-  Matrix P_, S_, T_, Kw_, next_;
-  Vector v_, f_;
+  Matrix P_, Kw_;
+  Vector packed_P_, packed_G_, scratch_;
 };
 
 /// Limit of (11) from P_0: doubling, then the recursion itself until nothing moves but rounding.

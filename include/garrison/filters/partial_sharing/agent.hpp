@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one agent does at its start, with its inbox and when it reports. Included by filter.hpp.
+#pragma once
+
+#include "garrison/filters/partial_sharing/filter.hpp"
+
+namespace garrison {
+
+template <int n>
+void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
+  using partial_sharing::packed;
+  const int nn = dimension<n>(l);
+  const int q = l.outputs;
+  if (!s.group) s.group = std::make_shared<partial_sharing::Group<n>>(nn, q);
+  partial_sharing::Group<n>& group = *s.group;
+  const auto fill = [&](int array, int count, const auto& value) {
+    for (int k = 0; k < count; ++k) group.at(array, k, s.lane) = value(k);
+  };
+  const auto id = static_cast<std::size_t>(l.id);
+  fill(group.z, nn, [&](int k) { return x0[k]; });
+  fill(group.C, q * nn, [&](int k) { return l.C[k]; });
+  fill(group.y, q, [](int) { return kNaN; });
+  for (int i = 0; i < q; ++i)
+    fill(group.W + packed(i), i + 1,
+         [&](int k) { return g.sensors[id].W[static_cast<std::size_t>(i * q + k)]; });
+  const bool steady = !g.steady.empty();
+  const double* const P = steady ? g.steady[id].P.data() : g.P0.data();
+  for (int i = 0; i < nn; ++i) fill(group.P + packed(i), i + 1, [&](int k) { return P[i * nn + k]; });
+  if (steady) {
+    const Steady& limit = g.steady[id];
+    for (int i = 0; i < nn; ++i)
+      fill(group.G + packed(i), i + 1, [&](int k) { return limit.G[static_cast<std::size_t>(i * nn + k)]; });
+    fill(group.K, q * nn, [&](int k) { return limit.K[static_cast<std::size_t>(k)]; });
+  }
+  group.frozen[static_cast<std::size_t>(s.lane)] = steady;
+  group.started = false;
+  s.t = 0;
+  if (g.given)
+    std::copy_n(x0.data(), nn, group.prediction(s.lane));
+  else
+    multiply<n>(l.A, x0.data(), group.prediction(s.lane), nn);
+  m.count = g.selection.shared(l.id);
+  if constexpr (n == Dynamic) {
+    m.value.assign(static_cast<std::size_t>(m.count), 0.0);
+    m.entry.assign(static_cast<std::size_t>(m.count), 0);
+  }
+  m.t = -1;
+}
+
+template <int n>
+void PartialSharing::disagreement(const State<n>& s, const Inbox<Message<n>>& inbox, double* u) noexcept {
+  const double* const x = s.group->prediction(s.lane);
+  std::fill_n(u, s.group->m, 0.0);
+  for (std::size_t j = 0; j < inbox.size(); ++j) {
+    const Message<n>& heard = inbox[j];
+    if (heard.t != s.t) continue;
+    for (int k = 0; k < heard.count; ++k) {
+      const auto a = heard.entry[static_cast<std::size_t>(k)];
+      const double difference = heard.value[static_cast<std::size_t>(k)] - x[a];
+      if (std::abs(difference) < kHuge) u[a] += difference;
+    }
+  }
+}
+
+template <int n>
+void PartialSharing::fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
+                          Message<n>& m) noexcept {
+  double* const u = s.group->room_for_one();
+  disagreement<n>(s, inbox, u);
+  partial_sharing::update(common(l, g), *s.group, u, s.group->x);
+  m.t = -1;  // nothing to say before the next sample
+}
+
+template <int n>
+Report PartialSharing::report(const Local& l, const Gains&, const State<n>& s) noexcept {
+  Report report;
+  partial_sharing::Group<n>& group = *s.group;
+  if (!group.started) return report;
+  double largest = 0.0;
+  int used = 0;
+  for (int r = 0; r < l.outputs; ++r) {
+    double e = 0.0;
+    for (int c = 0; c <= r; ++c) {
+      const double innovation = group.at(group.y, c, s.lane);
+      if (!std::isnan(innovation)) e += group.at(group.W, partial_sharing::packed(r, c), s.lane) * innovation;
+    }
+    largest = std::max(largest, std::abs(e));
+    used += std::isnan(group.at(group.y, r, s.lane)) ? 0 : 1;
+  }
+  report.verdict = used == 0 ? Verdict::silent : Verdict::cleared;
+  if (used > 0) report.statistic = largest;
+  return report;
+}
+
+}  // namespace garrison

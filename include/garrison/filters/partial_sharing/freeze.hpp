@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The gains of an agent whose covariance has come to rest.
+#pragma once
+
+#include "garrison/filters/partial_sharing/group.hpp"
+
+namespace garrison::partial_sharing {
+
+/// Gain of whitened innovations, K (row by row of measurements), and G = gamma L M D M'L' (packed) of one
+/// factored agent; numbers are `stride` apart. `room`: 2 m + q values.
+template <int n>
+void explicit_gains(Recursion<n, 1>& recursion, double gamma, int m, int q, double* room, double* K,
+                    double* G, int stride) noexcept {
+  using One = Block<1>;
+  std::fill_n(room, 2 * m + q, 0.0);
+  double* const u = room;
+  double* const e = u + m;
+  double* const out = e + q;
+  for (int r = 0; r < q; ++r) {
+    e[r] = 1.0;
+    std::fill_n(out, m, 0.0);
+    recursion.correct(One::of(e), One::of(u), gamma, One::of(out));
+    for (int i = 0; i < m; ++i) K[static_cast<std::ptrdiff_t>(r * m + i) * stride] = out[i];
+    e[r] = 0.0;
+  }
+  for (int a = 0; a < m; ++a) {
+    u[a] = 1.0;
+    std::fill_n(out, m, 0.0);
+    recursion.correct(One::of(e), One::of(u), gamma, One::of(out));
+    for (int i = a; i < m; ++i) G[static_cast<std::ptrdiff_t>(packed(i, a)) * stride] = out[i];
+    u[a] = 0.0;
+  }
+}
+
+/// K and G from P for one agent, which stands still from now on.
+template <int n>
+void freeze(double gamma, Group<n>& group, int lane) noexcept {
+  using One = Block<1>;
+  using Kernel = Recursion<n, 1>;
+  constexpr int N = n == Dynamic ? 1 : n;
+  constexpr int kStride = Group<n>::kLanes;
+  const int m = group.m;
+  const int q = group.q;
+  double stack[n == Dynamic ? 1 : Kernel::scratch(N) + N * Kernel::scratch_per_row(N) + 4 * N];
+  double* const row = Group<n>::on_stack(m, q) ? stack : group.at(group.scratch);
+  double* const room = row + m;
+  double* const own = room + 2 * m + q;
+  Kernel recursion(One::of(own), One::of(own + Kernel::scratch(m)), m, q);
+  recursion.factor(One::of(group.at(group.P) + lane), kStride);
+  for (int r = 0; r < q; ++r) {
+    for (int k = 0; k < m; ++k) {
+      row[k] = 0.0;
+      for (int c = 0; c <= r; ++c)
+        row[k] += group.at(group.W, packed(r, c), lane) * group.at(group.C, c * m + k, lane);
+    }
+    recursion.use_row(r, One::of(row));
+  }
+  explicit_gains<n>(recursion, gamma, m, q, room, group.at(group.K) + lane, group.at(group.G) + lane,
+                    kStride);
+  group.frozen[static_cast<std::size_t>(lane)] = true;
+}
+
+}  // namespace garrison::partial_sharing

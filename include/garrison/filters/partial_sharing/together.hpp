@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// The agents of a whole network in groups, for the engine (runtime/together.hpp).
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+
+#include "garrison/filters/partial_sharing/disagreement.hpp"
+#include "garrison/filters/partial_sharing/filter.hpp"
+#include "garrison/runtime/workers.hpp"
+
+namespace garrison {
+
+/// Agents that follow each other in the engine's order share a group; one with fewer outputs than others has
+/// rows of zeros. Their predictions are in one array: while links are perfect, neighbours read them there and
+/// no message is written.
+template <int n>
+class PartialSharing::Together {
+  using Group = partial_sharing::Group<n>;
+
+ public:
+  /// Gives every agent a lane. `local(k)`: what agent k of the engine's order is told.
+  template <class Locals>
+  void join(State<n>* states, std::size_t count, const Locals& local) {
+    states_ = states;
+    for (auto& side : x_) side.resize(count * n);
+    for (std::size_t first = 0; first < count; first += Group::kLanes) {
+      const std::size_t end = std::min(first + Group::kLanes, count);
+      int outputs = 0;
+      for (std::size_t k = first; k < end; ++k) outputs = std::max(outputs, local(k).outputs);
+      const auto group = std::make_shared<Group>(n, outputs, x_[0].data() + first * n);
+      group->agents = static_cast<int>(end - first);
+      for (std::size_t k = first; k < end; ++k) {
+        states[k].group = group;
+        states[k].lane = static_cast<int>(k - first);
+        group->outputs[k - first] = local(k).outputs;
+      }
+      groups_.push_back(group);
+    }
+    shares_.resize(count);
+    now_.resize(count);
+  }
+
+  /// After `init` of all agents.
+  template <class Locals>
+  void start(const Gains& g, const Locals& local) {
+    for (std::size_t k = 0; k < shares_.size(); ++k) {
+      shares_[k] = 0;
+      for (const int a : g.selection.entries(local(k).id)) shares_[k] |= static_cast<std::uint8_t>(1 << a);
+    }
+    plain_ = std::all_of(x_[side_].begin(), x_[side_].end(),
+                         [](double x) { return std::abs(x) < partial_sharing::kPlain; });
+  }
+
+  /// Whether messages would carry nothing but what neighbours can read directly.
+  bool agreed() const { return plain_; }
+
+  /// One sample on perfect links. `y(k)`: measurements of agent k.
+  template <class Measurements>
+  void step(const Gains& g, const Local& any, std::int64_t t, const Measurements& y, Wiring wiring,
+            Workers& workers) noexcept {
+    const int moved = g.selection.offset(t - 1);
+    for (std::size_t k = 0; k < shares_.size(); ++k) now_[k] = partial_sharing::shifted<n>(shares_[k], moved);
+    const double* const x = x_[side_].data();
+    side_ = 1 - side_;
+    each(common(any, g), workers, [&](Group& group, std::size_t first, std::size_t end, double* u) {
+      for (std::size_t k = first; k < end; ++k) {
+        const double* const measured = y(k);
+        // Measurements are in order of public ids, all over the place for the hardware's own prefetcher.
+        __builtin_prefetch(y(std::min(k + 2 * Group::kLanes, shares_.size() - 1)));
+        const int lane = static_cast<int>(k - first);
+        for (int r = 0; r < group.outputs[k - first]; ++r) group.at(group.y, r, lane) = measured[r];
+      }
+      using Kernel = partial_sharing::Disagreement<n>;
+      const std::uint8_t* const shares = now_.data();
+      if constexpr (n == 4 || n == 8)
+        run_widest<Kernel>(x, shares, wiring, first, end, u);
+      else
+        Kernel::template run<2>(x, shares, wiring, first, end, u);
+    });
+  }
+
+  /// The same from inboxes, after every agent has sensed.
+  template <class Inboxes>
+  void fuse(const Gains& g, const Local& any, const Inboxes& inbox, Message<n>* out,
+            Workers& workers) noexcept {
+    each(common(any, g), workers, [&](Group&, std::size_t first, std::size_t end, double* u) {
+      for (std::size_t k = first; k < end; ++k, u += n) {
+        disagreement<n>(states_[k], inbox(k), u);
+        out[k].t = -1;  // nothing to say before the next sample
+      }
+    });
+  }
+
+ private:
+  /// `listen(group, first, end, u)` finds u of agents first..end-1; then they are updated.
+  template <class Listen>
+  void each(const partial_sharing::Common& shared, Workers& workers, const Listen& listen) noexcept {
+    double* const next = x_[side_].data();
+    std::atomic<bool> plain{true};
+    workers.split(static_cast<std::int64_t>(groups_.size()), [&](std::int64_t begin, std::int64_t end, int) {
+      alignas(64) double u[Group::kLanes * n];
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+        Group& group = *groups_[i];
+        const std::size_t last = static_cast<std::size_t>(end) - 1;
+        __builtin_prefetch(groups_[std::min(i + 2, last)].get());
+        groups_[std::min(i + 1, last)]->prefetch();
+        const std::size_t first = i * Group::kLanes;
+        listen(group, first, first + static_cast<std::size_t>(group.agents), u);
+        double* const predictions = next + first * n;
+        if (!partial_sharing::update(shared, group, u, predictions)) plain = false;
+        group.x = predictions;
+      }
+    });
+    plain_ = plain;
+  }
+
+  State<n>* states_ = nullptr;
+  std::vector<std::shared_ptr<Group>> groups_;
+  std::array<Aligned<double>, 2> x_;  // predictions of this sample, and room for those of the next
+  std::size_t side_ = 0;              // which is which
+  std::vector<std::uint8_t> shares_;  // entries that each agent shares at k = 0
+  std::vector<std::uint8_t> now_;     // and at this sample
+  bool plain_ = true;
+};
+
+}  // namespace garrison
