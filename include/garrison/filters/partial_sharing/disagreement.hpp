@@ -10,7 +10,6 @@
 #include "garrison/core/block.hpp"
 #include "garrison/core/clones.hpp"
 #include "garrison/core/types.hpp"
-#include "garrison/runtime/mailroom.hpp"
 
 namespace garrison::partial_sharing {
 
@@ -24,8 +23,9 @@ std::uint8_t shifted(std::uint8_t bits, int shift) {
 /// that were not shared add zero.
 template <int n>
 struct Disagreement {
-  /// x: predictions, agent by agent; `shares`: bits of every agent's entries; u: of agent `begin` first.
-  template <int B>
+  /// x: predictions, agent by agent; `shares`: bits of every agent's entries; `wiring`: agent k hears
+  /// slots[first[k]] .. slots[first[k + 1] - 1]; u: of agent `begin` first.
+  template <int B, class Wiring>
   GARRISON_INLINE static void run(const double* x, const std::uint8_t* shares, Wiring wiring,
                                   std::size_t begin, std::size_t end, double* u) noexcept {
     constexpr int W = block_of(n, std::min(B, 4));

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 #include "garrison/filters/partial_sharing/disagreement.hpp"
 #include "garrison/filters/partial_sharing/filter.hpp"
-#include "garrison/runtime/workers.hpp"
 
 namespace garrison {
 
@@ -56,8 +58,8 @@ class PartialSharing::Together {
   /// Whether messages would carry nothing but what neighbours can read directly.
   bool agreed() const { return plain_; }
 
-  /// One sample on perfect links. `y(k)`: measurements of agent k.
-  template <class Measurements>
+  /// One sample on perfect links. `y(k)`: measurements of agent k; `workers` split ranges of groups.
+  template <class Measurements, class Wiring, class Workers>
   void step(const Gains& g, const Local& any, std::int64_t t, const Measurements& y, Wiring wiring,
             Workers& workers) noexcept {
     const int moved = g.selection.offset(t - 1);
@@ -82,7 +84,7 @@ class PartialSharing::Together {
   }
 
   /// The same from inboxes, after every agent has sensed.
-  template <class Inboxes>
+  template <class Inboxes, class Workers>
   void fuse(const Gains& g, const Local& any, const Inboxes& inbox, Message<n>* out,
             Workers& workers) noexcept {
     each(common(any, g), workers, [&](Group&, std::size_t first, std::size_t end, double* u) {
@@ -95,7 +97,7 @@ class PartialSharing::Together {
 
  private:
   /// `listen(group, first, end, u)` finds u of agents first..end-1; then they are updated.
-  template <class Listen>
+  template <class Workers, class Listen>
   void each(const partial_sharing::Common& shared, Workers& workers, const Listen& listen) noexcept {
     double* const next = x_[side_].data();
     std::atomic<bool> plain{true};
