@@ -5,6 +5,10 @@
 #include <cstdlib>
 #include <utility>
 
+#ifdef __unix__
+#include <unistd.h>
+#endif
+
 #include "garrison/runtime/ordering.hpp"
 
 namespace garrison {
@@ -12,10 +16,17 @@ namespace {
 
 // Rows are sorted by degree inside windows of this many, so that inner loops keep their trip count.
 constexpr std::int32_t kWindow = 256;
-// Networks whose rows fit a second-level cache gain nothing from fused rounds; the rows in flight of larger
-// ones should stay in a part of the third-level cache.
+// Networks whose rows fit a second-level cache gain nothing from fused rounds.
 constexpr std::size_t kFitsAnyway = std::size_t{1} << 20;
-constexpr std::size_t kInFlight = std::size_t{8} << 20;
+
+/// Bytes of rows in flight: half of a large second-level cache, else a part of the third-level cache.
+std::size_t in_flight() {
+#ifdef _SC_LEVEL2_CACHE_SIZE
+  static const long second_level = sysconf(_SC_LEVEL2_CACHE_SIZE);
+  if (second_level >= 1L << 20) return static_cast<std::size_t>(second_level) / 2;
+#endif
+  return std::size_t{8} << 20;
+}
 
 }  // namespace
 
@@ -51,7 +62,7 @@ int ConsensusPlan::rounds_in_flight(int width) const {
   const std::size_t row = static_cast<std::size_t>(width) * 2 * sizeof(double);
   if (order_.size() * row <= kFitsAnyway) return 1;
   return static_cast<int>(
-      std::min<std::size_t>(kInFlight / (row * kWindow * static_cast<std::size_t>(reach_)), 64));
+      std::min<std::size_t>(in_flight() / (row * kWindow * static_cast<std::size_t>(reach_)), 64));
 }
 
 void ConsensusPlan::run(double* x, double* scratch, int width, double alpha, std::span<const double> omega,

@@ -41,6 +41,17 @@ inline void multiply(const double* A, const double* x, double* out, int nn) noex
   }
 }
 
+/// out = x
+template <int n>
+inline void copy(const double* x, double* out, int nn) noexcept {
+  if constexpr (n == Dynamic) {
+    for (int k = 0; k < nn; ++k) out[k] = x[k];
+  } else {
+    constexpr int B = pair_of(n);
+    for (int k = 0; k < n; k += B) *Block<B>::of(out + k) = *Block<B>::of(x + k);
+  }
+}
+
 /// x += factor c
 template <int n>
 inline void add_scaled(double factor, const double* c, double* x, int nn) noexcept {

@@ -55,7 +55,16 @@ constexpr int dimension(const Local& local) {
   return n == Dynamic ? local.states : n;
 }
 
-/// C A x, what agent `local` measures next where the plant is at x: the `expected` of most families.
+/// C x, what agent `local` measures where the plant is at x, noise aside.
+template <int n>
+inline void measurement(const Local& local, const double* x, double* out) noexcept {
+  const int nn = dimension<n>(local);
+  for (int r = 0; r < local.outputs; ++r) {
+    out[r] = 0.0;
+    for (int k = 0; k < nn; ++k) out[r] += local.C[static_cast<std::ptrdiff_t>(r) * nn + k] * x[k];
+  }
+}
+/// C A x, what it measures next: the `expected` of most families.
 template <int n>
 inline void next_measurement(const Local& local, const double* x, double* out) noexcept {
   const int nn = dimension<n>(local);
@@ -82,7 +91,8 @@ inline void next_measurement(const Local& local, const double* x, double* out) n
 /// - Optional: `first_sample` = 0 (default 1) for a family that has a sample at the start; `only_states`, the
 ///   one dimension that it exists for; `control` and `world` for agents with plants of their own
 ///   (core/world.hpp); `detail_names` and `detail` for lists such as sets; `accused_into` in place of
-///   `accused` to build the set when asked.
+///   `accused` to build the set when asked; for engines of large networks `Averages` (runtime/at_once.hpp)
+///   or `Together` (runtime/together.hpp), with the same bits.
 /// - `expected` writes the measurement that the agent predicts for the next step (local.outputs entries),
 ///   `alarm_level` the deviation from it that the agent tolerates there: what an informed attacker knows.
 template <class F, int n>

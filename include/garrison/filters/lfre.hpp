@@ -136,11 +136,7 @@ struct GARRISON_EXPORT Lfre {
   }
   template <int n>
   static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
-    const int nn = dimension<n>(l);
-    for (int r = 0; r < l.outputs; ++r) {
-      out[r] = 0.0;
-      for (int k = 0; k < nn; ++k) out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + k] * s.x[k];
-    }
+    measurement<n>(l, s.x.data(), out);
   }
   template <int n>
   static double alarm_level(const Local&, const Gains&, const State<n>&) noexcept {

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <memory>
 #include <vector>
 
 #include "garrison/core/aligned.hpp"
-#include "garrison/core/block.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
+#include "garrison/runtime/at_once.hpp"
 #include "garrison/runtime/consensus.hpp"
 #include "garrison/runtime/mailroom.hpp"
 #include "garrison/runtime/runner.hpp"
@@ -20,18 +19,6 @@
 #include "garrison/runtime/workers.hpp"
 
 namespace garrison {
-
-/// A family whose rounds only average estimates as long as all agents carry the same side information:
-/// the engine then averages the whole network at once, with the same bits.
-template <class F, int n>
-concept Averages = requires(const Local& l, const typename F::Gains& g, typename F::template State<n>& s,
-                            typename F::template Message<n>& m, const double* y, std::int64_t t) {
-  F::template update<n>(l, g, s, y, t);
-  F::averaging(g).alpha;
-  { F::template averaged<n>(s) } -> std::same_as<double*>;
-  { F::template same_side_information<n>(s, s) } -> std::same_as<bool>;
-  F::template send<n>(s, 0, m);
-};
 
 /// Below this many agents per thread a round is too short to be worth waking another one.
 inline constexpr int kAgentsPerThread = 20000;
@@ -54,8 +41,7 @@ class Engine final : public Runner {
         mail_(network, plan_.order(), model.states()),
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
         states_(static_cast<std::size_t>(model.agents())),
-        average_(states_.size() * static_cast<std::size_t>(model.states())),
-        scratch_(average_.size()),
+        at_once_(std::span<State>(states_), model.states()),
         accused_(model.agents()) {
     position_.resize(states_.size());
     for (const int i : plan_.order()) {
@@ -65,17 +51,17 @@ class Engine final : public Runner {
       for (Eigen::Index r = 0; r < C.rows(); ++r)
         for (Eigen::Index c = 0; c < C.cols(); ++c) rows_.push_back(C(r, c));
     }
-    if constexpr (StepsTogether<F, n>)
-      together_.join(states_.data(), states_.size(), [this](std::size_t k) { return local(k); });
+    if constexpr (StepsTogether<F, n>) together_.join(states_.data(), states_.size(), locals());
   }
 
   void reset(const Matrix& x0, Link* link) override {
     mail_.connect(link);
+    at_once_.forget();
     for (std::size_t k = 0; k < states_.size(); ++k) {
       const Vec<n> start = x0.col(places_[k].id);
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
     }
-    if constexpr (StepsTogether<F, n>) together_.start(*gains_, [this](std::size_t k) { return local(k); });
+    if constexpr (StepsTogether<F, n>) together_.start(*gains_, locals());
     mail_.fill();
     bytes_ = static_cast<std::int64_t>(sizeof(double)) * mail_.numbers_per_round() * F::rounds(*gains_);
     overflows_ = 0;
@@ -84,11 +70,11 @@ class Engine final : public Runner {
   void step(std::int64_t t, const double* y) override {
     if constexpr (Averages<F, n>)
       if (mail_.perfect()) return step_at_once(t, y);
+    at_once_.settle();
+    at_once_.forget();
     if constexpr (StepsTogether<F, n>)
       if (mail_.perfect() && together_.agreed())
-        return together_.step(
-            *gains_, local(0), t, [&](std::size_t k) { return y + places_[k].first_output; }, mail_.wiring(),
-            workers_);
+        return together_.step(*gains_, local(0), t, measured(y), mail_.wiring(), workers_);
     each([&](std::size_t k, Message* out) {
       F::template sense<n>(local(k), *gains_, states_[k], y + places_[k].first_output, t, out[k]);
     });
@@ -96,6 +82,7 @@ class Engine final : public Runner {
   }
 
   void read(const Frame& f) const override {
+    at_once_.settle();
     const std::size_t N = states_.size();
     std::array<double, 32> signals{};
     for (std::size_t k = 0; k < N; ++k) {
@@ -115,6 +102,7 @@ class Engine final : public Runner {
   }
 
   void expected(int agent, double* out) const override {
+    at_once_.settle();
     const std::size_t k = position_[static_cast<std::size_t>(agent)];
     F::template expected<n>(local(k), *gains_, states_[k], out);
   }
@@ -123,11 +111,13 @@ class Engine final : public Runner {
     return F::template alarm_level<n>(local(k), *gains_, states_[k]);
   }
   void control(double* out) const override {
+    at_once_.settle();
     if constexpr (requires(const State& s) { F::template control<n>(s); })
       for (std::size_t k = 0; k < states_.size(); ++k)
         out[static_cast<std::size_t>(places_[k].id)] = F::template control<n>(states_[k]);
   }
   void detail(int agent, std::size_t which, std::vector<double>& out) const override {
+    at_once_.settle();
     const std::size_t k = position_[static_cast<std::size_t>(agent)];
     if constexpr (requires(const State& s) { F::template detail<n>(local(k), *gains_, s, which, out); })
       F::template detail<n>(local(k), *gains_, states_[k], which, out);
@@ -158,6 +148,21 @@ class Engine final : public Runner {
     const Place& p = places_[k];
     return {p.id,     model_.agents(),   model_.states(),       p.outputs,
             p.degree, model_.A().data(), rows_.data() + p.first};
+  }
+
+  auto locals() const {
+    return [this](std::size_t k) { return local(k); };
+  }
+  auto measured(const double* y) const {
+    return [this, y](std::size_t k) { return y + places_[k].first_output; };
+  }
+
+  void step_at_once(std::int64_t t, const double* y) {
+    const auto [finite, averaged] = at_once_.step(plan_, *gains_, locals(), t, measured(y), workers_);
+    if (averaged) return;
+    at_once_.settle();
+    each([&](std::size_t k, Message* out) { F::template send<n>(states_[k], 0, out[k]); });
+    rounds(t, finite);
   }
 
   void rounds(std::int64_t t, bool finite) {
@@ -193,84 +198,17 @@ class Engine final : public Runner {
     return true;
   }
 
-  static constexpr std::size_t kAhead = 16;  // agents, about 200 ns
-
-  struct Sensed {
-    bool finite;
-    bool alike;
-  };
-  /// Agents begin..end-1 sense, and their estimates go to `average_`.
-  __attribute__((flatten)) Sensed sense_part(std::int64_t t, const double* y, std::size_t begin,
-                                             std::size_t end) {
-    const auto nn = static_cast<std::size_t>(dimension<n>(local(begin)));
-    std::array<double, n == Dynamic ? 1 : n> zeros{};  // turns into NaN when an entry is not finite
-    bool finite = true;
-    bool alike = true;
-    for (std::size_t k = begin; k < end; ++k) {
-      // Measurements are in order of public ids, all over the place for the hardware's own prefetcher.
-      const std::size_t ahead = std::min(k + kAhead, end - 1);
-      __builtin_prefetch(y + places_[ahead].first_output);
-      for (std::size_t line = 0; line < sizeof(State); line += 64)
-        __builtin_prefetch(reinterpret_cast<const char*>(&states_[ahead]) + line, 1);
-      State& s = states_[k];
-      F::template update<n>(local(k), *gains_, s, y + places_[k].first_output, t);
-      alike = alike && F::template same_side_information<n>(states_[begin], s);
-      const double* x = F::template averaged<n>(s);
-      if constexpr (n == Dynamic)
-        finite = finite && F::template estimate<n>(s).allFinite();
-      else
-        add_scaled<n>(0.0, x, zeros.data(), n);
-      std::copy_n(x, nn, average_.data() + k * nn);
-    }
-    for (const double zero : zeros) finite = finite && zero == 0.0;
-    return {finite, alike};
-  }
-
-  /// One pass over the agents gathers their estimates; messages are written only if the rounds need them.
-  void step_at_once(std::int64_t t, const double* y) {
-    const auto N = static_cast<std::int64_t>(states_.size());
-    const auto nn = static_cast<std::size_t>(dimension<n>(local(0)));
-    std::atomic<bool> finite{true};
-    std::atomic<bool> alike{true};
-    workers_.split(N, [&](std::int64_t begin, std::int64_t end, int) {
-      const auto first = static_cast<std::size_t>(begin);
-      const Sensed sensed = sense_part(t, y, first, static_cast<std::size_t>(end));
-      if (!sensed.finite) finite = false;
-      if (!sensed.alike) alike = false;
-    });
-    for (int part = 1; part < workers_.threads(); ++part)
-      if (!F::template same_side_information<n>(states_.front(),
-                                                states_[static_cast<std::size_t>(workers_.begin(N, part))]))
-        alike = false;
-    if (finite && alike) {
-      const auto [alpha, omega] = F::averaging(*gains_);
-      plan_.run(average_.data(), scratch_.data(), model_.states(), alpha, omega, F::rounds(*gains_),
-                &workers_);
-      workers_.split(N, [&](std::int64_t begin, std::int64_t end, int) {
-        // Backwards: the last rows are still in the cache, and the next step begins with the first ones.
-        for (auto k = static_cast<std::size_t>(end); k-- > static_cast<std::size_t>(begin);) {
-          __builtin_prefetch(F::template averaged<n>(states_[k < kAhead ? 0 : k - kAhead]), 1);
-          std::copy_n(average_.data() + k * nn, nn, F::template averaged<n>(states_[k]));
-        }
-      });
-      return;
-    }
-    each([&](std::size_t k, Message* all) { F::template send<n>(states_[k], 0, all[k]); });
-    rounds(t, finite);
-  }
-
   std::shared_ptr<const typename F::Gains> gains_;
   Model model_;
   ConsensusPlan plan_;
   Mailroom<Message> mail_;
   Workers workers_;
   Aligned<State> states_;
+  [[no_unique_address]] mutable typename detail::AtOnceOf<F, n>::type at_once_;
   [[no_unique_address]] typename detail::TogetherOf<F, n>::type together_;
   std::vector<Place> places_;
   Aligned<double> rows_;  // of all C_i
   std::vector<std::size_t> position_;
-  Aligned<double> average_;
-  Aligned<double> scratch_;
   std::int64_t overflows_ = 0;
   std::int64_t bytes_ = 0;
   mutable AgentSet accused_;  // of families that build it when asked

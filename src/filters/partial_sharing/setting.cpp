@@ -143,7 +143,7 @@ LocalGains LocalRecursion::step(double* change) {
   for (int r = 0; r < q; ++r) recursion.use_row(r, One::of(Hw_.col(r).data()));
   explicit_gains<Dynamic>(recursion, setting_.gamma, m, q, scratch_.data(), Kw_.data(), packed_G_.data(), 1);
   One::type moved{};
-  recursion.predict(setting_.A.data(), setting_.Q.data(), P, 1, moved == moved, moved);
+  recursion.predict(setting_.A.data(), setting_.Q.data(), P, 1, One::type{} + kLargestVariance, moved);
   if (change != nullptr) *change = moved[0];
   LocalGains g;
   g.P = P_;

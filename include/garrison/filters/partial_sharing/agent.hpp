@@ -67,7 +67,8 @@ void PartialSharing::fuse(const Local& l, const Gains& g, State<n>& s, const Inb
                           Message<n>& m) noexcept {
   double* const u = s.group->room_for_one();
   disagreement<n>(s, inbox, u);
-  partial_sharing::update(common(l, g), *s.group, u, s.group->x);
+  double squares[partial_sharing::Group<n>::kLanes]{};  // of no use to one agent
+  partial_sharing::update(common(l, g), *s.group, u, s.group->x, squares);
   m.t = -1;  // nothing to say before the next sample
 }
 

@@ -14,11 +14,8 @@
 #pragma once
 
 #include <cmath>
-#include <utility>
 
-#include "garrison/core/block.hpp"
-#include "garrison/core/clones.hpp"
-#include "garrison/core/types.hpp"
+#include "garrison/filters/partial_sharing/lanes.hpp"
 
 namespace garrison::partial_sharing {
 
@@ -28,21 +25,6 @@ inline constexpr double kLargestVariance = 1e150;
 inline constexpr double kConverged = 2e-15;
 /// Pivots below this have no reciprocal.
 inline constexpr double kLeastPivot = 1e-290;
-
-/// Where entry (i, j), j <= i, of a symmetric or lower triangular matrix is; also the number of entries
-/// before row i.
-constexpr int packed(int i, int j = 0) { return i * (i + 1) / 2 + j; }
-
-/// `body(i)` for i = 0..m-1, unrolled where n is known.
-template <int n, class Body>
-GARRISON_INLINE void for_each_state(int m, const Body& body) {
-  if constexpr (n == Dynamic)
-    for (int i = 0; i < m; ++i) body(i);
-  else
-    [&]<int... i>(std::integer_sequence<int, i...>) GARRISON_INLINED {
-      (body(std::integral_constant<int, i>{}), ...);
-    }(std::make_integer_sequence<int, n>{});
-}
 
 /// One step of B agents. Matrices are packed; entries of one agent are `stride` values apart.
 template <int n, int B>
@@ -128,11 +110,9 @@ class Recursion {
     });
   }
 
-  /// P(k) -> P(k+1) for agents that are `live`, all ones in their lanes. `change`: how much P changed,
-  /// relative to its largest entry; 0 also when it would have grown beyond kLargestVariance and was left as
-  /// it is. A, Q: column by column.
-  template <class Mask>
-  GARRISON_INLINE void predict(const double* A, const double* Q, V* P, int stride, const Mask& live,
+  /// P(k) -> P(k+1) where its trace is below `limit`. `change`: how much P changed, relative to its largest
+  /// entry; 0 also where it was left as it is. A, Q: column by column.
+  GARRISON_INLINE void predict(const double* A, const double* Q, V* P, int stride, const V& limit,
                                V& change) {
     V* const next = c;
     V moved{};
@@ -155,13 +135,12 @@ class Recursion {
       size = size < diagonal ? diagonal : size;
       trace += diagonal;
     }
-    const auto moves = live & (trace < kLargestVariance);
     for (int k = 0; k < packed(m()); ++k) {
       const V old = P[k * stride];
-      P[k * stride] = moves ? next[k] : old;
+      P[k * stride] = trace < limit ? next[k] : old;
     }
-    const auto counts = moves & (size > 0.0);
-    change = counts ? moved / size : V{};
+    const V relative = size > 0.0 ? moved / size : V{};
+    change = trace < limit ? relative : V{};
   }
 
  private:

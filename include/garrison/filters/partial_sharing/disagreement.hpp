@@ -28,10 +28,11 @@ struct Disagreement {
   template <int B, class Wiring>
   GARRISON_INLINE static void run(const double* x, const std::uint8_t* shares, Wiring wiring,
                                   std::size_t begin, std::size_t end, double* u) noexcept {
-    constexpr int W = block_of(n, std::min(B, 4));
+    constexpr int W = block_of(n, B);
     using V = typename Block<W>::type;
-    using Mask = decltype(V{} < V{});
-    static constexpr auto kMasks = masks<W>();
+    using Bits = decltype(V{} < V{});
+    Bits own_bit{};
+    for (int a = 0; a < W; ++a) own_bit[a] = 1 << a;
     for (std::size_t k = begin; k < end; ++k, u += n) {
       V own[n / W];
       V sum[n / W];
@@ -41,29 +42,15 @@ struct Disagreement {
       }
       for (std::size_t e = wiring.first[k]; e < wiring.first[k + 1]; ++e) {
         const std::size_t j = wiring.slots[e];
-        const int bits = shares[j];
+        const std::int64_t bits = shares[j];
         for (int c = 0; c < n / W; ++c) {
           const V apart = *Block<W>::of(x + j * n + c * W) - own[c];
-          const auto& shared = *reinterpret_cast<const Mask*>(kMasks.row[(bits >> (c * W)) % (1 << W)]);
-          sum[c] += shared ? apart : V{};
+          const Bits shared = (Bits{} + (bits >> (c * W))) & own_bit;
+          sum[c] += shared != 0 ? apart : V{};
         }
       }
       for (int c = 0; c < n / W; ++c) *Block<W>::of(u + c * W) = sum[c];
     }
-  }
-
- private:
-  /// Every choice of W entries, all ones where chosen.
-  template <int W>
-  struct Masks {
-    alignas(32) std::int64_t row[1 << W][W];
-  };
-  template <int W>
-  static constexpr Masks<W> masks() {
-    Masks<W> all{};
-    for (int bits = 0; bits < 1 << W; ++bits)
-      for (int a = 0; a < W; ++a) all.row[bits][a] = (bits >> a) % 2 == 1 ? -1 : 0;
-    return all;
   }
 };
 

@@ -145,12 +145,7 @@ struct GARRISON_EXPORT PartialSharing {
   }
   template <int n>
   static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
-    const int nn = dimension<n>(l);
-    const double* const x = s.group->prediction(s.lane);
-    for (int r = 0; r < l.outputs; ++r) {
-      out[r] = 0.0;
-      for (int i = 0; i < nn; ++i) out[r] += l.C[static_cast<std::ptrdiff_t>(r) * nn + i] * x[i];
-    }
+    measurement<n>(l, s.group->prediction(s.lane), out);
   }
   template <int n>
   static double alarm_level(const Local&, const Gains&, const State<n>&) noexcept {

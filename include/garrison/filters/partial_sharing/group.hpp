@@ -21,8 +21,9 @@ template <int n>
 struct Group {
   static constexpr int kLanes = n == Dynamic ? 1 : kGroup;
 
-  /// `predictions`: room for those of all lanes, agent by agent; a group of one has its own.
-  Group(int states, int most_outputs, double* predictions = nullptr)
+  /// `room`: `size` doubles on a cache line, and `predictions`: room for those of all lanes, agent by agent.
+  /// A group of one has its own.
+  Group(int states, int most_outputs, double* room = nullptr, double* predictions = nullptr)
       : m(states),
         q(most_outputs),
         G(0),
@@ -33,30 +34,29 @@ struct Group {
         z(y + q),
         P(z + m),
         scratch(P + packed(m)),
-        room(static_cast<std::size_t>((scratch + needed(m, q)) * kLanes)),
-        own(predictions == nullptr ? static_cast<std::size_t>(2 * m) : 0),
-        x(predictions == nullptr ? own.data() : predictions) {}
+        own_(room == nullptr ? size(m, q) + static_cast<std::size_t>(2 * m) : 0),
+        room_(room == nullptr ? own_.data() : room),
+        x(predictions == nullptr ? room_ + size(m, q) : predictions) {}
   Group(const Group&) = delete;
   Group& operator=(const Group&) = delete;
 
   /// Number `k` of an array, e.g. (C, r * m + k), in all lanes.
-  double* at(int array, int k = 0) { return room.data() + static_cast<std::ptrdiff_t>(array + k) * kLanes; }
+  double* at(int array, int k = 0) { return room_ + static_cast<std::ptrdiff_t>(array + k) * kLanes; }
   double& at(int array, int k, int lane) { return at(array, k)[lane]; }
   /// Prediction of the next sample of one agent.
   double* prediction(int lane) const { return x + static_cast<std::ptrdiff_t>(lane) * m; }
 
-  /// Asks for the memory that the next update needs. The hardware does not see one group after the other.
-  void prefetch() {
-    const bool still = frozen[0];
-    const char* const end = reinterpret_cast<const char*>(at(still ? P : scratch));
-    for (const char* line = reinterpret_cast<const char*>(at(still ? G : C)); line < end; line += 64)
-      __builtin_prefetch(line, 1);
-  }
   /// Of a group of one: m numbers for whoever updates it.
-  double* room_for_one() { return own.data() + m; }
+  double* room_for_one() { return x + m; }
 
   /// Few outputs at a known dimension work on the stack.
   static constexpr bool on_stack(int m, int q) { return n != Dynamic && q <= m; }
+  /// Doubles of a group.
+  static std::size_t size(int m, int q) {
+    const int kept = 2 * packed(m) + 2 * q * m + packed(q) + q + m;
+    const int scratch = Recursion<n, 1>::scratch(m) + q * Recursion<n, 1>::scratch_per_row(m) + 4 * m + q;
+    return static_cast<std::size_t>((kept + (on_stack(m, q) ? 0 : scratch)) * kLanes);
+  }
 
   const int m;
   const int q;  ///< most outputs of an agent
@@ -69,19 +69,17 @@ struct Group {
   const int z;  ///< estimate
   const int P;  ///< P(k+1)
   const int scratch;
-  Aligned<double> room;
-  Aligned<double> own;  ///< of a group of one
-  double* x;            ///< predictions of the next sample, agent by agent
+
+ private:
+  Aligned<double> own_;  // of a group of one
+  double* room_;
+
+ public:
+  double* x;  ///< predictions of the next sample, agent by agent
   int agents = 1;
   std::array<int, kLanes> outputs{};  ///< of each agent; set by whoever makes a group of several
   std::array<bool, kLanes> frozen{};
   bool started = false;
-
- private:
-  static int needed(int m, int q) {
-    return on_stack(m, q) ? 0
-                          : Recursion<n, 1>::scratch(m) + q * Recursion<n, 1>::scratch_per_row(m) + 4 * m + q;
-  }
 };
 
 }  // namespace garrison::partial_sharing

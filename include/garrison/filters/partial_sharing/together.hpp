@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -27,18 +28,24 @@ class PartialSharing::Together {
   void join(State<n>* states, std::size_t count, const Locals& local) {
     states_ = states;
     for (auto& side : x_) side.resize(count * n);
-    for (std::size_t first = 0; first < count; first += Group::kLanes) {
-      const std::size_t end = std::min(first + Group::kLanes, count);
-      int outputs = 0;
-      for (std::size_t k = first; k < end; ++k) outputs = std::max(outputs, local(k).outputs);
-      const auto group = std::make_shared<Group>(n, outputs, x_[0].data() + first * n);
-      group->agents = static_cast<int>(end - first);
-      for (std::size_t k = first; k < end; ++k) {
-        states[k].group = group;
-        states[k].lane = static_cast<int>(k - first);
-        group->outputs[k - first] = local(k).outputs;
+    std::vector<int> most((count + Group::kLanes - 1) / Group::kLanes);  // outputs of an agent, by group
+    for (std::size_t k = 0; k < count; ++k)
+      most[k / Group::kLanes] = std::max(most[k / Group::kLanes], local(k).outputs);
+    std::size_t size = 0;
+    for (const int q : most) size += Group::size(n, q);
+    room_.resize(size);
+    double* room = room_.data();
+    for (std::size_t i = 0; i < most.size(); ++i) {
+      const std::size_t first = i * Group::kLanes;
+      Group& group = groups_.emplace_back(n, most[i], room, x_[0].data() + first * n);
+      room += Group::size(n, most[i]);
+      group.agents = static_cast<int>(std::min<std::size_t>(Group::kLanes, count - first));
+      for (int lane = 0; lane < group.agents; ++lane) {
+        const std::size_t k = first + static_cast<std::size_t>(lane);
+        states[k].group = std::shared_ptr<Group>(std::shared_ptr<void>(), &group);  // ours, not its own
+        states[k].lane = lane;
+        group.outputs[static_cast<std::size_t>(lane)] = local(k).outputs;
       }
-      groups_.push_back(group);
     }
     shares_.resize(count);
     now_.resize(count);
@@ -51,8 +58,9 @@ class PartialSharing::Together {
       shares_[k] = 0;
       for (const int a : g.selection.entries(local(k).id)) shares_[k] |= static_cast<std::uint8_t>(1 << a);
     }
-    plain_ = std::all_of(x_[side_].begin(), x_[side_].end(),
-                         [](double x) { return std::abs(x) < partial_sharing::kPlain; });
+    double squares = 0.0;
+    for (const double x : x_[side_]) squares += x * x;
+    plain_ = squares < partial_sharing::kPlain;
   }
 
   /// Whether messages would carry nothing but what neighbours can read directly.
@@ -103,23 +111,24 @@ class PartialSharing::Together {
     std::atomic<bool> plain{true};
     workers.split(static_cast<std::int64_t>(groups_.size()), [&](std::int64_t begin, std::int64_t end, int) {
       alignas(64) double u[Group::kLanes * n];
+      alignas(64) double squares[Group::kLanes]{};
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-        Group& group = *groups_[i];
-        const std::size_t last = static_cast<std::size_t>(end) - 1;
-        __builtin_prefetch(groups_[std::min(i + 2, last)].get());
-        groups_[std::min(i + 1, last)]->prefetch();
+        Group& group = groups_[i];
         const std::size_t first = i * Group::kLanes;
         listen(group, first, first + static_cast<std::size_t>(group.agents), u);
         double* const predictions = next + first * n;
-        if (!partial_sharing::update(shared, group, u, predictions)) plain = false;
+        partial_sharing::update(shared, group, u, predictions, squares);
         group.x = predictions;
       }
+      for (const double sum : squares)
+        if (!(sum < partial_sharing::kPlain)) plain = false;
     });
     plain_ = plain;
   }
 
   State<n>* states_ = nullptr;
-  std::vector<std::shared_ptr<Group>> groups_;
+  Aligned<double> room_;  // of all groups, one after the other
+  std::deque<Group> groups_;
   std::array<Aligned<double>, 2> x_;  // predictions of this sample, and room for those of the next
   std::size_t side_ = 0;              // which is which
   std::vector<std::uint8_t> shares_;  // entries that each agent shares at k = 0

@@ -7,8 +7,9 @@
 
 namespace garrison::partial_sharing {
 
-/// Predictions below this are plain: no two of them are kHuge apart.
-inline constexpr double kPlain = kHuge / 4;
+/// Agents whose predictions have squares that sum to less than this are plain: no two of these numbers are
+/// kHuge apart.
+inline constexpr double kPlain = kHuge * kHuge / 16;
 
 /// What all agents have in common.
 struct Common {
@@ -22,12 +23,12 @@ struct Common {
 template <int n>
 struct Update {
   /// `u`: sum_j S_j (xbar_j - xhat_i), agent by agent. `next`: where the predictions of the next sample go,
-  /// agent by agent; may be the group's own. `plain` turns false when one of them is huge or not a number.
+  /// agent by agent; may be the group's own. `squares`, a value per lane, grows by the sum of theirs.
   template <int B>
   GARRISON_INLINE static void run(const Common* common, Group<n>* group, const double* u, double* next,
-                                  bool* plain) noexcept {
+                                  double* squares) noexcept {
     for (int first = 0; first < group->agents; first += B)
-      Lanes<B>(*common, *group, first).run(u, next, plain);
+      Lanes<B>(*common, *group, first).run(u, next, Block<B>::of(squares + first));
     group->started = true;
   }
 
@@ -40,7 +41,6 @@ template <int n>
 template <int B>
 class Update<n>::Lanes {
   using V = typename Block<B>::type;
-  using Mask = decltype(V{} < V{});
   static constexpr int kStride = Group<n>::kLanes / B;
   static constexpr int N = n == Dynamic ? 1 : n;
 
@@ -48,7 +48,7 @@ class Update<n>::Lanes {
   GARRISON_INLINE Lanes(const Common& common, Group<n>& group, int first)
       : common_(common), group_(group), first_(first), used_(std::min(B, group.agents - first)) {}
 
-  GARRISON_INLINE void run(const double* all_u, double* next, bool* plain) noexcept {
+  GARRISON_INLINE void run(const double* all_u, double* next, V* squares) noexcept {
     const int m = states();
     const int q = group_.q;
     const bool few = Group<n>::on_stack(m, q);
@@ -63,18 +63,14 @@ class Update<n>::Lanes {
     V* const row = e + q;
     V* const own = row + m;
     V* const rows = own + Kernel::scratch(m);
-    load(group_.x, x);
-    load(all_u, u);
+    const auto skipped = static_cast<std::ptrdiff_t>(first_) * m;
+    load_lanes<n, B>(group_.x + skipped, m, used_, x);
+    load_lanes<n, B>(all_u + skipped, m, used_, u);
     innovations(x, e);
 
-    Mask live{};
     int frozen = 0;
-    for (int lane = 0; lane < used_; ++lane) {
-      const bool still = group_.frozen[static_cast<std::size_t>(first_ + lane)];
-      live[lane] = still ? 0 : -1;
-      frozen += still ? 1 : 0;
-    }
-    if (frozen > 0) apply_steady(x, u, e, frozen == used_ ? x : steady);
+    for (int lane = 0; lane < used_; ++lane) frozen += is_frozen(lane) ? 1 : 0;
+    if (frozen > 0) apply_steady(x, u, e, steady);
     V change{};
     if (frozen < used_) {
       Kernel recursion(own, rows, m, q);
@@ -85,31 +81,24 @@ class Update<n>::Lanes {
         recursion.use_row(r, row);
       }
       recursion.correct(e, u, common_.gamma, x);
-      recursion.predict(common_.A, common_.Q, P, kStride, live, change);
+      V limit{};  // of the trace; nothing is below 0
+      for (int lane = 0; lane < used_; ++lane) limit[lane] = is_frozen(lane) ? 0.0 : kLargestVariance;
+      recursion.predict(common_.A, common_.Q, P, kStride, limit, change);
       if (frozen > 0)
-        for (int i = 0; i < m; ++i) x[i] = live ? x[i] : steady[i];
+        for (int i = 0; i < m; ++i) x[i] = limit > 0.0 ? x[i] : steady[i];
     }
-    predict(x, next, plain);
+    predict(frozen == used_ ? steady : x, next, squares);
     if (common_.freeze && frozen < used_)
       for (int lane = 0; lane < used_; ++lane)
-        if (live[lane] != 0 && change[lane] <= kConverged) freeze<n>(common_.gamma, group_, first_ + lane);
+        if (!is_frozen(lane) && change[lane] <= kConverged) freeze<n>(common_.gamma, group_, first_ + lane);
   }
 
  private:
   GARRISON_INLINE int states() const { return n == Dynamic ? group_.m : n; }
-  GARRISON_INLINE V* array(int which) { return Block<B>::of(group_.at(which) + first_); }
-
-  /// Numbers agent by agent -> a lane per agent. Idle lanes repeat the last agent.
-  GARRISON_INLINE void load(const double* from, V* to) const {
-    const double* agent[B];
-    for (int lane = 0; lane < B; ++lane)
-      agent[lane] = from + static_cast<std::ptrdiff_t>(first_ + std::min(lane, used_ - 1)) * states();
-    for (int i = 0; i < states(); ++i) {
-      V all{};
-      for (int lane = 0; lane < B; ++lane) all[lane] = agent[lane][i];
-      to[i] = all;
-    }
+  GARRISON_INLINE bool is_frozen(int lane) const {
+    return group_.frozen[static_cast<std::size_t>(first_ + lane)];
   }
+  GARRISON_INLINE V* array(int which) { return Block<B>::of(group_.at(which) + first_); }
 
   /// e = W (y - H xhat), missing entries 0; leaves the innovations in y.
   GARRISON_INLINE void innovations(const V* x, V* e) {
@@ -120,9 +109,9 @@ class Update<n>::Lanes {
     for (int r = 0; r < group_.q; ++r) {
       V innovation = y[r * kStride];
       for (int k = 0; k < m; ++k) innovation -= C[(r * m + k) * kStride] * x[k];
-      const auto there = (innovation < kHuge) & (innovation > -kHuge);
-      y[r * kStride] = there ? innovation : V{} + kNaN;
-      e[r] = there ? innovation : V{};
+      const V square = innovation * innovation;
+      y[r * kStride] = square < kHuge * kHuge ? innovation : V{} + kNaN;
+      e[r] = square < kHuge * kHuge ? innovation : V{};
     }
     for (int r = group_.q; r-- > 0;) {  // backwards: W is lower triangular, in place
       V sum{};
@@ -148,33 +137,41 @@ class Update<n>::Lanes {
     const V* const G = array(group_.G);
     const V* const K = array(group_.K);
     const int m = states();
-    for_each_state<n>(m, [&](auto i) GARRISON_INLINED {
-      V sum = x[i];
-      for (int a = 0; a < m; ++a) sum += G[(a < i ? packed(i, a) : packed(a, i)) * kStride] * u[a];
-      for (int r = 0; r < group_.q; ++r) sum += K[(r * m + i) * kStride] * e[r];
-      out[i] = sum;
+    V fixed[N];  // in registers: the compiler takes `out` for a place where G might be
+    V* const z = n == Dynamic ? out : fixed;
+    for (int i = 0; i < m; ++i) z[i] = x[i];
+    for_each_state<n>(m, [&](auto a) GARRISON_INLINED {
+      z[a] += G[packed(a, a) * kStride] * u[a];
+      for_each_state<n>(m, [&](auto i) GARRISON_INLINED {
+        if (i <= a) return;
+        const V entry = G[packed(i, a) * kStride];
+        z[i] += entry * u[a];
+        z[a] += entry * u[i];
+      });
     });
+    for (int r = 0; r < group_.q; ++r)
+      for_each_state<n>(m, [&](auto i) GARRISON_INLINED { z[i] += K[(r * m + i) * kStride] * e[r]; });
+    for (int i = 0; i < m; ++i) out[i] = z[i];
   }
 
   /// z, and A z agent by agent.
-  GARRISON_INLINE void predict(V* z, double* next, bool* plain) {
+  GARRISON_INLINE void predict(V* z, double* next, V* squares) {
     V* const kept = array(group_.z);
     const double* const A = common_.A;
     const int m = states();
-    double spare[B * N];  // idle lanes have no place in `next`
-    double* const all = next + static_cast<std::ptrdiff_t>(first_) * m;
-    double* const to = n == Dynamic || used_ == B ? all : spare;
-    for (int i = 0; i < m; ++i) z[i] += 0.0;  // rows of zeros may have changed the sign of a zero
-    Mask is_plain = z[0] == z[0];
+    V fixed[N];
+    V* const moved = n == Dynamic ? kept : fixed;  // one lane then: agent by agent is the same
+    for (int i = 0; i < m; ++i) z[i] += 0.0;       // rows of zeros may have changed the sign of a zero
+    V sum_of_squares{};
     for_each_state<n>(m, [&](auto i) GARRISON_INLINED {
       V sum = A[i] * z[0];
       for (int k = 1; k < m; ++k) sum += A[k * m + i] * z[k];
-      is_plain &= (sum < kPlain) & (sum > -kPlain);
-      kept[i * kStride] = z[i];
-      for (int lane = 0; lane < B; ++lane) to[lane * m + i] = sum[lane];
+      sum_of_squares += sum * sum;
+      moved[i] = sum;
     });
-    if (to != all) std::copy_n(spare, used_ * m, all);
-    for (int lane = 0; lane < used_; ++lane) *plain = *plain && is_plain[lane] != 0;
+    store_lanes<n, B>(moved, m, used_, next + static_cast<std::ptrdiff_t>(first_) * m);
+    for (int i = 0; i < m; ++i) kept[i * kStride] = z[i];
+    *squares += sum_of_squares;
   }
 
   const Common& common_;
@@ -183,17 +180,15 @@ class Update<n>::Lanes {
   const int used_;
 };
 
-/// One sample of a group: see Update. Returns whether all predictions are plain.
+/// One sample of a group: see Update.
 template <int n>
-bool update(const Common& common, Group<n>& group, const double* u, double* next) noexcept {
-  bool plain = true;
+void update(const Common& common, Group<n>& group, const double* u, double* next, double* squares) noexcept {
   if constexpr (n == Dynamic)
-    Update<n>::template run<1>(&common, &group, u, next, &plain);
+    Update<n>::template run<1>(&common, &group, u, next, squares);
   else if constexpr (n == 4 || n == 8)  // every instruction set compiles it once more
-    run_widest<Update<n>>(&common, &group, u, next, &plain);
+    run_widest<Update<n>>(&common, &group, u, next, squares);
   else
-    Update<n>::template run<2>(&common, &group, u, next, &plain);
-  return plain;
+    Update<n>::template run<2>(&common, &group, u, next, squares);
 }
 
 }  // namespace garrison::partial_sharing

@@ -140,19 +140,22 @@ struct GARRISON_EXPORT Saturation {
   template <int n>
   static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
                     Message<n>& m) noexcept {
-    update(l, g, s, y, t);
-    send(s, 0, m);
-  }
-
-  /// `sense` without its message, for drivers that average the whole network at once.
-  template <int n>
-  static void update(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t) noexcept {
-    advance_bounds(g, s, t);
     const int nn = dimension<n>(l);
     double on_stack[n == Dynamic ? 1 : n];
     double* const prediction = n == Dynamic ? s.prediction.get() : on_stack;
     multiply<n>(l.A, s.x.data(), prediction, nn);
-    for (int k = 0; k < nn; ++k) s.x[k] = prediction[k];
+    update(l, g, s, y, t, prediction, s.x.data());
+    send(s, 0, m);
+  }
+
+  /// `sense` from A xhat_i(t-1) on and without its message, for drivers that average the whole network at
+  /// once: they keep the estimates themselves.
+  template <int n>
+  static void update(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
+                     const double* prediction, double* estimate) noexcept {
+    advance_bounds(g, s, t);
+    const int nn = dimension<n>(l);
+    copy<n>(prediction, estimate, nn);
     const bool proved = g.detector && s.proved.contains(l.id);
     const bool informed = knows_all(g, s);
     const double beta = beta_now(g, s);
@@ -182,11 +185,11 @@ struct GARRISON_EXPORT Saturation {
         limited += std::abs(h) > beta ? 1 : 0;
         ++used;
       }
-      add_scaled<n>(injected, c, s.x.data(), nn);
+      add_scaled<n>(injected, c, estimate, nn);
     }
     if (accused) {
       // Nothing of an accused sensor is used, even if some of its outputs look harmless.
-      std::copy_n(prediction, nn, s.x.data());
+      copy<n>(prediction, estimate, nn);
       s.proved.insert(l.id);
     }
     s.verdict = proved || accused ? Verdict::attacked

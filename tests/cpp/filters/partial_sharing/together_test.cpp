@@ -200,8 +200,10 @@ TEST_CASE("narrow vectors give the bits of wide ones") {
   const Common common{A.data(), Q.data(), 0.1, true};
   Matrix x[2];
   x[0] = x[1] = test::normal_matrix(rng, m, kGroup);
-  Group<m> narrow(m, 3, x[0].data());
-  Group<m> wide(m, 3, x[1].data());
+  Aligned<double> room[2];
+  for (auto& each : room) each.resize(Group<m>::size(m, 3));
+  Group<m> narrow(m, 3, room[0].data(), x[0].data());
+  Group<m> wide(m, 3, room[1].data(), x[1].data());
   for (Group<m>* group : {&narrow, &wide}) {
     group->agents = kGroup - 1;
     test::Rng same(11);
@@ -216,10 +218,12 @@ TEST_CASE("narrow vectors give the bits of wide ones") {
     const Matrix u = test::normal_matrix(rng, m, kGroup);
     for (Group<m>* group : {&narrow, &wide})
       for (int r = 0; r < 3; ++r) std::copy_n(Vector(y.row(r)).data(), kGroup, group->at(group->y, r));
-    bool plain = true;
-    Update<m>::run<2>(&common, &narrow, u.data(), x[0].data(), &plain);
-    CHECK(update(common, wide, u.data(), x[1].data()));
-    CHECK(plain);
+    Vector squares[2] = {Vector::Zero(kGroup), Vector::Zero(kGroup)};
+    Update<m>::run<2>(&common, &narrow, u.data(), x[0].data(), squares[0].data());
+    update(common, wide, u.data(), x[1].data(), squares[1].data());
+    const Vector expected = x[0].leftCols(kGroup - 1).colwise().squaredNorm();
+    CHECK(squares[0].head(kGroup - 1).isApprox(expected, 1e-14));
+    CHECK(squares[0] == squares[1]);
     CHECK(x[0] == x[1]);
     CHECK(narrow.frozen == wide.frozen);
   }
