@@ -35,9 +35,8 @@ std::string class_doc() {
 template <class F>
 struct HandleOf : FilterHandle {};
 
-template <class F, class... T, std::size_t... I>
-void bind_filter(py::module_& m, const char* name,
-                 [[maybe_unused]] const std::tuple<Field<typename F::Params, T>...>& fields,
+template <class F, class... P, class... T, std::size_t... I>
+void bind_filter(py::module_& m, const char* name, [[maybe_unused]] const std::tuple<Field<P, T>...>& fields,
                  std::index_sequence<I...>) {
   const static std::string doc = class_doc<F>();
   py::class_<HandleOf<F>, FilterHandle> bound(m, name, doc.c_str());

@@ -234,12 +234,12 @@ class Saturation(Filter):
     threshold: largest innovation that is used in full; inf = never saturate. May be left out with adaptive = true [measurement], > 0
     rounds: consensus rounds per sample [1], >= 0, <= 1e+06
     step: consensus step; left out: 2/(lambda_2 + lambda_max) [1], >= 0
+    chebyshev: Chebyshev-filtered rounds: stronger contraction from the same messages
     attacked: most sensors attacked (or missing) at a time; enters bound and detector [agents], >= 0
     initial_error: bound on the distance of the common initial estimate from the state; giving it asks for run-time error bounds [state], > 0
     detector: Algorithm 2: prove and isolate attacked sensors (their set must not change over time)
     detector_index: which count of proved sensors enters rhobar(t): "t" = d_i(t-1) as printed, "t+1" = d_i(t), sharper and as sound
     adaptive: let the threshold follow the known bound on honest innovations (our notes; needs initial_error)
-    chebyshev: Chebyshev-filtered rounds: stronger contraction from the same messages
     accuse_missing: detector: a missing (NaN) measurement counts as proof of attack
     """
     def __init__(
@@ -248,12 +248,12 @@ class Saturation(Filter):
         threshold: typing.SupportsFloat | typing.SupportsIndex = ...,
         rounds: typing.SupportsInt | typing.SupportsIndex = 3,
         step: typing.SupportsFloat | typing.SupportsIndex = ...,
+        chebyshev: bool = False,
         attacked: typing.SupportsInt | typing.SupportsIndex = 0,
         initial_error: typing.SupportsFloat | typing.SupportsIndex = ...,
         detector: bool = False,
         detector_index: str = "t",
         adaptive: bool = False,
-        chebyshev: bool = False,
         accuse_missing: bool = False,
     ) -> None: ...
 

@@ -51,7 +51,7 @@ def array(value: Any) -> Any:
     """Nested lists of such numbers as an array; anything else unchanged."""
     if isinstance(value, list):
         try:
-            return np.array(_numbers(value), dtype=float)
+            return np.array(_decoded(value), dtype=float)
         except (ValueError, TypeError):
             return value
     return number(value)
@@ -62,8 +62,8 @@ def numbers(value: Any) -> Array:
     return np.asarray(array(value), dtype=float)
 
 
-def _numbers(value: Any) -> Any:
-    return [_numbers(v) for v in value] if isinstance(value, list) else number(value)
+def _decoded(value: Any) -> Any:
+    return [_decoded(v) for v in value] if isinstance(value, list) else number(value)
 
 
 def _whole(value: Any) -> bool:

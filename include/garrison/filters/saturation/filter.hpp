@@ -34,6 +34,7 @@
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/filters/consensus_params.hpp"
 #include "garrison/filters/saturation/adaptive.hpp"
 #include "garrison/filters/saturation/detector.hpp"
 
@@ -45,16 +46,13 @@ struct GARRISON_EXPORT Saturation {
   static constexpr std::string_view source =
       "He, Ren, Sandberg, Johansson, IEEE TAC 2022, Algorithms 1 and 2";
 
-  struct Params {
+  struct Params : ConsensusParams {
     double threshold = kNaN;
-    int rounds = 3;
-    double step = kNaN;
     int attacked = 0;
     double initial_error = kNaN;
     bool detector = false;
     std::string detector_index = "t";
     bool adaptive = false;
-    bool chebyshev = false;
     bool accuse_missing = false;
 
     static auto fields();

@@ -7,65 +7,54 @@
 namespace garrison {
 
 inline auto Saturation::Params::fields() {
-  return std::make_tuple(
-      field(&Params::threshold, {.name = "threshold",
-                                 .symbol = "beta",
-                                 .unit = "measurement",
-                                 .doc = "largest innovation that is used in full; inf = never saturate. "
-                                        "May be left out with adaptive = true",
-                                 .least = 0.0,
-                                 .open = true}),
-      field(&Params::rounds, {.name = "rounds",
-                              .symbol = "L",
-                              .unit = "1",
-                              .doc = "consensus rounds per sample",
-                              .least = 0,
-                              .most = 1e6}),
-      field(&Params::step, {.name = "step",
-                            .symbol = "alpha",
-                            .unit = "1",
-                            .doc = "consensus step; left out: 2/(lambda_2 + lambda_max)",
-                            .least = 0.0}),
-      field(&Params::attacked,
-            {.name = "attacked",
-             .symbol = "s",
-             .unit = "agents",
-             .doc = "most sensors attacked (or missing) at a time; enters bound and detector",
-             .least = 0}),
-      field(&Params::initial_error, {.name = "initial_error",
-                                     .symbol = "eta0",
-                                     .unit = "state",
-                                     .doc = "bound on the distance of the common initial estimate from the "
-                                            "state; giving it asks for run-time error bounds",
+  return std::tuple_cat(
+      std::make_tuple(
+          field(&Params::threshold, {.name = "threshold",
+                                     .symbol = "beta",
+                                     .unit = "measurement",
+                                     .doc = "largest innovation that is used in full; inf = never saturate. "
+                                            "May be left out with adaptive = true",
                                      .least = 0.0,
-                                     .open = true}),
-      field(&Params::detector, {.name = "detector",
-                                .symbol = "",
-                                .unit = "",
-                                .doc = "Algorithm 2: prove and isolate attacked sensors (their set must not "
-                                       "change over time)"}),
-      field(&Params::detector_index,
-            {.name = "detector_index",
-             .symbol = "d_i",
-             .unit = "",
-             .doc = "which count of proved sensors enters rhobar(t): \"t\" = d_i(t-1) "
-                    "as printed, \"t+1\" = d_i(t), sharper and as sound",
-             .choices = {"t", "t+1"}}),
-      field(&Params::adaptive, {.name = "adaptive",
-                                .symbol = "",
-                                .unit = "",
-                                .doc = "let the threshold follow the known bound on honest innovations "
-                                       "(our notes; needs initial_error)"}),
-      field(&Params::chebyshev,
-            {.name = "chebyshev",
-             .symbol = "",
-             .unit = "",
-             .doc = "Chebyshev-filtered rounds: stronger contraction from the same messages"}),
-      field(&Params::accuse_missing,
-            {.name = "accuse_missing",
-             .symbol = "",
-             .unit = "",
-             .doc = "detector: a missing (NaN) measurement counts as proof of attack"}));
+                                     .open = true})),
+      consensus_fields(),
+      std::make_tuple(
+          field(&Params::attacked,
+                {.name = "attacked",
+                 .symbol = "s",
+                 .unit = "agents",
+                 .doc = "most sensors attacked (or missing) at a time; enters bound and detector",
+                 .least = 0}),
+          field(&Params::initial_error,
+                {.name = "initial_error",
+                 .symbol = "eta0",
+                 .unit = "state",
+                 .doc = "bound on the distance of the common initial estimate from the "
+                        "state; giving it asks for run-time error bounds",
+                 .least = 0.0,
+                 .open = true}),
+          field(&Params::detector,
+                {.name = "detector",
+                 .symbol = "",
+                 .unit = "",
+                 .doc = "Algorithm 2: prove and isolate attacked sensors (their set must not "
+                        "change over time)"}),
+          field(&Params::detector_index,
+                {.name = "detector_index",
+                 .symbol = "d_i",
+                 .unit = "",
+                 .doc = "which count of proved sensors enters rhobar(t): \"t\" = d_i(t-1) "
+                        "as printed, \"t+1\" = d_i(t), sharper and as sound",
+                 .choices = {"t", "t+1"}}),
+          field(&Params::adaptive, {.name = "adaptive",
+                                    .symbol = "",
+                                    .unit = "",
+                                    .doc = "let the threshold follow the known bound on honest innovations "
+                                           "(our notes; needs initial_error)"}),
+          field(&Params::accuse_missing,
+                {.name = "accuse_missing",
+                 .symbol = "",
+                 .unit = "",
+                 .doc = "detector: a missing (NaN) measurement counts as proof of attack"})));
 }
 
 }  // namespace garrison
