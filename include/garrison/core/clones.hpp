@@ -28,17 +28,13 @@ void run_four(Args... args) {
   Kernel::template run<4>(args...);
 }
 
-#if defined(__x86_64__) && defined(__GNUC__)
-/// With masks for vectors of any width; only the first such machines lacked these.
-inline bool wide() {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512vl");
-}
-#endif
 /// Doubles in the widest register of this machine that we have kernels for.
 inline int register_doubles() {
 #if defined(__x86_64__) && defined(__GNUC__)
-  static const int doubles = wide() ? 8 : __builtin_cpu_supports("avx2") ? 4 : 2;
+  // With masks for vectors of any width; only the first machines with 512 bits lacked these.
+  static const bool eight = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                            __builtin_cpu_supports("avx512vl");
+  static const int doubles = eight ? 8 : __builtin_cpu_supports("avx2") ? 4 : 2;
   return doubles;
 #else
   return 2;

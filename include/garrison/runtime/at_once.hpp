@@ -38,8 +38,8 @@ class AtOnce {
   AtOnce(std::span<State> states, int dimension)
       : states_(states), nn_(dimension), estimates_(states.size() * row()), scratch_(estimates_.size()) {}
 
-  /// Whether all estimates are finite after sensing, and whether they were then averaged; if not, messages
-  /// have to be sent.
+  /// Whether all estimates are finite after sensing, and whether they were then averaged; if not, the states
+  /// are up to date and have messages to send.
   struct Outcome {
     bool finite;
     bool averaged;
@@ -55,10 +55,10 @@ class AtOnce {
     std::atomic<bool> finite{true};
     std::atomic<bool> alike{true};
     workers.split(N, [&](std::int64_t begin, std::int64_t end, int) {
-      const auto [good, same] =
+      const Sensed sensed =
           sense(g, local, t, y, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
-      if (!good) finite = false;
-      if (!same) alike = false;
+      if (!sensed.finite) finite = false;
+      if (!sensed.alike) alike = false;
     });
     for (int part = 1; part < workers.threads(); ++part)
       if (!same(0, static_cast<std::size_t>(workers.begin(N, part)))) alike = false;
@@ -67,6 +67,8 @@ class AtOnce {
     if (gathered_) {
       const auto [alpha, omega] = F::averaging(g);
       plan.run(estimates_.data(), scratch_.data(), nn_, alpha, omega, F::rounds(g), &workers);
+    } else {
+      settle();
     }
     return {finite, gathered_};
   }
@@ -78,8 +80,11 @@ class AtOnce {
       copy<n>(estimate(k), F::template averaged<n>(states_[k]), nn_);
     stale_ = false;
   }
-  /// The states have moved on without us.
-  void forget() { gathered_ = stale_ = false; }
+  /// Before the states move on without us.
+  void release() {
+    settle();
+    gathered_ = false;
+  }
 
  private:
   static constexpr std::size_t kAhead = 16;  // agents, about 200 ns
@@ -133,7 +138,7 @@ struct AtOnceOf {
     template <class... Args>
     explicit type(const Args&...) {}
     void settle() {}
-    void forget() {}
+    void release() {}
   };
 };
 template <class F, int n>

@@ -56,7 +56,7 @@ class Engine final : public Runner {
 
   void reset(const Matrix& x0, Link* link) override {
     mail_.connect(link);
-    at_once_.forget();
+    at_once_.release();
     for (std::size_t k = 0; k < states_.size(); ++k) {
       const Vec<n> start = x0.col(places_[k].id);
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
@@ -70,13 +70,12 @@ class Engine final : public Runner {
   void step(std::int64_t t, const double* y) override {
     if constexpr (Averages<F, n>)
       if (mail_.perfect()) return step_at_once(t, y);
-    at_once_.settle();
-    at_once_.forget();
+    at_once_.release();
     if constexpr (StepsTogether<F, n>)
       if (mail_.perfect() && together_.agreed())
         return together_.step(*gains_, local(0), t, measured(y), mail_.wiring(), workers_);
-    each([&](std::size_t k, Message* out) {
-      F::template sense<n>(local(k), *gains_, states_[k], y + places_[k].first_output, t, out[k]);
+    each([&, y = measured(y)](std::size_t k, Message* out) {
+      F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
     });
     rounds(t, all_finite());
   }
@@ -160,7 +159,6 @@ class Engine final : public Runner {
   void step_at_once(std::int64_t t, const double* y) {
     const auto [finite, averaged] = at_once_.step(plan_, *gains_, locals(), t, measured(y), workers_);
     if (averaged) return;
-    at_once_.settle();
     each([&](std::size_t k, Message* out) { F::template send<n>(states_[k], 0, out[k]); });
     rounds(t, finite);
   }
