@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
+#include "garrison/core/clones.hpp"
 #include "garrison/core/types.hpp"
 
 namespace garrison {
@@ -21,18 +23,38 @@ struct Block {
 /// Widest block of at most `most` (a power of two) that divides a row of W entries.
 constexpr int block_of(int W, int most) { return W % most == 0 ? most : block_of(W, most / 2); }
 
+/// B rows of B doubles become the columns.
+template <int B>
+GARRISON_INLINE void transpose(typename Block<B>::type* row) {
+  [&]<int... l>(std::integer_sequence<int, l...>) GARRISON_INLINED {
+    const auto exchange = [&]<int width>(std::integral_constant<int, width>) GARRISON_INLINED {
+      for (int k = 0; k < B; ++k) {
+        if ((k & width) != 0) continue;
+        const auto a = row[k];
+        const auto b = row[k + width];
+        row[k] = __builtin_shufflevector(a, b, ((l & width) == 0 ? l : B + l - width)...);
+        row[k + width] = __builtin_shufflevector(a, b, ((l & width) == 0 ? l + width : B + l)...);
+      }
+    };
+    if constexpr (B > 1) exchange(std::integral_constant<int, 1>{});
+    if constexpr (B > 2) exchange(std::integral_constant<int, 2>{});
+    if constexpr (B > 4) exchange(std::integral_constant<int, 4>{});
+  }(std::make_integer_sequence<int, B>{});
+}
+
 /// Doubles per block in the functions below: every machine has registers of two.
 constexpr int pair_of(int n) { return block_of(n, 2); }
 
-/// out = A x for a matrix stored column by column; every entry sums in the order of the columns.
-template <int n>
-inline void multiply(const double* A, const double* x, double* out, int nn) noexcept {
+/// out = A x for a matrix stored column by column; every entry sums in the order of the columns. `most`:
+/// doubles per block that the caller's instruction set has.
+template <int n, int most = 2>
+GARRISON_INLINE void multiply(const double* A, const double* x, double* out, int nn) noexcept {
   if constexpr (n == Dynamic) {
     for (int i = 0; i < nn; ++i) out[i] = A[i] * x[0];
     for (int k = 1; k < nn; ++k)
       for (int i = 0; i < nn; ++i) out[i] += A[static_cast<std::ptrdiff_t>(k) * nn + i] * x[k];
   } else {
-    constexpr int B = pair_of(n);
+    constexpr int B = block_of(n, most);
     for (int i = 0; i < n; i += B) {
       auto sum = *Block<B>::of(A + i) * x[0];
       for (int k = 1; k < n; ++k) sum += *Block<B>::of(A + k * n + i) * x[k];

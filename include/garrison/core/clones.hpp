@@ -56,4 +56,14 @@ void run_widest(Args... args) {
   }
 }
 
+/// The same for kernels of rows of n numbers: other rows than of 4 or 8 do not fill wide registers, and run
+/// two by two.
+template <class Kernel, int n, class... Args>
+void run_widest_of(Args... args) {
+  if constexpr (n % 4 == 0)
+    run_widest<Kernel>(args...);
+  else
+    Kernel::template run<2>(args...);
+}
+
 }  // namespace garrison

@@ -13,24 +13,24 @@ void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, Stat
   const int q = l.outputs;
   if (!s.group) s.group = std::make_shared<partial_sharing::Group<n>>(nn, q);
   partial_sharing::Group<n>& group = *s.group;
-  const auto fill = [&](int array, int count, const auto& value) {
-    for (int k = 0; k < count; ++k) group.at(array, k, s.lane) = value(k);
+  const auto fill = [&](double* array, int first, int count, const auto& value) {
+    for (int k = 0; k < count; ++k) group.at(array, first + k, s.lane) = value(k);
   };
   const auto id = static_cast<std::size_t>(l.id);
-  fill(group.z, nn, [&](int k) { return x0[k]; });
-  fill(group.C, q * nn, [&](int k) { return l.C[k]; });
-  fill(group.y, q, [](int) { return kNaN; });
+  fill(group.z, 0, nn, [&](int k) { return x0[k]; });
+  fill(group.C, 0, q * nn, [&](int k) { return l.C[k]; });
+  fill(group.y, 0, q, [](int) { return kNaN; });
   for (int i = 0; i < q; ++i)
-    fill(group.W + packed(i), i + 1,
+    fill(group.W, packed(i), i + 1,
          [&](int k) { return g.sensors[id].W[static_cast<std::size_t>(i * q + k)]; });
   const bool steady = !g.steady.empty();
   const double* const P = steady ? g.steady[id].P.data() : g.P0.data();
-  for (int i = 0; i < nn; ++i) fill(group.P + packed(i), i + 1, [&](int k) { return P[i * nn + k]; });
+  for (int i = 0; i < nn; ++i) fill(group.P, packed(i), i + 1, [&](int k) { return P[i * nn + k]; });
   if (steady) {
     const Steady& limit = g.steady[id];
     for (int i = 0; i < nn; ++i)
-      fill(group.G + packed(i), i + 1, [&](int k) { return limit.G[static_cast<std::size_t>(i * nn + k)]; });
-    fill(group.K, q * nn, [&](int k) { return limit.K[static_cast<std::size_t>(k)]; });
+      fill(group.G, packed(i), i + 1, [&](int k) { return limit.G[static_cast<std::size_t>(i * nn + k)]; });
+    fill(group.K, 0, q * nn, [&](int k) { return limit.K[static_cast<std::size_t>(k)]; });
   }
   group.frozen[static_cast<std::size_t>(s.lane)] = steady;
   group.started = false;

@@ -42,11 +42,11 @@ void freeze(double gamma, Group<n>& group, int lane) noexcept {
   const int m = group.m;
   const int q = group.q;
   double stack[n == Dynamic ? 1 : Kernel::scratch(N) + N * Kernel::scratch_per_row(N) + 4 * N];
-  double* const row = Group<n>::on_stack(m, q) ? stack : group.at(group.scratch);
+  double* const row = Group<n>::on_stack(m, q) ? stack : group.scratch;
   double* const room = row + m;
   double* const own = room + 2 * m + q;
   Kernel recursion(One::of(own), One::of(own + Kernel::scratch(m)), m, q);
-  recursion.factor(One::of(group.at(group.P) + lane), kStride);
+  recursion.factor(One::of(group.P + lane), kStride);
   for (int r = 0; r < q; ++r) {
     for (int k = 0; k < m; ++k) {
       row[k] = 0.0;
@@ -55,8 +55,7 @@ void freeze(double gamma, Group<n>& group, int lane) noexcept {
     }
     recursion.use_row(r, One::of(row));
   }
-  explicit_gains<n>(recursion, gamma, m, q, room, group.at(group.K) + lane, group.at(group.G) + lane,
-                    kStride);
+  explicit_gains<n>(recursion, gamma, m, q, room, group.K + lane, group.G + lane, kStride);
   group.frozen[static_cast<std::size_t>(lane)] = true;
 }
 

@@ -21,28 +21,35 @@ template <int n>
 struct Group {
   static constexpr int kLanes = n == Dynamic ? 1 : kGroup;
 
-  /// `room`: `size` doubles on a cache line, and `predictions`: room for those of all lanes, agent by agent.
-  /// A group of one has its own.
-  Group(int states, int most_outputs, double* room = nullptr, double* predictions = nullptr)
-      : m(states),
-        q(most_outputs),
-        G(0),
-        K(G + packed(m)),
-        C(K + q * m),
-        W(C + q * m),
-        y(W + packed(q)),
-        z(y + q),
-        P(z + m),
-        scratch(P + packed(m)),
-        own_(room == nullptr ? size(m, q) + static_cast<std::size_t>(2 * m) : 0),
-        room_(room == nullptr ? own_.data() : room),
-        x(predictions == nullptr ? room_ + size(m, q) : predictions) {}
+  /// Memory of a group, in pieces of what is read together. For a whole network every piece is one array.
+  enum Piece { kSample, kSensors, kGains, kCovariances, kPieces };
+  using Room = std::array<double*, kPieces>;
+
+  /// `room`: `size` doubles of every piece on cache lines, and `predictions`: room for those of all lanes,
+  /// agent by agent. A group of one has its own.
+  Group(int states, int most_outputs, const Room& room, double* predictions)
+      : m(states), q(most_outputs), x(predictions) {
+    place(room);
+  }
+  Group(int states, int most_outputs) : m(states), q(most_outputs) {
+    std::size_t sum = 0;
+    for (int piece = 0; piece < kPieces; ++piece) sum += size(m, q, Piece(piece));
+    own_.resize(sum + static_cast<std::size_t>(2 * m));
+    Room room;
+    x = own_.data();
+    for (int piece = 0; piece < kPieces; ++piece) {
+      room[static_cast<std::size_t>(piece)] = x;
+      x += size(m, q, Piece(piece));
+    }
+    place(room);
+  }
   Group(const Group&) = delete;
   Group& operator=(const Group&) = delete;
 
-  /// Number `k` of an array, e.g. (C, r * m + k), in all lanes.
-  double* at(int array, int k = 0) { return room_ + static_cast<std::ptrdiff_t>(array + k) * kLanes; }
-  double& at(int array, int k, int lane) { return at(array, k)[lane]; }
+  /// Number `k` of an array, e.g. (C, r * m + k), of one agent.
+  static double& at(double* array, int k, int lane) {
+    return array[static_cast<std::ptrdiff_t>(k) * kLanes + lane];
+  }
   /// Prediction of the next sample of one agent.
   double* prediction(int lane) const { return x + static_cast<std::ptrdiff_t>(lane) * m; }
 
@@ -51,35 +58,65 @@ struct Group {
 
   /// Few outputs at a known dimension work on the stack.
   static constexpr bool on_stack(int m, int q) { return n != Dynamic && q <= m; }
-  /// Doubles of a group.
-  static std::size_t size(int m, int q) {
-    const int kept = 2 * packed(m) + 2 * q * m + packed(q) + q + m;
+  /// Doubles of a piece.
+  static std::size_t size(int m, int q, Piece piece) {
     const int scratch = Recursion<n, 1>::scratch(m) + q * Recursion<n, 1>::scratch_per_row(m) + 4 * m + q;
-    return static_cast<std::size_t>((kept + (on_stack(m, q) ? 0 : scratch)) * kLanes);
+    const int sizes[kPieces] = {q + m, q * m + packed(q), packed(m) + q * m,
+                                packed(m) + (on_stack(m, q) ? 0 : scratch)};
+    return static_cast<std::size_t>(sizes[piece] * kLanes);
   }
+
+  /// Makes C and W those of another group, which are the same numbers.
+  void read_sensors_of(const Group& other) {
+    C = other.C;
+    W = other.W;
+  }
+  /// Makes G and K those of another group, if both are at rest with the same numbers.
+  void read_gains_of(const Group& other) {
+    const std::size_t count = size(m, q, kGains);
+    if (moving() || other.moving() || !std::equal(G, G + count, other.G)) return;
+    G = other.G;
+    K = other.K;
+  }
+  void read_own_gains() {
+    G = own_gains_;
+    K = G + static_cast<std::ptrdiff_t>(packed(m)) * kLanes;
+  }
+
+  /// Whether some gains still change.
+  bool moving() const { return std::count(frozen.begin(), frozen.begin() + agents, true) < agents; }
 
   const int m;
   const int q;  ///< most outputs of an agent
-  // What frozen agents need is in one piece, and so is what all others need.
-  const int G;  ///< once frozen: gamma times the filtered covariance
-  const int K;  ///< once frozen: gain of the whitened innovations, row by row of measurements
-  const int C;  ///< H_i
-  const int W;  ///< inverse of the Cholesky factor of R_i
-  const int y;  ///< measurements, then innovations; NaN: missing
-  const int z;  ///< estimate
-  const int P;  ///< P(k+1)
-  const int scratch;
-
- private:
-  Aligned<double> own_;  // of a group of one
-  double* room_;
-
- public:
+  double* y;    ///< measurements, then innovations; NaN: missing
+  double* z;    ///< estimate
+  double* C;    ///< H_i
+  double* W;    ///< inverse of the Cholesky factor of R_i
+  double* G;    ///< once frozen: gamma times the filtered covariance
+  double* K;    ///< once frozen: gain of the whitened innovations, row by row of measurements
+  double* P;    ///< P(k+1)
+  double* scratch;
   double* x;  ///< predictions of the next sample, agent by agent
   int agents = 1;
   std::array<int, kLanes> outputs{};  ///< of each agent; set by whoever makes a group of several
   std::array<bool, kLanes> frozen{};
   bool started = false;
+
+ private:
+  void place(const Room& room) {
+    const auto lanes = [](int count) { return static_cast<std::ptrdiff_t>(count) * kLanes; };
+    y = room[kSample];
+    z = y + lanes(q);
+    C = room[kSensors];
+    W = C + lanes(q * m);
+    own_gains_ = room[kGains];
+    read_own_gains();
+    P = room[kCovariances];
+    scratch = P + lanes(packed(m));
+  }
+
+  Aligned<double> own_;  // of a group of one
+  double* own_gains_ = nullptr;
 };
 
 }  // namespace garrison::partial_sharing

@@ -26,25 +26,6 @@ GARRISON_INLINE void for_each_state(int m, const Body& body) {
     }(std::make_integer_sequence<int, n>{});
 }
 
-/// B x B numbers between agent by agent and a lane per agent.
-template <int B>
-GARRISON_INLINE void transpose(typename Block<B>::type* row) {
-  [&]<int... l>(std::integer_sequence<int, l...>) GARRISON_INLINED {
-    const auto exchange = [&]<int width>(std::integral_constant<int, width>) GARRISON_INLINED {
-      for (int k = 0; k < B; ++k) {
-        if ((k & width) != 0) continue;
-        const auto a = row[k];
-        const auto b = row[k + width];
-        row[k] = __builtin_shufflevector(a, b, ((l & width) == 0 ? l : B + l - width)...);
-        row[k + width] = __builtin_shufflevector(a, b, ((l & width) == 0 ? l + width : B + l)...);
-      }
-    };
-    exchange(std::integral_constant<int, 1>{});
-    if constexpr (B > 2) exchange(std::integral_constant<int, 2>{});
-    if constexpr (B > 4) exchange(std::integral_constant<int, 4>{});
-  }(std::make_integer_sequence<int, B>{});
-}
-
 /// m numbers each of `used` agents, one agent after the other, into a lane per agent. Idle lanes repeat the
 /// last agent.
 template <int n, int B>

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -30,14 +31,12 @@ class PartialSharing::Together {
     std::vector<int> most((count + Group::kLanes - 1) / Group::kLanes);  // outputs of an agent, by group
     for (std::size_t k = 0; k < count; ++k)
       most[k / Group::kLanes] = std::max(most[k / Group::kLanes], local(k).outputs);
-    std::size_t size = 0;
-    for (const int q : most) size += Group::size(n, q);
-    room_.resize(size);
-    double* room = room_.data();
+    typename Group::Room room = allocate(most);
     for (std::size_t i = 0; i < most.size(); ++i) {
       const std::size_t first = i * Group::kLanes;
       Group& group = groups_.emplace_back(n, most[i], room, x_[0].data() + first * n);
-      room += Group::size(n, most[i]);
+      for (std::size_t piece = 0; piece < room.size(); ++piece)
+        room[piece] += Group::size(n, most[i], typename Group::Piece(piece));
       group.agents = static_cast<int>(std::min<std::size_t>(Group::kLanes, count - first));
       for (int lane = 0; lane < group.agents; ++lane) {
         const std::size_t k = first + static_cast<std::size_t>(lane);
@@ -46,6 +45,7 @@ class PartialSharing::Together {
         group.outputs[static_cast<std::size_t>(lane)] = local(k).outputs;
       }
     }
+    twins_.resize(groups_.size());
     shares_.resize(count);
     now_.resize(count);
   }
@@ -57,6 +57,7 @@ class PartialSharing::Together {
       shares_[k] = 0;
       for (const int a : g.selection.entries(local(k).id)) shares_[k] |= static_cast<std::uint8_t>(1 << a);
     }
+    share_sensors();
     double squares = 0.0;
     for (const double x : x_[side_]) squares += x * x;
     plain_ = squares < partial_sharing::kPlain;
@@ -76,17 +77,16 @@ class PartialSharing::Together {
     each(common(any, g), workers, [&](Group& group, std::size_t first, std::size_t end, double* u) {
       for (std::size_t k = first; k < end; ++k) {
         const double* const measured = y(k);
-        // Measurements are in order of public ids, all over the place for the hardware's own prefetcher.
-        __builtin_prefetch(y(std::min(k + 2 * Group::kLanes, shares_.size() - 1)));
+        // Measurements are in order of public ids, and neighbours up to some hundred places away: the
+        // hardware's own prefetcher sees neither of them coming.
+        __builtin_prefetch(y(ahead(k, 2 * Group::kLanes)));
+        __builtin_prefetch(x + ahead(k, kReach) * n);
+        __builtin_prefetch(x_[side_].data() + ahead(k, 2 * Group::kLanes) * n, 1);
         const int lane = static_cast<int>(k - first);
         for (int r = 0; r < group.outputs[k - first]; ++r) group.at(group.y, r, lane) = measured[r];
       }
-      using Kernel = partial_sharing::Disagreement<n>;
       const std::uint8_t* const shares = now_.data();
-      if constexpr (n == 4 || n == 8)
-        run_widest<Kernel>(x, shares, wiring, first, end, u);
-      else
-        Kernel::template run<2>(x, shares, wiring, first, end, u);
+      run_widest_of<partial_sharing::Disagreement<n>, n>(x, shares, wiring, first, end, u);
     });
   }
 
@@ -103,31 +103,74 @@ class PartialSharing::Together {
   }
 
  private:
+  static constexpr std::size_t kReach = 1024;  // how far away neighbours are in large plane networks
+
+  std::size_t ahead(std::size_t k, std::size_t places) const {
+    return std::min(k + places, shares_.size() - 1);
+  }
+
   /// `listen(group, first, end, u)` finds u of agents first..end-1; then they are updated.
   template <class Workers, class Listen>
   void each(const partial_sharing::Common& shared, Workers& workers, const Listen& listen) noexcept {
     double* const next = x_[side_].data();
     std::atomic<bool> plain{true};
+    std::atomic<bool> rested{false};
     workers.split(static_cast<std::int64_t>(groups_.size()), [&](std::int64_t begin, std::int64_t end, int) {
       alignas(64) double u[Group::kLanes * n];
       alignas(64) double squares[Group::kLanes]{};
+      bool came_to_rest = false;
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
         Group& group = groups_[i];
         const std::size_t first = i * Group::kLanes;
         listen(group, first, first + static_cast<std::size_t>(group.agents), u);
         double* const predictions = next + first * n;
+        const bool moving = group.moving();
         partial_sharing::update(shared, group, u, predictions, squares);
+        came_to_rest = came_to_rest || (moving && !group.moving());
         group.x = predictions;
       }
+      if (came_to_rest) rested = true;
       for (const double sum : squares)
         if (!(sum < partial_sharing::kPlain)) plain = false;
     });
     plain_ = plain;
+    if (rested) share_gains();
+  }
+
+  /// Memory of all groups; where that of the first one is.
+  typename Group::Room allocate(const std::vector<int>& most) {
+    typename Group::Room room;
+    for (std::size_t piece = 0; piece < room.size(); ++piece) {
+      std::size_t size = 0;
+      for (const int q : most) size += Group::size(n, q, typename Group::Piece(piece));
+      room_[piece].resize(size);
+      room[piece] = room_[piece].data();
+    }
+    return room;
+  }
+
+  /// Groups with the same sensors, lane by lane, read those of the first of them, and its gains once all are
+  /// at rest: in a large network of few kinds of agents that is most of what frozen agents would read.
+  void share_sensors() {
+    std::map<std::vector<double>, Group*> known;
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+      Group& group = groups_[i];
+      group.read_own_gains();
+      std::vector<double> sensors(group.C, group.C + Group::size(n, group.q, Group::kSensors));
+      twins_[i] = known.emplace(std::move(sensors), &group).first->second;
+      group.read_sensors_of(*twins_[i]);
+    }
+    share_gains();
+  }
+  void share_gains() {
+    for (std::size_t i = 0; i < groups_.size(); ++i)
+      if (twins_[i] != &groups_[i]) groups_[i].read_gains_of(*twins_[i]);
   }
 
   State<n>* states_ = nullptr;
-  Aligned<double> room_;  // of all groups, one after the other
+  std::array<Aligned<double>, Group::kPieces> room_;  // of all groups, one after the other
   std::deque<Group> groups_;
+  std::vector<Group*> twins_;         // first group with the same sensors
   std::array<Aligned<double>, 2> x_;  // predictions of this sample, and room for those of the next
   std::size_t side_ = 0;              // which is which
   std::vector<std::uint8_t> shares_;  // entries that each agent shares at k = 0

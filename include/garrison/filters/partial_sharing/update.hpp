@@ -55,7 +55,7 @@ class Update<n>::Lanes {
     using Kernel = Recursion<n, B>;
     alignas(64) double
         stack[n == Dynamic ? 1 : (Kernel::scratch(N) + N * Kernel::scratch_per_row(N) + 5 * N) * B];
-    V* const scratch = Block<B>::of(few ? stack : group_.at(group_.scratch));
+    V* const scratch = Block<B>::of(few ? stack : group_.scratch);
     V* const x = scratch;
     V* const u = x + m;
     V* const steady = u + m;
@@ -98,7 +98,7 @@ class Update<n>::Lanes {
   GARRISON_INLINE bool is_frozen(int lane) const {
     return group_.frozen[static_cast<std::size_t>(first_ + lane)];
   }
-  GARRISON_INLINE V* array(int which) { return Block<B>::of(group_.at(which) + first_); }
+  GARRISON_INLINE V* array(double* which) const { return Block<B>::of(which + first_); }
 
   /// e = W (y - H xhat), missing entries 0; leaves the innovations in y.
   GARRISON_INLINE void innovations(const V* x, V* e) {
@@ -185,10 +185,8 @@ template <int n>
 void update(const Common& common, Group<n>& group, const double* u, double* next, double* squares) noexcept {
   if constexpr (n == Dynamic)
     Update<n>::template run<1>(&common, &group, u, next, squares);
-  else if constexpr (n == 4 || n == 8)  // every instruction set compiles it once more
-    run_widest<Update<n>>(&common, &group, u, next, squares);
   else
-    Update<n>::template run<2>(&common, &group, u, next, squares);
+    run_widest_of<Update<n>, n>(&common, &group, u, next, squares);
 }
 
 }  // namespace garrison::partial_sharing
