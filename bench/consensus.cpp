@@ -61,7 +61,7 @@ class Consensus {
       : rounds_(rounds),
         network_(largest_part(
             Network::random_geometric(agents, std::sqrt(8.0 / (std::numbers::pi * agents)), seed))),
-        plan_(network_.offsets(), network_.lists()),
+        plan_(network_.offsets(), network_.lists(), kWidth),
         alpha_(1.0 / (1.0 + network_.max_degree())) {
     agents = network_.agents();
     std::vector<int> position(static_cast<std::size_t>(agents));
@@ -96,7 +96,7 @@ class Consensus {
   std::pair<double, RowMajor> ours() {
     Aligned<double> x(x_.data(), x_.data() + x_.size());  // as the engine keeps them
     const double begin = cpu_seconds();
-    plan_.run(x.data(), scratch_.data(), kWidth, alpha_, {}, rounds_);
+    plan_.run(x.data(), scratch_.data(), alpha_, {}, rounds_);
     const double seconds = cpu_seconds() - begin;
     return {seconds, Eigen::Map<const RowMajor>(x.data(), x_.rows(), kWidth)};
   }

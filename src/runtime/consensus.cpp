@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
+#include <string>
 #include <utility>
 
 #ifdef __unix__
@@ -30,7 +32,13 @@ std::size_t in_flight() {
 
 }  // namespace
 
-ConsensusPlan::ConsensusPlan(std::span<const int> offsets, std::span<const int> lists) {
+ConsensusPlan::ConsensusPlan(std::span<const int> offsets, std::span<const int> lists, int width)
+    : width_(width) {
+  const std::int64_t numbers = static_cast<std::int64_t>(offsets.size() - 1) * width;
+  if (numbers > std::numeric_limits<std::int32_t>::max())
+    refuse("network",
+           std::to_string(offsets.size() - 1) + " agents with " + std::to_string(width) + " numbers",
+           "fewer than 2^31 numbers in all", "split the network");
   order_ = reverse_cuthill_mckee(offsets, lists);
   const auto degree = [&](int i) {
     return offsets[static_cast<std::size_t>(i) + 1] - offsets[static_cast<std::size_t>(i)];
@@ -50,33 +58,34 @@ ConsensusPlan::ConsensusPlan(std::span<const int> offsets, std::span<const int> 
       runs_.push_back({k, k, degree(i), static_cast<std::int32_t>(neighbour_.size())});
     runs_.back().end = k + 1;
     for (int e = offsets[static_cast<std::size_t>(i)]; e < offsets[static_cast<std::size_t>(i) + 1]; ++e) {
-      neighbour_.push_back(position[static_cast<std::size_t>(lists[static_cast<std::size_t>(e)])]);
-      bandwidth = std::max(bandwidth, std::abs(neighbour_.back() - k));
+      const auto j = position[static_cast<std::size_t>(lists[static_cast<std::size_t>(e)])];
+      neighbour_.push_back(j * width);
+      bandwidth = std::max(bandwidth, std::abs(j - k));
     }
   }
   windows_.push_back(static_cast<std::int32_t>(runs_.size()));
   reach_ = bandwidth / kWindow + 1;
 }
 
-int ConsensusPlan::rounds_in_flight(int width) const {
-  const std::size_t row = static_cast<std::size_t>(width) * 2 * sizeof(double);
+int ConsensusPlan::rounds_in_flight() const {
+  const std::size_t row = static_cast<std::size_t>(width_) * 2 * sizeof(double);
   if (order_.size() * row <= kFitsAnyway) return 1;
   return static_cast<int>(
       std::min<std::size_t>(in_flight() / (row * kWindow * static_cast<std::size_t>(reach_)), 64));
 }
 
-void ConsensusPlan::run(double* x, double* scratch, int width, double alpha, std::span<const double> omega,
-                        int rounds, Workers* workers) const {
+void ConsensusPlan::run(double* x, double* scratch, double alpha, std::span<const double> omega, int rounds,
+                        Workers* workers) const {
   double* buffers[2] = {x, scratch};
   const auto windows = static_cast<std::int64_t>(windows_.size()) - 1;
   const auto average = [&](int round, std::int64_t begin, std::int64_t end) {
     const double weight = omega.empty() ? 1.0 : omega[static_cast<std::size_t>(round)];
     kernel::average_runs({neighbour_.data(), buffers[round % 2], buffers[(round + 1) % 2], alpha, weight},
                          runs_.data() + windows_[static_cast<std::size_t>(begin)],
-                         runs_.data() + windows_[static_cast<std::size_t>(end)], width);
+                         runs_.data() + windows_[static_cast<std::size_t>(end)], width_);
   };
   const bool threaded = workers != nullptr && workers->threads() > 1;
-  const int fused = threaded ? 1 : rounds_in_flight(width);
+  const int fused = threaded ? 1 : rounds_in_flight();
   if (fused < 2) {
     for (int round = 0; round < rounds; ++round) {
       if (threaded)
@@ -100,7 +109,7 @@ void ConsensusPlan::run(double* x, double* scratch, int width, double alpha, std
         }
     }
   }
-  if (rounds % 2 != 0) std::copy_n(scratch, order_.size() * static_cast<std::size_t>(width), x);
+  if (rounds % 2 != 0) std::copy_n(scratch, order_.size() * static_cast<std::size_t>(width_), x);
 }
 
 }  // namespace garrison

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "garrison/core/magnitude.hpp"
+
 namespace garrison::detail {
 
 Recorder::Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known,
@@ -54,6 +56,12 @@ std::size_t Recorder::row(int trial, int t) const {
          static_cast<std::size_t>(t);
 }
 
+double* Recorder::estimate(int trial, int t) {
+  const auto size = static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
+  return keep_.estimate ? record_.estimate.data() + row(trial, t) * size
+                        : estimates_[static_cast<std::size_t>(trial)].data();
+}
+
 void Recorder::errors(std::size_t row, const double* estimate, const double* truth) {
   const auto n = static_cast<std::size_t>(record_.states);
   const auto N = static_cast<std::size_t>(record_.agents);
@@ -68,16 +76,12 @@ void Recorder::errors(std::size_t row, const double* estimate, const double* tru
 }
 
 void Recorder::count(int trial, int t, std::span<const double> y) {
-  std::int64_t missing = 0;
-  std::int64_t nonfinite = 0;
-  for (const double v : y) {
-    missing += std::isnan(v) ? 1 : 0;
-    nonfinite += std::abs(v) >= kHuge ? 1 : 0;
-  }
-  if (missing + nonfinite > 0) {
+  if (!all_below(y.data(), y.size(), kHuge)) {
     const std::lock_guard lock(mutex_);
-    record_.missing += missing;
-    record_.nonfinite += nonfinite;
+    for (const double v : y) {
+      record_.missing += std::isnan(v) ? 1 : 0;
+      record_.nonfinite += std::abs(v) >= kHuge ? 1 : 0;
+    }
   }
   if (!keep_.measurements) return;
   const int first = record_.first_sample;
@@ -89,10 +93,8 @@ void Recorder::count(int trial, int t, std::span<const double> y) {
 void Recorder::take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y) {
   const std::size_t at = row(trial, t);
   const auto N = static_cast<std::size_t>(record_.agents);
-  const auto n = static_cast<std::size_t>(record_.states);
   Frame frame;
-  frame.estimate = keep_.estimate ? record_.estimate.data() + at * N * n
-                                  : estimates_[static_cast<std::size_t>(trial)].data();
+  frame.estimate = estimate(trial, t);
   if (keep_.report) {
     frame.bound = record_.bound.data() + at * N;
     frame.statistic = record_.statistic.data() + at * N;
@@ -106,17 +108,6 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
   if (keep_.report) accusations(trial, t, runner);
   if (keep_.details) details(trial, t, runner);
   if (t >= record_.first_sample) count(trial, t, y);
-}
-
-void Recorder::take_lane(int trial, int t, const LaneRunner& runner, int lane, const double* truth,
-                         std::span<const double>) {
-  const std::size_t at = row(trial, t);
-  const auto size = static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
-  double* out = keep_.estimate ? record_.estimate.data() + at * size
-                               : estimates_[static_cast<std::size_t>(trial)].data();
-  const double* all = runner.estimates();
-  for (std::size_t k = 0; k < size; ++k) out[k] = all[k * kLanes + static_cast<std::size_t>(lane)];
-  if (truth != nullptr) errors(at, out, truth);
 }
 
 void Recorder::accusations(int trial, int t, const Runner& runner) {

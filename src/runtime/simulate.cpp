@@ -29,10 +29,10 @@ class RunnerVictims final : public Victims {
 class Progress {
  public:
   Progress(const RunOptions& options, std::int64_t total) : report_(options.progress), total_(total) {}
-  /// Counts one sample; false = stop.
-  bool advance() {
-    const std::int64_t done = ++done_;
-    if (report_ && done * 100 / total_ != (done - 1) * 100 / total_) {
+  /// Counts samples; false = stop.
+  bool advance(int samples = 1) {
+    const std::int64_t done = done_ += samples;
+    if (report_ && done * 100 / total_ != (done - samples) * 100 / total_) {
       const std::lock_guard lock(mutex_);
       if (!report_(done, total_)) go_ = false;
     }
@@ -119,8 +119,8 @@ void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
   std::vector<double> y(M);
   std::vector<double> all(M * kLanes);
   runner.reset(x0.data());
-  for (int l = 0; l < used; ++l)
-    recorder.take_lane(first + l, 0, runner, l, lanes[static_cast<std::size_t>(l)].source->truth(), y);
+  const auto truth = [&](int lane) { return lanes[static_cast<std::size_t>(lane)].source->truth(); };
+  recorder.take_lanes(first, used, 0, runner, truth);
   for (int t = 1; t <= record.steps; ++t) {
     for (int l = 0; l < kLanes; ++l) {
       auto& lane = lanes[static_cast<std::size_t>(l)];
@@ -130,10 +130,8 @@ void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
       if (l < used) recorder.count(first + l, t, y);
     }
     runner.step(all.data());
-    for (int l = 0; l < used; ++l)
-      recorder.take_lane(first + l, t, runner, l, lanes[static_cast<std::size_t>(l)].source->truth(), y);
-    for (int l = 0; l < used; ++l)
-      if (!progress.advance()) return;
+    recorder.take_lanes(first, used, t, runner, truth);
+    if (!progress.advance(used)) return;
   }
 }
 

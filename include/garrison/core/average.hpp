@@ -2,6 +2,7 @@
 // One agent's round of Laplacian averaging: the single definition that filters and kernels share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -25,8 +26,8 @@ inline __attribute__((always_inline)) V averaged_entry(V x, V sum, double degree
 
 /// One round of one agent, in place: x (n numbers) becomes its average with `count` neighbours, whose rows
 /// are `row(0) .. row(count-1)`; `previous` becomes the old x, null where no round is Chebyshev-filtered.
-/// Sums run in the order of the rows, entry by entry, so the bits do not depend on vector width. omega = 1
-/// is a plain round.
+/// Sums start with the first row and run in the order of the rows, entry by entry, so the bits do not depend
+/// on vector width. omega = 1 is a plain round.
 template <int n, class Row>
 inline void average_round(int nn, double alpha, double omega, double* x, double* previous, std::size_t count,
                           const Row& row) noexcept {
@@ -39,13 +40,14 @@ inline void average_round(int nn, double alpha, double omega, double* x, double*
   };
   if constexpr (n == Dynamic) {
     for (int k = 0; k < nn; ++k) {
-      double sum = 0.0;
-      for (std::size_t j = 0; j < count; ++j) sum += row(j)[k];
+      double sum = count > 0 ? row(0)[k] : 0.0;
+      for (std::size_t j = 1; j < count; ++j) sum += row(j)[k];
       finish(k, sum);
     }
   } else {
     std::array<double, static_cast<std::size_t>(n)> sum{};
-    for (std::size_t j = 0; j < count; ++j) {
+    if (count > 0) std::copy_n(row(0), n, sum.begin());
+    for (std::size_t j = 1; j < count; ++j) {
       const double* other = row(j);
       for (int k = 0; k < n; ++k) sum[static_cast<std::size_t>(k)] += other[k];
     }

@@ -13,7 +13,7 @@ namespace garrison {
 inline constexpr int kLanes = 8;
 
 /// Steps kLanes independent trials of a whole network at once. Every operation acts lane by lane, so each
-/// trial has the bits it would have alone. Arrays are [agent][component][lane].
+/// trial has the bits it would have alone.
 class GARRISON_EXPORT LaneRunner {
  public:
   virtual ~LaneRunner() = default;
@@ -21,8 +21,9 @@ class GARRISON_EXPORT LaneRunner {
   virtual void reset(const Matrix* x0) = 0;
   /// y: total_outputs x kLanes numbers, [measurement][lane]; NaN = missing.
   virtual void step(const double* y) = 0;
-  /// Estimates after the step, [agent][component][lane], agents in order of public id.
-  virtual const double* estimates() const = 0;
+  /// Estimates after the step: out[lane] receives those of one trial, agent by agent in order of public id.
+  /// The first `used` lanes only.
+  virtual void read(double* const* out, int used) const = 0;
 };
 
 }  // namespace garrison

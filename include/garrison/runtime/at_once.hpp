@@ -10,6 +10,7 @@
 #include "garrison/core/aligned.hpp"
 #include "garrison/core/block.hpp"
 #include "garrison/core/filter.hpp"
+#include "garrison/core/magnitude.hpp"
 #include "garrison/runtime/consensus.hpp"
 #include "garrison/runtime/predict.hpp"
 #include "garrison/runtime/workers.hpp"
@@ -66,7 +67,7 @@ class AtOnce {
     stale_ = true;
     if (gathered_) {
       const auto [alpha, omega] = F::averaging(g);
-      plan.run(estimates_.data(), scratch_.data(), nn_, alpha, omega, F::rounds(g), &workers);
+      plan.run(estimates_.data(), scratch_.data(), alpha, omega, F::rounds(g), &workers);
     } else {
       settle();
     }

@@ -16,24 +16,26 @@ namespace garrison {
 /// `average_round` agent by agent.
 class GARRISON_EXPORT ConsensusPlan {
  public:
-  /// Lists of a network in public ids, each sorted: `offsets` N+1 numbers into `lists`.
-  ConsensusPlan(std::span<const int> offsets, std::span<const int> lists);
+  /// Lists of a network in public ids, each sorted: `offsets` N+1 numbers into `lists`. `width` >= 1: numbers
+  /// per agent. @throws InvalidInput when N x width numbers are too many for 32-bit indices
+  ConsensusPlan(std::span<const int> offsets, std::span<const int> lists, int width);
 
   /// Position -> public id: the order in which `run` expects the rows.
   std::span<const int> order() const { return order_; }
 
   /// In place on x, N x width row by row in `order()`; scratch has the same size. `omega`: Chebyshev weight
-  /// per round, empty = plain. width >= 1. Does not allocate. With `workers` each round is split over
+  /// per round, empty = plain. Does not allocate. With `workers` each round is split over
   /// threads, otherwise several rounds are fused where the rows do not fit into the cache; the bits are the
   /// same.
-  void run(double* x, double* scratch, int width, double alpha, std::span<const double> omega, int rounds,
+  void run(double* x, double* scratch, double alpha, std::span<const double> omega, int rounds,
            Workers* workers = nullptr) const;
 
  private:
-  int rounds_in_flight(int width) const;
+  int rounds_in_flight() const;
 
+  int width_;
   std::vector<int> order_;
-  std::vector<std::int32_t> neighbour_;  // positions, each row in order of public ids
+  std::vector<std::int32_t> neighbour_;  // width times their positions, each row in order of public ids
   std::vector<kernel::Run> runs_;
   std::vector<std::int32_t> windows_;  // first run of each window of rows, and the end
   std::int32_t reach_ = 1;             // windows that a row and its neighbours are apart at most

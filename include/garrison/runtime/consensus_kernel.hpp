@@ -16,7 +16,7 @@ struct Run {
 
 /// One round of N x width arrays.
 struct Round {
-  const std::int32_t* neighbour;
+  const std::int32_t* neighbour;  ///< where the rows of neighbours start in `now`
   const double* now;
   double* next;  ///< holds the values of one round ago when omega != 1
   double alpha;

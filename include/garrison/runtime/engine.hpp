@@ -37,7 +37,7 @@ class Engine final : public Runner {
          int threads)
       : gains_(std::move(gains)),
         model_(model),
-        plan_(network.offsets(), network.lists()),
+        plan_(network.offsets(), network.lists(), model.states()),
         mail_(network, plan_.order(), model.states()),
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
         states_(static_cast<std::size_t>(model.agents())),

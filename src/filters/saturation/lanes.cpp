@@ -27,77 +27,91 @@ struct SenseJob {
   double beta;
 };
 
-/// The B lanes from `lane` on.
-template <int n, int B>
-GARRISON_INLINE void sense_part(const SenseJob& job, int lane) {
-  using Lanes = Block<B>;
-  using V = Lanes::type;
-  const V beta = V{} + job.beta;
-  const V huge = V{} + kHuge;
-  const double* c = job.C;
-  for (int i = 0; i < job.agents; ++i) {
-    double* const x = job.x + static_cast<std::ptrdiff_t>(i) * n * kL + lane;
-    V prediction[n];
-    for (int r = 0; r < n; ++r) {
-      prediction[r] = job.A[r] * *Lanes::of(x);
-      for (int k = 1; k < n; ++k) prediction[r] += job.A[k * n + r] * *Lanes::of(x + k * kL);
-    }
-    for (int r = 0; r < n; ++r) *Lanes::of(x + r * kL) = prediction[r];
-    for (int o = 0; o < job.outputs[i]; ++o, c += n) {
-      V expected = {};
-      for (int k = 0; k < n; ++k) expected += c[k] * prediction[k];
-      const V innovation = *Lanes::of(job.y + (job.first_output[i] + o) * kL + lane) - expected;
-      const V low = innovation < -beta ? -beta : innovation;
-      const V clipped = low > beta ? beta : low;
-      // Missing, or used in full and so large that it would destroy the estimate (or NaN): no update.
-      const V injected = clipped < huge && clipped > -huge ? clipped : V{};
-      for (int k = 0; k < n; ++k) *Lanes::of(x + k * kL) += injected * c[k];
-    }
-  }
-}
-
-template <int n, int B>
-GARRISON_INLINE void sense_all(const SenseJob& job) {
-  for (int lane = 0; lane < kLanes; lane += B) sense_part<n, B>(job, lane);
-}
-
-struct SenseLanes {
+template <int n>
+struct Sense {
   template <int B>
-  GARRISON_INLINE static void run(const SenseJob& job, int n) {
-    switch (n) {
-      case 1:
-        return sense_all<1, B>(job);
-      case 2:
-        return sense_all<2, B>(job);
-      case 3:
-        return sense_all<3, B>(job);
-      case 4:
-        return sense_all<4, B>(job);
-      case 5:
-        return sense_all<5, B>(job);
-      case 6:
-        return sense_all<6, B>(job);
-      case 7:
-        return sense_all<7, B>(job);
-      default:
-        return sense_all<8, B>(job);
+  GARRISON_INLINE static void run(const SenseJob& job) {
+    for (int lane = 0; lane < kLanes; lane += B) part<B>(job, lane);
+  }
+
+ private:
+  /// The B lanes from `lane` on.
+  template <int B>
+  GARRISON_INLINE static void part(const SenseJob& job, int lane) {
+    using Lanes = Block<B>;
+    using V = Lanes::type;
+    const V beta = V{} + job.beta;
+    const V huge = V{} + kHuge;
+    const double* c = job.C;
+    double* x = job.x + lane;
+    for (int i = 0; i < job.agents; ++i, x += n * kL) {
+      V prediction[n];
+      V now[n];
+      for (int r = 0; r < n; ++r) {
+        prediction[r] = job.A[r] * *Lanes::of(x);
+        for (int k = 1; k < n; ++k) prediction[r] += job.A[k * n + r] * *Lanes::of(x + k * kL);
+        now[r] = prediction[r];
+      }
+      for (int o = 0; o < job.outputs[i]; ++o, c += n) {
+        V expected = {};
+        for (int k = 0; k < n; ++k) expected += c[k] * prediction[k];
+        const V innovation = *Lanes::of(job.y + (job.first_output[i] + o) * kL + lane) - expected;
+        const V low = innovation < -beta ? -beta : innovation;
+        const V clipped = low > beta ? beta : low;
+        // Missing, or used in full and so large that it would destroy the estimate (or NaN): no update.
+        const V least = clipped > -huge ? clipped : V{};
+        const V injected = least < huge ? least : V{};
+        for (int k = 0; k < n; ++k) now[k] += injected * c[k];
+      }
+      for (int r = 0; r < n; ++r) *Lanes::of(x + r * kL) = now[r];
     }
   }
 };
 
+/// Estimates of all agents into an array per lane.
+struct ReadJob {
+  const double* x;    // [agent][component][lane]
+  const int* places;  // in x, by public id
+  int agents;
+  double* const* out;
+  int used;
+};
+
+template <int n>
+struct Read {
+  template <int B>
+  GARRISON_INLINE static void run(const ReadJob& job) {
+    constexpr int W = block_of(n, B);
+    using Lanes = Block<W>;
+    for (int i = 0; i < job.agents; ++i) {
+      const double* const x = job.x + job.places[i] * n * kL;
+      for (int first = 0; first < n; first += W)
+        for (int lane = 0; lane < kLanes; lane += W) {
+          typename Lanes::type row[W];
+          for (int r = 0; r < W; ++r) row[r] = *Lanes::of(x + (first + r) * kL + lane);
+          transpose<W>(row);
+          for (int l = 0; l < std::min(W, job.used - lane); ++l)
+            *Lanes::of(job.out[lane + l] + i * n + first) = row[l];
+        }
+    }
+  }
+};
+
+template <int n>
 class SaturationLanes final : public LaneRunner {
  public:
   SaturationLanes(std::shared_ptr<const Saturation::Gains> gains, const Model& model, const Network& network)
-      : gains_(std::move(gains)), model_(model), plan_(network.offsets(), network.lists()) {
+      : gains_(std::move(gains)), model_(model), plan_(network.offsets(), network.lists(), n * kLanes) {
+    places_.resize(static_cast<std::size_t>(model_.agents()));
     for (const int i : plan_.order()) {
+      places_[static_cast<std::size_t>(i)] = static_cast<int>(outputs_.size());
       outputs_.push_back(model_.outputs(i));
       first_output_.push_back(model_.offset(i));
       for (Eigen::Index r = 0; r < model_.C(i).rows(); ++r)
-        for (int k = 0; k < model_.states(); ++k) rows_.push_back(model_.C(i)(r, k));
+        for (int k = 0; k < n; ++k) rows_.push_back(model_.C(i)(r, k));
     }
-    x_.resize(static_cast<std::size_t>(model_.agents() * model_.states()) * kLanes);
+    x_.resize(static_cast<std::size_t>(model_.agents() * n) * kLanes);
     scratch_.resize(x_.size());
-    public_.resize(x_.size());
   }
 
   void reset(const Matrix* x0) override {
@@ -106,9 +120,7 @@ class SaturationLanes final : public LaneRunner {
     clock_.p = 0.0;
     for (int l = 0; l < kLanes; ++l)
       for (int k = 0; k < model_.agents(); ++k)
-        for (int r = 0; r < model_.states(); ++r)
-          at(k, r, l) = x0[l](r, plan_.order()[static_cast<std::size_t>(k)]);
-    publish();
+        for (int r = 0; r < n; ++r) at(k, r, l) = x0[l](r, plan_.order()[static_cast<std::size_t>(k)]);
   }
 
   void step(const double* y) override {
@@ -121,35 +133,26 @@ class SaturationLanes final : public LaneRunner {
                        x_.data(),
                        model_.agents(),
                        Saturation::beta_now(*gains_, clock_)};
-    run_widest<SenseLanes, const SenseJob&>(job, model_.states());
-    plan_.run(x_.data(), scratch_.data(), model_.states() * kLanes, gains_->alpha, gains_->omega,
-              gains_->rounds);
-    publish();
+    run_widest<Sense<n>, const SenseJob&>(job);
+    plan_.run(x_.data(), scratch_.data(), gains_->alpha, gains_->omega, gains_->rounds);
   }
-  const double* estimates() const override { return public_.data(); }
+  void read(double* const* out, int used) const override {
+    run_widest_of<Read<n>, n, const ReadJob&>({x_.data(), places_.data(), model_.agents(), out, used});
+  }
 
  private:
-  double& at(int k, int r, int lane) {
-    return x_[static_cast<std::size_t>((k * model_.states() + r) * kLanes + lane)];
-  }
-  void publish() {
-    const auto record = static_cast<std::size_t>(model_.states() * kLanes);
-    for (std::size_t k = 0; k < outputs_.size(); ++k)
-      std::copy_n(x_.data() + k * record, record,
-                  public_.data() + static_cast<std::size_t>(plan_.order()[k]) * record);
-  }
-
+  double& at(int k, int r, int lane) { return x_[static_cast<std::size_t>((k * n + r) * kLanes + lane)]; }
   std::shared_ptr<const Saturation::Gains> gains_;
   Model model_;
   ConsensusPlan plan_;
   Saturation::State<1>
       clock_;  // carries the threshold over time, which is the same for all agents and trials
+  std::vector<int> places_;
   std::vector<int> outputs_;
   std::vector<int> first_output_;
   std::vector<double> rows_;
   Aligned<double> x_;
   Aligned<double> scratch_;
-  Aligned<double> public_;
 };
 
 }  // namespace
@@ -157,7 +160,14 @@ class SaturationLanes final : public LaneRunner {
 std::unique_ptr<LaneRunner> Saturation::lanes(std::shared_ptr<const Gains> gains, const Model& model,
                                               const Network& network) {
   if (gains->detector || model.states() > 8) return nullptr;
-  return std::make_unique<SaturationLanes>(std::move(gains), model, network);
+  std::unique_ptr<LaneRunner> runner;
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    const auto make = [&]<int n>(std::integral_constant<int, n>) {
+      if (model.states() == n) runner = std::make_unique<SaturationLanes<n>>(gains, model, network);
+    };
+    (make(std::integral_constant<int, k + 1>{}), ...);
+  }(std::make_integer_sequence<int, 8>{});
+  return runner;
 }
 
 }  // namespace garrison

@@ -35,7 +35,7 @@ std::vector<double> one_by_one(const Network& net, std::vector<double> x, int wi
 
 std::vector<double> at_once(const Network& net, const std::vector<double>& x, int width, double alpha,
                             const std::vector<double>& omega, int rounds, int threads) {
-  const ConsensusPlan plan(net.offsets(), net.lists());
+  const ConsensusPlan plan(net.offsets(), net.lists(), width);
   const auto w = static_cast<std::ptrdiff_t>(width);
   std::vector<double> memory(1 + x.size());
   std::vector<double> scratch(1 + x.size());
@@ -44,7 +44,7 @@ std::vector<double> at_once(const Network& net, const std::vector<double>& x, in
   for (std::size_t k = 0; k < plan.order().size(); ++k)
     std::copy_n(x.begin() + plan.order()[k] * w, w, inner + static_cast<std::ptrdiff_t>(k) * w);
   Workers workers(threads);
-  plan.run(inner, scratch.data() + 1, width, alpha, omega, rounds, &workers);
+  plan.run(inner, scratch.data() + 1, alpha, omega, rounds, &workers);
   for (std::size_t k = 0; k < plan.order().size(); ++k)
     std::copy_n(inner + static_cast<std::ptrdiff_t>(k) * w, w, out.begin() + plan.order()[k] * w);
   return out;

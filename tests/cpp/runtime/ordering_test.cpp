@@ -36,7 +36,7 @@ TEST_CASE("the order is a permutation, the same every time, also with isolated a
                              Network::random_geometric(800, 0.06, 3), Network::erdos_renyi(200, 0.0, 1)}) {
     std::vector<int> order = order_of(net);
     CHECK(order == order_of(net));
-    const ConsensusPlan plan(net.offsets(), net.lists());
+    const ConsensusPlan plan(net.offsets(), net.lists(), 1);
     std::vector<int> planned(plan.order().begin(), plan.order().end());
     REQUIRE(order.size() == static_cast<std::size_t>(net.agents()));
     REQUIRE(planned.size() == order.size());
@@ -57,9 +57,9 @@ TEST_CASE("rounds without a pool of threads, fused where rows do not fit the cac
   test::Rng rng(6);
   for (const int N : {200, 30000}) {
     const Network net = Network::random_geometric(N, std::sqrt(12.0 / (3.14159 * N)), 2);
-    const ConsensusPlan plan(net.offsets(), net.lists());
     const double alpha = 1.0 / (1.0 + net.max_degree());
     for (const int width : {1, 3, 8}) {
+      const ConsensusPlan plan(net.offsets(), net.lists(), width);
       const auto w = static_cast<std::size_t>(width);
       std::vector<double> x(static_cast<std::size_t>(N) * w);
       for (double& v : x) v = test::uniform(rng, -1, 1);
@@ -72,8 +72,8 @@ TEST_CASE("rounds without a pool of threads, fused where rows do not fit the cac
       std::vector<double> split = x;
       std::vector<double> scratch(x.size());
       Workers two(2);
-      plan.run(alone.data(), scratch.data(), width, alpha, {}, 23, nullptr);
-      plan.run(split.data(), scratch.data(), width, alpha, {}, 23, &two);
+      plan.run(alone.data(), scratch.data(), alpha, {}, 23, nullptr);
+      plan.run(split.data(), scratch.data(), alpha, {}, 23, &two);
       CHECK(alone == split);
       for (std::size_t k = 0; k < w; ++k) CHECK(std::abs(mean(alone, k) - mean(x, k)) < 1e-14);
     }
