@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "garrison/core/block.hpp"
 #include "garrison/core/clones.hpp"
@@ -19,6 +20,16 @@ std::uint8_t shifted(std::uint8_t bits, int shift) {
   return static_cast<std::uint8_t>(((bits << shift) | (bits >> (n - shift))) & ((1 << n) - 1));
 }
 
+/// n words for every set of entries: all ones where an entry is in the set, else zero.
+template <int n>
+constexpr auto make_masks() {
+  std::array<std::int64_t, (std::size_t{1} << n) * n> masks{};
+  for (std::size_t k = 0; k < masks.size(); ++k) masks[k] = -static_cast<std::int64_t>(k / n >> k % n & 1);
+  return masks;
+}
+template <int n>
+alignas(64) inline constexpr auto kMasks = make_masks<n>();
+
 /// For agents begin..end-1, all of whose predictions are plain: the bits are those of messages, since entries
 /// that were not shared add zero.
 template <int n>
@@ -31,8 +42,6 @@ struct Disagreement {
     constexpr int W = block_of(n, B);
     using V = typename Block<W>::type;
     using Bits = decltype(V{} < V{});
-    Bits own_bit{};
-    for (int a = 0; a < W; ++a) own_bit[a] = 1 << a;
     for (std::size_t k = begin; k < end; ++k, u += n) {
       V own[n / W];
       V sum[n / W];
@@ -42,11 +51,12 @@ struct Disagreement {
       }
       for (std::size_t e = wiring.first[k]; e < wiring.first[k + 1]; ++e) {
         const std::size_t j = wiring.slots[e];
-        const std::int64_t bits = shares[j];
+        const std::int64_t* const shared = kMasks<n>.data() + shares[j] * n;
         for (int c = 0; c < n / W; ++c) {
           const V apart = *Block<W>::of(x + j * n + c * W) - own[c];
-          const Bits shared = (Bits{} + (bits >> (c * W))) & own_bit;
-          sum[c] += shared != 0 ? apart : V{};
+          Bits mask;
+          std::memcpy(&mask, shared + c * W, sizeof(mask));
+          sum[c] += V(Bits(apart) & mask);
         }
       }
       for (int c = 0; c < n / W; ++c) *Block<W>::of(u + c * W) = sum[c];

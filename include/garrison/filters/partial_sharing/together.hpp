@@ -27,8 +27,8 @@ class PartialSharing::Together {
   template <class Locals>
   void join(State<n>* states, std::size_t count, const Locals& local) {
     states_ = states;
-    for (auto& side : x_) side.resize(count * n);
     std::vector<int> most((count + Group::kLanes - 1) / Group::kLanes);  // outputs of an agent, by group
+    for (auto& side : x_) side.resize(most.size() * Group::kLanes * n);
     for (std::size_t k = 0; k < count; ++k)
       most[k / Group::kLanes] = std::max(most[k / Group::kLanes], local(k).outputs);
     typename Group::Room room = allocate(most);
@@ -75,15 +75,18 @@ class PartialSharing::Together {
     const double* const x = x_[side_].data();
     side_ = 1 - side_;
     each(common(any, g), workers, [&](Group& group, std::size_t first, std::size_t end, double* u) {
+      const double* const far = x + ahead(first, kReach) * n;
+      const double* const near = x_[side_].data() + ahead(first, 2 * Group::kLanes) * n;
       for (std::size_t k = first; k < end; ++k) {
+        const std::size_t lane = k - first;
         const double* const measured = y(k);
-        // Measurements are in order of public ids, and neighbours up to some hundred places away: the
-        // hardware's own prefetcher sees neither of them coming.
-        __builtin_prefetch(y(ahead(k, 2 * Group::kLanes)));
-        __builtin_prefetch(x + ahead(k, kReach) * n);
-        __builtin_prefetch(x_[side_].data() + ahead(k, 2 * Group::kLanes) * n, 1);
-        const int lane = static_cast<int>(k - first);
-        for (int r = 0; r < group.outputs[k - first]; ++r) group.at(group.y, r, lane) = measured[r];
+        // Measurements are in order of public ids, and neighbours some hundred places away: the hardware's
+        // own prefetcher sees neither of them coming.
+        __builtin_prefetch(y(std::min(k + 2 * Group::kLanes, shares_.size() - 1)));
+        __builtin_prefetch(far + lane * n);
+        __builtin_prefetch(near + lane * n, 1);
+        for (int r = 0; r < group.outputs[lane]; ++r)
+          group.at(group.y, r, static_cast<int>(lane)) = measured[r];
       }
       const std::uint8_t* const shares = now_.data();
       run_widest_of<partial_sharing::Disagreement<n>, n>(x, shares, wiring, first, end, u);
@@ -105,8 +108,9 @@ class PartialSharing::Together {
  private:
   static constexpr std::size_t kReach = 1024;  // how far away neighbours are in large plane networks
 
-  std::size_t ahead(std::size_t k, std::size_t places) const {
-    return std::min(k + places, shares_.size() - 1);
+  /// First agent of the group that is `places` further on, or of the last one.
+  std::size_t ahead(std::size_t first, std::size_t places) const {
+    return std::min(first + places, (groups_.size() - 1) * Group::kLanes);
   }
 
   /// `listen(group, first, end, u)` finds u of agents first..end-1; then they are updated.
