@@ -42,11 +42,10 @@ GARRISON_INLINE void transpose(typename Block<B>::type* row) {
   }(std::make_integer_sequence<int, B>{});
 }
 
-/// Doubles per block in the functions below: every machine has registers of two.
-constexpr int pair_of(int n) { return block_of(n, 2); }
+// In the functions below `most` is how many doubles a register of the caller's instruction set has; every
+// machine has registers of two.
 
-/// out = A x for a matrix stored column by column; every entry sums in the order of the columns. `most`:
-/// doubles per block that the caller's instruction set has.
+/// out = A x for a matrix stored column by column; every entry sums in the order of the columns.
 template <int n, int most = 2>
 GARRISON_INLINE void multiply(const double* A, const double* x, double* out, int nn) noexcept {
   if constexpr (n == Dynamic) {
@@ -64,23 +63,23 @@ GARRISON_INLINE void multiply(const double* A, const double* x, double* out, int
 }
 
 /// out = x
-template <int n>
-inline void copy(const double* x, double* out, int nn) noexcept {
+template <int n, int most = 2>
+GARRISON_INLINE void copy(const double* x, double* out, int nn) noexcept {
   if constexpr (n == Dynamic) {
     for (int k = 0; k < nn; ++k) out[k] = x[k];
   } else {
-    constexpr int B = pair_of(n);
+    constexpr int B = block_of(n, most);
     for (int k = 0; k < n; k += B) *Block<B>::of(out + k) = *Block<B>::of(x + k);
   }
 }
 
 /// x += factor c
-template <int n>
-inline void add_scaled(double factor, const double* c, double* x, int nn) noexcept {
+template <int n, int most = 2>
+GARRISON_INLINE void add_scaled(double factor, const double* c, double* x, int nn) noexcept {
   if constexpr (n == Dynamic) {
     for (int k = 0; k < nn; ++k) x[k] += factor * c[k];
   } else {
-    constexpr int B = pair_of(n);
+    constexpr int B = block_of(n, most);
     for (int k = 0; k < n; k += B) *Block<B>::of(x + k) += factor * *Block<B>::of(c + k);
   }
 }

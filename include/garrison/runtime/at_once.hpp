@@ -9,6 +9,7 @@
 
 #include "garrison/core/aligned.hpp"
 #include "garrison/core/block.hpp"
+#include "garrison/core/clones.hpp"
 #include "garrison/core/filter.hpp"
 #include "garrison/core/magnitude.hpp"
 #include "garrison/runtime/consensus.hpp"
@@ -56,8 +57,9 @@ class AtOnce {
     std::atomic<bool> finite{true};
     std::atomic<bool> alike{true};
     workers.split(N, [&](std::int64_t begin, std::int64_t end, int) {
-      const Sensed sensed =
-          sense(g, local, t, y, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+      Sensed sensed{};
+      run_widest_of<Sense<Locals, Measurements>, n>(this, &g, &local, t, &y, static_cast<std::size_t>(begin),
+                                                    static_cast<std::size_t>(end), &sensed);
       if (!sensed.finite) finite = false;
       if (!sensed.alike) alike = false;
     });
@@ -101,8 +103,17 @@ class AtOnce {
     bool alike;
   };
   template <class Locals, class Measurements>
-  __attribute__((flatten)) Sensed sense(const typename F::Gains& g, const Locals& local, std::int64_t t,
-                                        const Measurements& y, std::size_t begin, std::size_t end) {
+  struct Sense {
+    template <int B>
+    GARRISON_INLINE static void run(AtOnce* all, const typename F::Gains* g, const Locals* local,
+                                    std::int64_t t, const Measurements* y, std::size_t begin, std::size_t end,
+                                    Sensed* sensed) {
+      *sensed = all->template sense<B>(*g, *local, t, *y, begin, end);
+    }
+  };
+  template <int B, class Locals, class Measurements>
+  GARRISON_INLINE Sensed sense(const typename F::Gains& g, const Locals& local, std::int64_t t,
+                               const Measurements& y, std::size_t begin, std::size_t end) {
     const double* const A = local(begin).A;
     double* const predictions = scratch_.data() + begin * row();  // of a few agents: stays in cache
     bool finite = true;
@@ -112,11 +123,13 @@ class AtOnce {
       predict<n>(A, estimate(first), predictions, last - first, nn_);
       for (std::size_t k = first; k < last; ++k) {
         // Measurements are in order of public ids, all over the place for the hardware's own prefetcher.
-        __builtin_prefetch(y(std::min(k + kAhead, end - 1)));
-        const auto* const later = reinterpret_cast<const char*>(&states_[std::min(k + kAhead, end - 1)]);
+        const std::size_t ahead = std::min(k + kAhead, end - 1);
+        __builtin_prefetch(y(ahead));
+        __builtin_prefetch(local(ahead).C);
+        const auto* const later = reinterpret_cast<const char*>(&states_[ahead]);
         for (std::size_t line = 0; line < sizeof(State); line += 64) __builtin_prefetch(later + line, 1);
-        F::template update<n>(local(k), g, states_[k], y(k), t, predictions + (k - first) * row(),
-                              estimate(k));
+        F::template update<n, B>(local(k), g, states_[k], y(k), t, predictions + (k - first) * row(),
+                                 estimate(k));
         alike = alike && same(begin, k);
       }
       finite = finite && all_finite(estimate(first), (last - first) * row());

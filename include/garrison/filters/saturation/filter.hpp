@@ -142,18 +142,18 @@ struct GARRISON_EXPORT Saturation {
     double on_stack[n == Dynamic ? 1 : n];
     double* const prediction = n == Dynamic ? s.prediction.get() : on_stack;
     multiply<n>(l.A, s.x.data(), prediction, nn);
-    update(l, g, s, y, t, prediction, s.x.data());
+    update<n>(l, g, s, y, t, prediction, s.x.data());
     send(s, 0, m);
   }
 
   /// `sense` from A xhat_i(t-1) on and without its message, for drivers that average the whole network at
-  /// once: they keep the estimates themselves.
-  template <int n>
-  static void update(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
-                     const double* prediction, double* estimate) noexcept {
+  /// once: they keep the estimates themselves, and may be compiled for wider registers (core/clones.hpp).
+  template <int n, int most = 2>
+  GARRISON_INLINE static void update(const Local& l, const Gains& g, State<n>& s, const double* y,
+                                     std::int64_t t, const double* prediction, double* estimate) noexcept {
     advance_bounds(g, s, t);
     const int nn = dimension<n>(l);
-    copy<n>(prediction, estimate, nn);
+    copy<n, most>(prediction, estimate, nn);
     const bool proved = g.detector && s.proved.contains(l.id);
     const bool informed = knows_all(g, s);
     const double beta = beta_now(g, s);
@@ -183,11 +183,11 @@ struct GARRISON_EXPORT Saturation {
         limited += std::abs(h) > beta ? 1 : 0;
         ++used;
       }
-      add_scaled<n>(injected, c, estimate, nn);
+      add_scaled<n, most>(injected, c, estimate, nn);
     }
     if (accused) {
       // Nothing of an accused sensor is used, even if some of its outputs look harmless.
-      copy<n>(prediction, estimate, nn);
+      copy<n, most>(prediction, estimate, nn);
       s.proved.insert(l.id);
     }
     s.verdict = proved || accused ? Verdict::attacked
