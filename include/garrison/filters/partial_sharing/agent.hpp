@@ -32,7 +32,7 @@ void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, Stat
       fill(group.G, packed(i), i + 1, [&](int k) { return limit.G[static_cast<std::size_t>(i * nn + k)]; });
     fill(group.K, 0, q * nn, [&](int k) { return limit.K[static_cast<std::size_t>(k)]; });
   }
-  group.frozen[static_cast<std::size_t>(s.lane)] = steady;
+  group.set_frozen(s.lane, steady);
   group.started = false;
   s.t = 0;
   if (g.given)

@@ -51,12 +51,12 @@ struct Disagreement {
       }
       for (std::size_t e = wiring.first[k]; e < wiring.first[k + 1]; ++e) {
         const std::size_t j = wiring.slots[e];
-        const std::int64_t* const shared = kMasks<n>.data() + shares[j] * n;
+        const std::int64_t* const shared = kMasks<n>.data() + std::size_t{shares[j]} * n;
         for (int c = 0; c < n / W; ++c) {
-          const V apart = *Block<W>::of(x + j * n + c * W) - own[c];
+          const V ahead = own[c] - *Block<W>::of(x + j * n + c * W);
           Bits mask;
           std::memcpy(&mask, shared + c * W, sizeof(mask));
-          sum[c] += V(Bits(apart) & mask);
+          sum[c] -= V(Bits(ahead) & mask);
         }
       }
       for (int c = 0; c < n / W; ++c) *Block<W>::of(u + c * W) = sum[c];

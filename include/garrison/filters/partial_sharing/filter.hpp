@@ -159,7 +159,7 @@ struct GARRISON_EXPORT PartialSharing {
     const int nn = dimension<n>(l);
     out[0] = 0.0;
     for (int i = 0; i < nn; ++i) out[0] += s.group->at(s.group->P, partial_sharing::packed(i, i), s.lane);
-    out[1] = s.group->frozen[static_cast<std::size_t>(s.lane)] ? 1.0 : 0.0;
+    out[1] = s.group->is_frozen(s.lane) ? 1.0 : 0.0;
     out[2] = static_cast<double>(g.selection.shared(l.id));
   }
 

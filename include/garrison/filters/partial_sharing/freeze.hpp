@@ -56,7 +56,7 @@ void freeze(double gamma, Group<n>& group, int lane) noexcept {
     recursion.use_row(r, One::of(row));
   }
   explicit_gains<n>(recursion, gamma, m, q, room, group.K + lane, group.G + lane, kStride);
-  group.frozen[static_cast<std::size_t>(lane)] = true;
+  group.set_frozen(lane, true);
 }
 
 }  // namespace garrison::partial_sharing

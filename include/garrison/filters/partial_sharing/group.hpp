@@ -84,7 +84,14 @@ struct Group {
   }
 
   /// Whether some gains still change.
-  bool moving() const { return std::count(frozen.begin(), frozen.begin() + agents, true) < agents; }
+  bool moving() const { return (frozen & all(agents)) != all(agents); }
+  bool is_frozen(int lane) const { return (frozen >> lane & 1U) != 0; }
+  void set_frozen(int lane, bool is) {
+    const unsigned bit = 1U << lane;
+    frozen = is ? frozen | bit : frozen & ~bit;
+  }
+  /// A bit for each of so many lanes.
+  static unsigned all(int lanes) { return (1U << lanes) - 1U; }
 
   const int m;
   const int q;  ///< most outputs of an agent
@@ -99,7 +106,7 @@ struct Group {
   double* x;  ///< predictions of the next sample, agent by agent
   int agents = 1;
   std::array<int, kLanes> outputs{};  ///< of each agent; set by whoever makes a group of several
-  std::array<bool, kLanes> frozen{};
+  unsigned frozen = 0;                ///< a bit per lane
   bool started = false;
 
  private:

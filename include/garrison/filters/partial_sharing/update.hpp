@@ -68,11 +68,11 @@ class Update<n>::Lanes {
     load_lanes<n, B>(all_u + skipped, m, used_, u);
     innovations(x, e);
 
-    int frozen = 0;
-    for (int lane = 0; lane < used_; ++lane) frozen += is_frozen(lane) ? 1 : 0;
-    if (frozen > 0) apply_steady(x, u, e, steady);
+    const unsigned everybody = Group<n>::all(used_);
+    const unsigned frozen = group_.frozen >> first_ & everybody;
+    if (frozen != 0) apply_steady(x, u, e, steady);
     V change{};
-    if (frozen < used_) {
+    if (frozen != everybody) {
       Kernel recursion(own, rows, m, q);
       V* const P = array(group_.P);
       recursion.factor(P, kStride);
@@ -84,20 +84,18 @@ class Update<n>::Lanes {
       V limit{};  // of the trace; nothing is below 0
       for (int lane = 0; lane < used_; ++lane) limit[lane] = is_frozen(lane) ? 0.0 : kLargestVariance;
       recursion.predict(common_.A, common_.Q, P, kStride, limit, change);
-      if (frozen > 0)
+      if (frozen != 0)
         for (int i = 0; i < m; ++i) x[i] = limit > 0.0 ? x[i] : steady[i];
     }
-    predict(frozen == used_ ? steady : x, next, squares);
-    if (common_.freeze && frozen < used_)
+    predict(frozen == everybody ? steady : x, next, squares);
+    if (common_.freeze && frozen != everybody)
       for (int lane = 0; lane < used_; ++lane)
         if (!is_frozen(lane) && change[lane] <= kConverged) freeze<n>(common_.gamma, group_, first_ + lane);
   }
 
  private:
   GARRISON_INLINE int states() const { return n == Dynamic ? group_.m : n; }
-  GARRISON_INLINE bool is_frozen(int lane) const {
-    return group_.frozen[static_cast<std::size_t>(first_ + lane)];
-  }
+  GARRISON_INLINE bool is_frozen(int lane) const { return group_.is_frozen(first_ + lane); }
   GARRISON_INLINE V* array(double* which) const { return Block<B>::of(which + first_); }
 
   /// e = W (y - H xhat), missing entries 0; leaves the innovations in y.

@@ -279,5 +279,5 @@ TEST_CASE("narrow vectors give the bits of wide ones") {
     CHECK(x[0] == x[1]);
     CHECK(narrow.frozen == wide.frozen);
   }
-  CHECK(narrow.frozen[0]);
+  CHECK(narrow.is_frozen(0));
 }
