@@ -13,7 +13,6 @@
 #include "garrison/core/filter.hpp"
 #include "garrison/core/magnitude.hpp"
 #include "garrison/runtime/consensus.hpp"
-#include "garrison/runtime/predict.hpp"
 #include "garrison/runtime/workers.hpp"
 
 namespace garrison {
@@ -120,7 +119,8 @@ class AtOnce {
     bool alike = true;
     for (std::size_t first = begin; first < end; first += kAhead) {
       const std::size_t last = std::min(first + kAhead, end);
-      predict<n>(A, estimate(first), predictions, last - first, nn_);
+      for (std::size_t k = first; k < last; ++k)
+        multiply<n, B>(A, estimate(k), predictions + (k - first) * row(), nn_);
       for (std::size_t k = first; k < last; ++k) {
         // Measurements are in order of public ids, all over the place for the hardware's own prefetcher.
         const std::size_t ahead = std::min(k + kAhead, end - 1);

@@ -74,7 +74,7 @@ struct Group {
   /// Makes G and K those of another group, if both are at rest with the same numbers.
   void read_gains_of(const Group& other) {
     const std::size_t count = size(m, q, kGains);
-    if (moving() || other.moving() || !std::equal(G, G + count, other.G)) return;
+    if (G == other.G || moving() || other.moving() || !std::equal(G, G + count, other.G)) return;
     G = other.G;
     K = other.K;
   }

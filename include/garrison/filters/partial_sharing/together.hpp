@@ -167,8 +167,7 @@ class PartialSharing::Together {
     share_gains();
   }
   void share_gains() {
-    for (std::size_t i = 0; i < groups_.size(); ++i)
-      if (twins_[i] != &groups_[i]) groups_[i].read_gains_of(*twins_[i]);
+    for (std::size_t i = 0; i < groups_.size(); ++i) groups_[i].read_gains_of(*twins_[i]);
   }
 
   State<n>* states_ = nullptr;
