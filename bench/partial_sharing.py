@@ -2,7 +2,7 @@
 
 m = 8 states, two measurements per agent, l = 4 shared entries, random geometric graph of mean degree 6. Agents measure
 different things or, "sensors alike", all the same. A large network with frozen gains is as fast as memory: different
-gains are 568 bytes per agent that have to be read in every step, those of like agents stay in the cache.
+sensors and gains are 544 bytes per agent that have to be read in every step, those of like agents stay in the cache.
 """
 
 import importlib.util
@@ -212,9 +212,10 @@ def steps(agents: int, count: int, repeats: int, alike: bool = False) -> Rows:
     if jax is not None:
         assert np.abs(jax() - got).max() < 1e-9 * np.abs(got).max(), "JAX disagrees"
         rows["JAX vmap + scan"] = lambda: cpu(jax) * per
-    few = 0 if alike else min(agents, 256)  # these two do one agent at a time: the same in both tables
-    for name, make in (("FilterPy, predict and update", _filterpy), ("Stone Soup, predict and update", _stonesoup)):
-        peer = make(task, few) if few > 0 else None
+    few = min(agents, 256)
+    one_at_a_time = {"FilterPy, predict and update": _filterpy, "Stone Soup, predict and update": _stonesoup}
+    for name, make in () if alike else one_at_a_time.items():  # sensors that are alike make no difference to these
+        peer = make(task, few)
         if peer is not None:
             assert np.abs(peer() - _alone(task, few)).max() < 1e-9, f"{name} disagrees"
             rows[name] = lambda peer=peer: cpu(peer) / few

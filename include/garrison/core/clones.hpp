@@ -27,6 +27,10 @@ GARRISON_TARGET("avx2")
 void run_four(Args... args) {
   Kernel::template run<4>(args...);
 }
+template <class Kernel, class... Args>
+__attribute__((noinline)) void run_two(Args... args) {
+  Kernel::template run<2>(args...);
+}
 
 /// Doubles in the widest register of this machine that we have kernels for.
 inline int register_doubles() {
@@ -52,8 +56,19 @@ void run_widest(Args... args) {
     case 4:
       return detail::run_four<Kernel>(args...);
     default:
-      return Kernel::template run<2>(args...);
+      return detail::run_two<Kernel>(args...);
   }
+}
+
+/// From inside a kernel of B doubles, another one of as many: called where inlining would compile it twice.
+template <class Kernel, int B, class... Args>
+void run_as_wide(Args... args) {
+  if constexpr (B == 8)
+    detail::run_eight<Kernel>(args...);
+  else if constexpr (B == 4)
+    detail::run_four<Kernel>(args...);
+  else
+    detail::run_two<Kernel>(args...);
 }
 
 /// The same for kernels of rows of n numbers: other rows than of 4 or 8 do not fill wide registers, and run
@@ -63,7 +78,7 @@ void run_widest_of(Args... args) {
   if constexpr (n % 4 == 0)
     run_widest<Kernel>(args...);
   else
-    Kernel::template run<2>(args...);
+    detail::run_two<Kernel>(args...);
 }
 
 }  // namespace garrison

@@ -46,7 +46,8 @@ class Engine final : public Runner {
     position_.resize(states_.size());
     for (const int i : plan_.order()) {
       position_[static_cast<std::size_t>(i)] = places_.size();
-      places_.push_back({i, model_.outputs(i), network.degree(i), model_.offset(i), rows_.size()});
+      places_.push_back({i, model_.outputs(i), network.degree(i), rows_.size()});
+      first_output_.push_back(model_.offset(i));
       const Matrix& C = model_.C(i);
       for (Eigen::Index r = 0; r < C.rows(); ++r)
         for (Eigen::Index c = 0; c < C.cols(); ++c) rows_.push_back(C(r, c));
@@ -140,7 +141,6 @@ class Engine final : public Runner {
     int id;
     int outputs;
     int degree;
-    int first_output;   // in y
     std::size_t first;  // in rows_
   };
   Local local(std::size_t k) const {
@@ -153,7 +153,7 @@ class Engine final : public Runner {
     return [this](std::size_t k) { return local(k); };
   }
   auto measured(const double* y) const {
-    return [this, y](std::size_t k) { return y + places_[k].first_output; };
+    return [this, y](std::size_t k) { return y + first_output_[k]; };
   }
 
   void step_at_once(std::int64_t t, const double* y) {
@@ -205,7 +205,8 @@ class Engine final : public Runner {
   [[no_unique_address]] mutable typename detail::AtOnceOf<F, n>::type at_once_;
   [[no_unique_address]] typename detail::TogetherOf<F, n>::type together_;
   std::vector<Place> places_;
-  Aligned<double> rows_;  // of all C_i
+  Aligned<double> rows_;           // of all C_i
+  std::vector<int> first_output_;  // of each agent in y
   std::vector<std::size_t> position_;
   std::int64_t overflows_ = 0;
   std::int64_t bytes_ = 0;

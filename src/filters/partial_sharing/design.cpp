@@ -9,9 +9,6 @@ namespace {
 
 std::vector<double> flat(const Matrix& m) { return {m.data(), m.data() + m.size()}; }
 
-/// Numbers of a matrix, row by row.
-std::vector<double> rows(const Matrix& m) { return flat(m.transpose()); }
-
 /// Steady gains of every agent; agents with the same sensors share the work.
 std::vector<PartialSharing::Steady> steady(const partial_sharing::Setting& s) {
   std::vector<PartialSharing::Steady> all;
@@ -29,7 +26,7 @@ std::vector<PartialSharing::Steady> steady(const partial_sharing::Setting& s) {
     partial_sharing::LocalRecursion recursion(s, i);
     recursion.restart(gains.P);
     recursion.step();
-    all.push_back({flat(gains.P), flat(recursion.consensus_gain()), flat(recursion.whitened_gain())});
+    all.push_back({flat(gains.P), flat(recursion.consensus_gain()), flat(recursion.filter_gain())});
   }
   return all;
 }
@@ -47,11 +44,8 @@ PartialSharing::Gains PartialSharing::design(const Params& params, const Model& 
   g.freeze = params.gains != "varying";
   const Matrix first = s.A * s.P0 * s.A.transpose() + s.Q;
   g.P0 = g.given ? s.P0 : Matrix((first + first.transpose()) / 2.0);
-  for (int i = 0; i < s.agents(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const Matrix W = partial_sharing::whitener(s.R[at], i);
-    g.sensors.push_back({rows(W), rows(W * s.H[at])});
-  }
+  for (int i = 0; i < s.agents(); ++i)
+    g.W.push_back(flat(partial_sharing::whitener(s.R[static_cast<std::size_t>(i)], i).transpose()));
   if (params.gains == "steady") g.steady = steady(s);
   return g;
 }

@@ -148,7 +148,7 @@ LocalGains LocalRecursion::step(double* change) {
   LocalGains g;
   g.P = P_;
   P_ = full(packed_P_, m);
-  g.K = setting_.A * Kw_ * W_;
+  g.K = setting_.A * filter_gain();
   g.C = setting_.A * consensus_gain();
   g.F = setting_.A - g.K * H_;
   return g;

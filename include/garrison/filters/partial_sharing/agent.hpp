@@ -21,8 +21,7 @@ void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, Stat
   fill(group.C, 0, q * nn, [&](int k) { return l.C[k]; });
   fill(group.y, 0, q, [](int) { return kNaN; });
   for (int i = 0; i < q; ++i)
-    fill(group.W, packed(i), i + 1,
-         [&](int k) { return g.sensors[id].W[static_cast<std::size_t>(i * q + k)]; });
+    fill(group.W, packed(i), i + 1, [&](int k) { return g.W[id][static_cast<std::size_t>(i * q + k)]; });
   const bool steady = !g.steady.empty();
   const double* const P = steady ? g.steady[id].P.data() : g.P0.data();
   for (int i = 0; i < nn; ++i) fill(group.P, packed(i), i + 1, [&](int k) { return P[i * nn + k]; });

@@ -49,6 +49,7 @@ struct Disagreement {
         own[c] = *Block<W>::of(x + k * n + c * W);
         sum[c] = V{};
       }
+#pragma GCC unroll 4
       for (std::size_t e = wiring.first[k]; e < wiring.first[k + 1]; ++e) {
         const std::size_t j = wiring.slots[e];
         const std::int64_t* const shared = kMasks<n>.data() + std::size_t{shares[j]} * n;

@@ -58,21 +58,15 @@ struct GARRISON_EXPORT PartialSharing {
     static auto fields();
   };
 
-  /// What an agent's measurements look like with unit noise.
-  struct Sensor {
-    std::vector<double> W;  ///< inverse of the Cholesky factor of R_i, outputs x outputs, row by row
-    std::vector<double> H;  ///< W H_i, row by row
-  };
-  /// The limit of an agent's recursion: gamma times the filtered covariance, and the gain of whitened
-  /// innovations.
+  /// The limit of an agent's recursion: gamma times the filtered covariance, and the gain of innovations.
   struct Steady {
     std::vector<double> P, G, K;
   };
   struct Gains {
     double gamma = 0.0;
     partial_sharing::Selection selection;
-    std::vector<Sensor> sensors;
-    std::vector<Steady> steady;  ///< empty: the recursion runs
+    std::vector<std::vector<double>> W;  ///< of each agent, row by row: W R_i W' = I, lower triangular
+    std::vector<Steady> steady;          ///< empty: the recursion runs
     Matrix Q;
     Matrix P0;
     bool given = false;  ///< the start is xhat(0) with P0, not an estimate one sample earlier

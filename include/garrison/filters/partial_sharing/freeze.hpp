@@ -56,6 +56,14 @@ void freeze(double gamma, Group<n>& group, int lane) noexcept {
     recursion.use_row(r, One::of(row));
   }
   explicit_gains<n>(recursion, gamma, m, q, room, group.K + lane, group.G + lane, kStride);
+  // K W, the gain of the innovations as they are; forwards: W is lower triangular, in place
+  for (int c = 0; c < q; ++c)
+    for (int i = 0; i < m; ++i) {
+      double sum = 0.0;
+      for (int r = c; r < q; ++r)
+        sum += group.at(group.W, packed(r, c), lane) * group.at(group.K, r * m + i, lane);
+      group.at(group.K, c * m + i, lane) = sum;
+    }
   group.set_frozen(lane, true);
 }
 

@@ -43,8 +43,8 @@ struct Group {
     }
     place(room);
   }
-  Group(const Group&) = delete;
-  Group& operator=(const Group&) = delete;
+  Group(Group&&) = default;
+  Group& operator=(Group&&) = delete;
 
   /// Number `k` of an array, e.g. (C, r * m + k), of one agent.
   static double& at(double* array, int k, int lane) {
@@ -60,7 +60,7 @@ struct Group {
   static constexpr bool on_stack(int m, int q) { return n != Dynamic && q <= m; }
   /// Doubles of a piece.
   static std::size_t size(int m, int q, Piece piece) {
-    const int scratch = Recursion<n, 1>::scratch(m) + q * Recursion<n, 1>::scratch_per_row(m) + 4 * m + q;
+    const int scratch = Recursion<n, 1>::scratch(m) + q * Recursion<n, 1>::scratch_per_row(m) + 4 * m + 2 * q;
     const int sizes[kPieces] = {q + m, q * m + packed(q), packed(m) + q * m,
                                 packed(m) + (on_stack(m, q) ? 0 : scratch)};
     return static_cast<std::size_t>(sizes[piece] * kLanes);
@@ -100,12 +100,13 @@ struct Group {
   double* C;    ///< H_i
   double* W;    ///< inverse of the Cholesky factor of R_i
   double* G;    ///< once frozen: gamma times the filtered covariance
-  double* K;    ///< once frozen: gain of the whitened innovations, row by row of measurements
+  double* K;    ///< once frozen: gain of the innovations, row by row of measurements
   double* P;    ///< P(k+1)
   double* scratch;
   double* x;  ///< predictions of the next sample, agent by agent
   int agents = 1;
   std::array<int, kLanes> outputs{};  ///< of each agent; set by whoever makes a group of several
+  bool even = false;                  ///< every lane is an agent with q outputs
   unsigned frozen = 0;                ///< a bit per lane
   bool started = false;
 

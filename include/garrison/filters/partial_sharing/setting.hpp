@@ -49,9 +49,9 @@ class GARRISON_EXPORT LocalRecursion {
   void restart(const Matrix& P) { P_ = P; }
   /// Gains of this k; moves on to P_i(k+1). `change`, if given, receives how much P changed.
   LocalGains step(double* change = nullptr);
-  /// Gains of the whitened innovations and gamma times the filtered covariance of the last `step`, as the
-  /// filter keeps them.
-  const Matrix& whitened_gain() const { return Kw_; }
+  /// Gain of the innovations in the estimate and gamma times the filtered covariance of the last `step`, as
+  /// the filter keeps them.
+  Matrix filter_gain() const { return Kw_ * W_; }
   Matrix consensus_gain() const;
 
  private:

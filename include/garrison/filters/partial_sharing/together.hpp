@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <deque>
-#include <map>
 #include <memory>
 #include <vector>
 
 #include "garrison/filters/partial_sharing/disagreement.hpp"
 #include "garrison/filters/partial_sharing/filter.hpp"
+#include "garrison/filters/partial_sharing/groups.hpp"
 
 namespace garrison {
 
@@ -27,25 +26,15 @@ class PartialSharing::Together {
   template <class Locals>
   void join(State<n>* states, std::size_t count, const Locals& local) {
     states_ = states;
-    std::vector<int> most((count + Group::kLanes - 1) / Group::kLanes);  // outputs of an agent, by group
-    for (auto& side : x_) side.resize(most.size() * Group::kLanes * n);
-    for (std::size_t k = 0; k < count; ++k)
-      most[k / Group::kLanes] = std::max(most[k / Group::kLanes], local(k).outputs);
-    typename Group::Room room = allocate(most);
-    for (std::size_t i = 0; i < most.size(); ++i) {
-      const std::size_t first = i * Group::kLanes;
-      Group& group = groups_.emplace_back(n, most[i], room, x_[0].data() + first * n);
-      for (std::size_t piece = 0; piece < room.size(); ++piece)
-        room[piece] += Group::size(n, most[i], typename Group::Piece(piece));
-      group.agents = static_cast<int>(std::min<std::size_t>(Group::kLanes, count - first));
-      for (int lane = 0; lane < group.agents; ++lane) {
-        const std::size_t k = first + static_cast<std::size_t>(lane);
-        states[k].group = std::shared_ptr<Group>(std::shared_ptr<void>(), &group);  // ours, not its own
-        states[k].lane = lane;
-        group.outputs[static_cast<std::size_t>(lane)] = local(k).outputs;
-      }
+    std::vector<int> outputs(count);
+    for (std::size_t k = 0; k < count; ++k) outputs[k] = local(k).outputs;
+    for (auto& side : x_) side.resize((count + Group::kLanes - 1) / Group::kLanes * kGroupSize);
+    groups_.arrange(outputs, [this](std::size_t i) { return next(i); });
+    for (std::size_t k = 0; k < count; ++k) {
+      Group* const ours = &groups_[k / Group::kLanes];
+      states[k].group = std::shared_ptr<Group>(std::shared_ptr<void>(), ours);  // not the agent's own
+      states[k].lane = static_cast<int>(k % Group::kLanes);
     }
-    twins_.resize(groups_.size());
     shares_.resize(count);
     now_.resize(count);
   }
@@ -57,7 +46,7 @@ class PartialSharing::Together {
       shares_[k] = 0;
       for (const int a : g.selection.entries(local(k).id)) shares_[k] |= static_cast<std::uint8_t>(1 << a);
     }
-    share_sensors();
+    groups_.share_sensors();
     double squares = 0.0;
     for (const double x : x_[side_]) squares += x * x;
     plain_ = squares < partial_sharing::kPlain;
@@ -70,26 +59,12 @@ class PartialSharing::Together {
   template <class Measurements, class Wiring, class Workers>
   void step(const Gains& g, const Local& any, std::int64_t t, const Measurements& y, Wiring wiring,
             Workers& workers) noexcept {
-    const int moved = g.selection.offset(t - 1);
-    for (std::size_t k = 0; k < shares_.size(); ++k) now_[k] = partial_sharing::shifted<n>(shares_[k], moved);
+    shift_shares(g.selection.offset(t - 1));
     const double* const x = x_[side_].data();
     side_ = 1 - side_;
-    each(common(any, g), workers, [&](Group& group, std::size_t first, std::size_t end, double* u) {
-      const double* const far = x + ahead(first, kReach) * n;
-      const double* const near = x_[side_].data() + ahead(first, 2 * Group::kLanes) * n;
-      for (std::size_t k = first; k < end; ++k) {
-        const std::size_t lane = k - first;
-        const double* const measured = y(k);
-        // Measurements are in order of public ids, and neighbours some hundred places away: the hardware's
-        // own prefetcher sees neither of them coming.
-        __builtin_prefetch(y(std::min(k + 2 * Group::kLanes, shares_.size() - 1)));
-        __builtin_prefetch(far + lane * n);
-        __builtin_prefetch(near + lane * n, 1);
-        for (int r = 0; r < group.outputs[lane]; ++r)
-          group.at(group.y, r, static_cast<int>(lane)) = measured[r];
-      }
-      const std::uint8_t* const shares = now_.data();
-      run_widest_of<partial_sharing::Disagreement<n>, n>(x, shares, wiring, first, end, u);
+    const partial_sharing::Common shared = common(any, g);
+    each(workers, [&](std::size_t begin, std::size_t end, Outcome* outcome) {
+      run_widest_of<Direct, n>(this, begin, end, &shared, x, wiring, &y, outcome);
     });
   }
 
@@ -97,83 +72,126 @@ class PartialSharing::Together {
   template <class Inboxes, class Workers>
   void fuse(const Gains& g, const Local& any, const Inboxes& inbox, Message<n>* out,
             Workers& workers) noexcept {
-    each(common(any, g), workers, [&](Group&, std::size_t first, std::size_t end, double* u) {
-      for (std::size_t k = first; k < end; ++k, u += n) {
-        disagreement<n>(states_[k], inbox(k), u);
-        out[k].t = -1;  // nothing to say before the next sample
+    const partial_sharing::Common shared = common(any, g);
+    each(workers, [&](std::size_t begin, std::size_t end, Outcome* outcome) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Group& group = groups_[i];
+        const bool moving = group.moving();
+        alignas(64) double u[kGroupSize];
+        for (std::size_t lane = 0; lane < static_cast<std::size_t>(group.agents); ++lane) {
+          const std::size_t k = i * Group::kLanes + lane;
+          disagreement<n>(states_[k], inbox(k), u + lane * n);
+          out[k].t = -1;  // nothing to say before the next sample
+        }
+        partial_sharing::update(shared, group, u, next(i), outcome->squares);
+        group.x = next(i);
+        outcome->rested |= moving && !group.moving();
       }
     });
   }
 
  private:
+  static constexpr std::size_t kLarge = 8192;  // agents that do not fit a second-level cache
   static constexpr std::size_t kReach = 1024;  // how far away neighbours are in large plane networks
 
-  /// First agent of the group that is `places` further on, or of the last one.
-  std::size_t ahead(std::size_t first, std::size_t places) const {
-    return std::min(first + places, (groups_.size() - 1) * Group::kLanes);
+  static constexpr std::size_t kGroupSize = std::size_t{Group::kLanes} * n;
+
+  /// What came of a sample.
+  struct Outcome {
+    alignas(64) double squares[Group::kLanes]{};  ///< of predictions, summed by lane
+    bool rested = false;                          ///< all gains of some group have become constant
+  };
+
+  /// One sample of groups begin..end-1 without messages.
+  struct Direct {
+    template <int B, class Wiring, class Measurements>
+    GARRISON_INLINE static void run(Together* all, std::size_t begin, std::size_t end,
+                                    const partial_sharing::Common* shared, const double* x, Wiring wiring,
+                                    const Measurements* y, Outcome* outcome) noexcept {
+      alignas(64) double u[kGroupSize];
+      const std::uint8_t* const shares = all->now_.data();
+      for (std::size_t i = begin; i < end; ++i) {
+        Group* const group = &all->groups_[i];
+        const bool moving = group->moving();
+        const std::size_t first = i * Group::kLanes;
+        all->listen(*group, first, *y);
+        partial_sharing::Disagreement<n>::template run<B>(x, shares, wiring, first,
+                                                          first + static_cast<std::size_t>(group->agents), u);
+        double* const next = all->next(i);
+        run_as_wide<partial_sharing::Update<n>, B>(shared, group, static_cast<const double*>(u), next,
+                                                   outcome->squares);
+        group->x = next;
+        outcome->rested |= moving && !group->moving();
+      }
+    }
+  };
+
+  void shift_shares(int offset) noexcept {
+    const std::uint8_t* const first = shares_.data();
+    std::uint8_t* const now = now_.data();
+    const std::size_t count = shares_.size();
+#pragma GCC ivdep
+    for (std::size_t k = 0; k < count; ++k) now[k] = partial_sharing::shifted<n>(first[k], offset);
   }
 
-  /// `listen(group, first, end, u)` finds u of agents first..end-1; then they are updated.
-  template <class Workers, class Listen>
-  void each(const partial_sharing::Common& shared, Workers& workers, const Listen& listen) noexcept {
-    double* const next = x_[side_].data();
+  /// Measurements of the group whose first agent is `first`.
+  template <class Measurements>
+  GARRISON_INLINE void listen(Group& group, std::size_t first, const Measurements& y) {
+    fetch(first, static_cast<std::size_t>(group.agents), y);
+    const auto take = [&](std::size_t lane, int r) GARRISON_INLINED {
+      group.at(group.y, r, static_cast<int>(lane)) = y(first + lane)[r];
+    };
+    if (group.even)
+      for (int r = 0; r < group.q; ++r)
+        for (std::size_t lane = 0; lane < Group::kLanes; ++lane) take(lane, r);
+    else
+      for (std::size_t lane = 0; lane < static_cast<std::size_t>(group.agents); ++lane)
+        for (int r = 0; r < group.outputs[lane]; ++r) take(lane, r);
+  }
+
+  /// Starts to fetch what later groups of `agents` need. Measurements are in order of public ids, and
+  /// neighbours in a large network some hundred places away: the hardware's own prefetcher sees neither of
+  /// them coming.
+  template <class Measurements>
+  GARRISON_INLINE void fetch(std::size_t first, std::size_t agents, const Measurements& y) const {
+    const std::size_t soon = ahead(first, 2 * Group::kLanes);
+    for (std::size_t lane = 0; lane < agents; ++lane) __builtin_prefetch(y(soon + lane));
+    if (shares_.size() < kLarge) return;
+    const double* const neighbours = x_[1 - side_].data() + ahead(first, kReach) * n;
+    const double* const predictions = x_[side_].data() + soon * n;
+    for (std::size_t lane = 0; lane < agents; ++lane) {
+      __builtin_prefetch(neighbours + lane * n);
+      __builtin_prefetch(predictions + lane * n, 1);
+    }
+  }
+
+  /// First of as many agents as a group has, `places` further on or at the end.
+  std::size_t ahead(std::size_t first, std::size_t places) const {
+    const std::size_t count = shares_.size();
+    return std::min(first + places, count - std::min<std::size_t>(count, Group::kLanes));
+  }
+
+  /// Where predictions of group i for the next sample go.
+  double* next(std::size_t i) { return x_[side_].data() + i * kGroupSize; }
+
+  /// `update(begin, end, outcome)` is one sample of groups begin..end-1.
+  template <class Workers, class Step>
+  void each(Workers& workers, const Step& update) noexcept {
     std::atomic<bool> plain{true};
     std::atomic<bool> rested{false};
     workers.split(static_cast<std::int64_t>(groups_.size()), [&](std::int64_t begin, std::int64_t end, int) {
-      alignas(64) double u[Group::kLanes * n];
-      alignas(64) double squares[Group::kLanes]{};
-      bool came_to_rest = false;
-      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-        Group& group = groups_[i];
-        const std::size_t first = i * Group::kLanes;
-        listen(group, first, first + static_cast<std::size_t>(group.agents), u);
-        double* const predictions = next + first * n;
-        const bool moving = group.moving();
-        partial_sharing::update(shared, group, u, predictions, squares);
-        came_to_rest = came_to_rest || (moving && !group.moving());
-        group.x = predictions;
-      }
-      if (came_to_rest) rested = true;
-      for (const double sum : squares)
+      Outcome outcome;
+      update(static_cast<std::size_t>(begin), static_cast<std::size_t>(end), &outcome);
+      if (outcome.rested) rested = true;
+      for (const double sum : outcome.squares)
         if (!(sum < partial_sharing::kPlain)) plain = false;
     });
     plain_ = plain;
-    if (rested) share_gains();
-  }
-
-  /// Memory of all groups; where that of the first one is.
-  typename Group::Room allocate(const std::vector<int>& most) {
-    typename Group::Room room;
-    for (std::size_t piece = 0; piece < room.size(); ++piece) {
-      std::size_t size = 0;
-      for (const int q : most) size += Group::size(n, q, typename Group::Piece(piece));
-      room_[piece].resize(size);
-      room[piece] = room_[piece].data();
-    }
-    return room;
-  }
-
-  /// Groups with the same sensors, lane by lane, read those of the first of them, and its gains once all are
-  /// at rest: in a large network of few kinds of agents that is most of what frozen agents would read.
-  void share_sensors() {
-    std::map<std::vector<double>, Group*> known;
-    for (std::size_t i = 0; i < groups_.size(); ++i) {
-      Group& group = groups_[i];
-      group.read_own_gains();
-      std::vector<double> sensors(group.C, group.C + Group::size(n, group.q, Group::kSensors));
-      twins_[i] = known.emplace(std::move(sensors), &group).first->second;
-      group.read_sensors_of(*twins_[i]);
-    }
-    share_gains();
-  }
-  void share_gains() {
-    for (std::size_t i = 0; i < groups_.size(); ++i) groups_[i].read_gains_of(*twins_[i]);
+    if (rested) groups_.share_gains();
   }
 
   State<n>* states_ = nullptr;
-  std::array<Aligned<double>, Group::kPieces> room_;  // of all groups, one after the other
-  std::deque<Group> groups_;
-  std::vector<Group*> twins_;         // first group with the same sensors
+  partial_sharing::Groups<n> groups_;
   std::array<Aligned<double>, 2> x_;  // predictions of this sample, and room for those of the next
   std::size_t side_ = 0;              // which is which
   std::vector<std::uint8_t> shares_;  // entries that each agent shares at k = 0

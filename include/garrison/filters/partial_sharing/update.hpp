@@ -54,13 +54,14 @@ class Update<n>::Lanes {
     const bool few = Group<n>::on_stack(m, q);
     using Kernel = Recursion<n, B>;
     alignas(64) double
-        stack[n == Dynamic ? 1 : (Kernel::scratch(N) + N * Kernel::scratch_per_row(N) + 5 * N) * B];
+        stack[n == Dynamic ? 1 : (Kernel::scratch(N) + N * Kernel::scratch_per_row(N) + 6 * N) * B];
     V* const scratch = Block<B>::of(few ? stack : group_.scratch);
     V* const x = scratch;
     V* const u = x + m;
     V* const steady = u + m;
     V* const e = steady + m;
-    V* const row = e + q;
+    V* const white = e + q;
+    V* const row = white + q;
     V* const own = row + m;
     V* const rows = own + Kernel::scratch(m);
     const auto skipped = static_cast<std::ptrdiff_t>(first_) * m;
@@ -80,7 +81,8 @@ class Update<n>::Lanes {
         whitened(r, row);
         recursion.use_row(r, row);
       }
-      recursion.correct(e, u, common_.gamma, x);
+      whiten(e, white);
+      recursion.correct(white, u, common_.gamma, x);
       V limit{};  // of the trace; nothing is below 0
       for (int lane = 0; lane < used_; ++lane) limit[lane] = is_frozen(lane) ? 0.0 : kLargestVariance;
       recursion.predict(common_.A, common_.Q, P, kStride, limit, change);
@@ -98,11 +100,10 @@ class Update<n>::Lanes {
   GARRISON_INLINE bool is_frozen(int lane) const { return group_.is_frozen(first_ + lane); }
   GARRISON_INLINE V* array(double* which) const { return Block<B>::of(which + first_); }
 
-  /// e = W (y - H xhat), missing entries 0; leaves the innovations in y.
+  /// e = y - H xhat, missing entries 0; leaves them in y, missing ones NaN.
   GARRISON_INLINE void innovations(const V* x, V* e) {
     V* const y = array(group_.y);
     const V* const C = array(group_.C);
-    const V* const W = array(group_.W);
     const int m = states();
     for (int r = 0; r < group_.q; ++r) {
       V innovation = y[r * kStride];
@@ -111,10 +112,15 @@ class Update<n>::Lanes {
       y[r * kStride] = square < kHuge * kHuge ? innovation : V{} + kNaN;
       e[r] = square < kHuge * kHuge ? innovation : V{};
     }
-    for (int r = group_.q; r-- > 0;) {  // backwards: W is lower triangular, in place
+  }
+
+  /// out = W e
+  GARRISON_INLINE void whiten(const V* e, V* out) {
+    const V* const W = array(group_.W);
+    for (int r = 0; r < group_.q; ++r) {
       V sum{};
       for (int c = 0; c <= r; ++c) sum += W[packed(r, c) * kStride] * e[c];
-      e[r] = sum;
+      out[r] = sum;
     }
   }
 
