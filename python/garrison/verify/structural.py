@@ -7,7 +7,8 @@ import numpy as np
 
 import garrison as gr
 from garrison import structural as theory
-from garrison import structure
+from garrison.verify import structural_designs as designs
+from garrison.verify import structural_patterns as patterns
 from garrison.verify.compare import NOT_COMPARED, Array, Inputs, array, numbers
 
 NAME = "structural"
@@ -29,85 +30,6 @@ def recognises(inputs: Inputs) -> bool:
         or {"settings", "scalar"} <= inputs.keys()
         or bool({"classes", "networks", "scalar"} & inputs.keys())
     )
-
-
-# Structure -----------------------------------------------------------------------------------------------------
-
-
-def _pattern(i: Inputs) -> structure.Pattern:
-    if "edges" in i:
-        return structure.Pattern(i["n"], i["n"], [tuple(e) for e in i["edges"]])
-    return structure.Pattern.of(numbers(i["A"]))
-
-
-def _structure(pattern: structure.Pattern, measured: list[Any]) -> dict[str, Any]:
-    system = structure.System(pattern)
-    seen = system.observability(measured)
-    states = [s for s in measured if s is not None]
-    both = {s: system.in_contraction(s) and system.in_parent(s) for s in states}
-    return {
-        "structural_rank": system.structural_rank,
-        "dm": system.parts,
-        "contraction_union": system.contraction_union,
-        "contraction_components": system.contraction_components,
-        "sccs": system.components,
-        "parent_sccs": system.parent_components,
-        "types": system.classes(measured),
-        "in_both_sets": [s is not None and both[s] for s in measured],
-        "necessary": system.necessary(measured),
-        "contraction_of_measured_state": {str(k): v for k, v in system.contraction_of_measured(measured).items()},
-        "exact_substitutes": system.substitutes(measured),
-    } | seen
-
-
-def _network_conditions(i: Inputs, types: list[str]) -> dict[str, bool]:
-    W, U = numbers(i["W_pattern"]), numbers(i["U"])
-    count, _ = structure.strong_components(structure.Pattern.of(W))
-    hubs = [k for k, t in enumerate(types) if t == "alpha"]
-    return {
-        "strong": count == 1,
-        "self_links": bool((np.diag(W) != 0).all()),
-        "hubs": bool((U[:, hubs] != 0).all()),
-        "own": bool((np.diag(U) != 0).all()),
-    }
-
-
-def _structure_case(i: Inputs) -> dict[str, Any]:
-    pattern = _pattern(i)
-    out = _structure(pattern, i["measured"])
-    out["name"] = i.get("name")
-    if "W_pattern" in i and "U" in i:
-        W, U = numbers(i["W_pattern"]), numbers(i["U"])
-        out["network_conditions"] = _network_conditions(i, out["types"])
-        own = np.eye(len(U))
-        for key, links in (("distributed_observable", U), ("distributed_observable_without_hubs", own)):
-            out[key] = structure.distributed_observability(pattern, i["measured"], W, links)["observable"]
-    if "mitigated_measured" in i:
-        out["after_mitigation"] = _structure(pattern, i["mitigated_measured"])
-    return out
-
-
-def _mitigation(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
-    system = structure.System(_pattern(i))
-    measured, types = i["measured"], i.get("types") or system.classes(i["measured"])
-    substitutes = [
-        {"type": t, "class_candidates": system.class_candidates(measured, k, t), "exact": exact}
-        for k, (t, exact) in enumerate(zip(system.classes(measured), system.substitutes(measured), strict=True))
-    ]
-    runs = []
-    for run in expected.get("substitution_runs", []):
-        new, log = system.mitigate(measured, run["alarms"], types=types, choice="class")
-        runs.append({"alarms": run["alarms"], "new": new, "log": [list(line) for line in log]})
-    return {"substitutes": substitutes, "substitution_runs": runs}
-
-
-# Estimator -----------------------------------------------------------------------------------------------------
-
-
-def _setting(i: Inputs) -> theory.Setting:
-    given = {k: numbers(i[k]) for k in ("A", "C", "W", "U", "E", "R") if k in i}
-    given["C"] = given["C"].reshape(-1, given["A"].shape[0])
-    return theory.Setting(**given)
 
 
 def _gains(i: Inputs) -> list[Array]:
@@ -212,22 +134,8 @@ def _levels(i: Inputs) -> dict[str, Any]:
     return out
 
 
-def _designs(setting: theory.Setting, expected: dict[str, Any]) -> dict[str, Any]:
-    out: dict[str, Any] = {}
-    if {"coupled_riccati_gain", "coupled_riccati_P", "coupled_riccati_Pprior"} & expected.keys():
-        g = theory.coupled_riccati(setting)
-        out |= {
-            "coupled_riccati_gain": g["K"],
-            "coupled_riccati_P": g["P"],
-            "coupled_riccati_Pprior": g["Pprior"],
-        }
-    if "kalman_gain" in expected:
-        out["kalman_gain"] = theory.joint_kalman(setting)["K"]
-    return out
-
-
 def _run_case(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
-    setting = _setting(i)
+    setting = designs.setting_of(i)
     out: dict[str, Any] = _levels(i)
     residual = None
     if "K" in i and "y" in i:
@@ -236,107 +144,9 @@ def _run_case(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
     if "K" in i and "E" in i and "R" in i:
         out |= _tests(i, setting, residual, expected)
     if "E" in i and "R" in i:
-        out |= _designs(setting, expected)
+        out |= designs.kalman(setting, expected)
     if "measured" in i:
-        out |= _mitigation(i, expected)
-    return out
-
-
-# Gain designs --------------------------------------------------------------------------------------------------
-
-
-def _at_most(got: float, limit: float, slack: float) -> float:
-    """The limit itself when it is met: it is an upper bound, not a value to be hit."""
-    return limit if got <= limit * (1.0 + slack) else got
-
-
-def _costs_of(setting: theory.Setting, K: list[Array]) -> dict[str, float]:
-    rho = theory.error_radius(setting, K)
-    trace = float(np.trace(theory.stationary(setting, K)["Q"])) if rho < 1 else math.inf
-    return {"rho": rho, "trQ": trace}
-
-
-def _gain_setting(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
-    setting = _setting(i)
-    g = theory.coupled_riccati(setting)
-    traces = [float(np.trace(P)) for P in g["P"]]
-    out: dict[str, Any] = {
-        "coupled_riccati": {"K": g["K"], "traces": traces, "converged": g["converged"]} | _costs_of(setting, g["K"])
-    }
-    joint = theory.joint_kalman(setting)["K"]
-    out["kalman"] = {"K_on_span": joint} | _costs_of(setting, joint)
-    out["projection"] = _costs_of(setting, theory.projection_gains(setting))
-    start = g["K"] if np.isfinite(g["K"]).all() else theory.projection_gains(setting)
-    best = theory.h2_gains(setting, start)
-    if "h2_at_most" in expected:
-        out["h2_at_most"] = _at_most(_costs_of(setting, best)["trQ"], expected["h2_at_most"], 1e-6)
-    isolated = expected.get("isolated_h2_at_most")
-    if isolated is not None:
-        out["isolated_h2_at_most"] = _isolated(setting, best, isolated) if isolated else {}
-    return out
-
-
-def _isolated(setting: theory.Setting, start: list[Array], expected: dict[str, Any]) -> dict[str, Any]:
-    U = np.asarray(setting.U)
-    hubs = [int(j) for j in np.flatnonzero((U == 1).all(axis=0))]
-    K = theory.h2_gains(setting, start, hubs, 0.01)
-    reached = _costs_of(setting, K)
-    ratios = theory.isolation_ratios(setting, K)[:, hubs]
-    limits = {"isolation_eps": 0.0101, "trQ": math.inf} | expected
-    return {
-        "isolation_eps": _at_most(float(ratios.max(initial=0.0)), limits["isolation_eps"], 0.0),
-        "trQ": _at_most(reached["trQ"], limits["trQ"], 0.01),  # inf when rho(Ahat) >= 1
-    }
-
-
-def _scalar(i: Inputs) -> dict[str, Any]:
-    gain, radius = theory.best_scalar_gain(float(numbers(i["A"])[0, 0]), numbers(i["W"]))
-    return {"best_rho": radius, "best_gain": gain, "schur_gain_exists": radius < 1.0}
-
-
-# Costs ---------------------------------------------------------------------------------------------------------
-
-
-def _assignments(i: Inputs) -> dict[str, Any]:
-    cost = numbers(i["cost"])
-    pattern = _pattern(i)
-    per_class = structure.cheapest_per_class(cost, i["classes"])
-    exact = structure.cheapest_rank_sensors(pattern, cost)
-    return {"pattern": pattern, "per_class": per_class, "exact": exact}
-
-
-def _costs(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
-    out: dict[str, Any] = {}
-    if "classes" in i:
-        found = _assignments(i)
-        if found["per_class"] is not None:
-            out["assignment_cost"] = found["per_class"]["cost"]
-            out["assignment_agent_state_class"] = [list(p) for p in found["per_class"]["picks"]]
-        if found["exact"] is not None:
-            out["rank_exact_cost"] = found["exact"]["cost"]
-            # A set: in the order of the case where the members agree.
-            picks = [list(p) for p in found["exact"]["picks"]]
-            wanted = expected.get("rank_exact_picks", picks)
-            out["rank_exact_picks"] = wanted if sorted(picks) == sorted(wanted) else picks
-    if "overlap" in i:
-        out["overlap"] = _overlap(i["overlap"])
-    if "networks" in i:
-        out["networks"] = []
-        for net in i["networks"]:
-            edges = [tuple(e) for e in net["edges"]]
-            best = structure.cheapest_strong_subgraph(net["N"], edges, net["weights"])
-            out["networks"].append({"optimal_cost": best["cost"]})
-    return out
-
-
-def _overlap(i: Inputs) -> dict[str, Any]:
-    found = _assignments(i)
-    system = structure.System(found["pattern"])
-    picks = found["per_class"]["picks"]
-    out = {"hungarian_cost": found["per_class"]["cost"]}
-    out["hungarian_observable"] = system.observability([[state] for _, state, _ in picks])["observable"]
-    full = system.observability([[state] for _, state in found["exact"]["picks"]])["rank_condition"]
-    out["exact_cost"] = found["exact"]["cost"] if full else math.inf
+        out |= patterns.mitigation(i, expected)
     return out
 
 
@@ -383,15 +193,15 @@ def evaluate(inputs: Any, expected: Any) -> Any:
     out: dict[str, Any] = {}
     if "settings" in inputs and "settings" in expected:
         pairs = zip(inputs["settings"], expected["settings"], strict=True)
-        out["settings"] = [_gain_setting(i, e) for i, e in pairs]
+        out["settings"] = [designs.gain_setting(i, e) for i, e in pairs]
     if "scalar" in inputs:
-        out["scalar"] = [_scalar(i) for i in inputs["scalar"]]
+        out["scalar"] = [designs.scalar(i) for i in inputs["scalar"]]
     if {"classes", "overlap", "networks"} & inputs.keys():
-        out |= _costs(inputs, expected)
+        out |= patterns.costs(inputs, expected)
     elif "W" in inputs:
         out |= _run_case(inputs, expected)
     elif "measured" in inputs:
-        out |= _structure_case(inputs)
+        out |= patterns.structure_case(inputs)
     return out
 
 
