@@ -93,7 +93,6 @@ class PartialSharing::Together {
  private:
   static constexpr std::size_t kLarge = 8192;  // agents that do not fit a second-level cache
   static constexpr std::size_t kReach = 1024;  // how far away neighbours are in large plane networks
-
   static constexpr std::size_t kGroupSize = std::size_t{Group::kLanes} * n;
 
   /// What came of a sample.
@@ -126,11 +125,12 @@ class PartialSharing::Together {
     }
   };
 
+  /// What everybody shares at a sample, `offset` entries further on than at k = 0.
   void shift_shares(int offset) noexcept {
     const std::uint8_t* const first = shares_.data();
     std::uint8_t* const now = now_.data();
     const std::size_t count = shares_.size();
-#pragma GCC ivdep
+#pragma GCC ivdep  // bytes might be anything, also each other
     for (std::size_t k = 0; k < count; ++k) now[k] = partial_sharing::shifted<n>(first[k], offset);
   }
 
