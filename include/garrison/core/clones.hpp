@@ -60,6 +60,16 @@ void run_widest(Args... args) {
   }
 }
 
+/// The same for kernels of rows of n numbers: other rows than of 4 or 8 do not fill wide registers, and run
+/// two by two.
+template <class Kernel, int n, class... Args>
+void run_widest_of(Args... args) {
+  if constexpr (n % 4 == 0)
+    run_widest<Kernel>(args...);
+  else
+    detail::run_two<Kernel>(args...);
+}
+
 /// From inside a kernel of B doubles, another one of as many: called where inlining would compile it twice.
 template <class Kernel, int B, class... Args>
 void run_as_wide(Args... args) {
@@ -67,16 +77,6 @@ void run_as_wide(Args... args) {
     detail::run_eight<Kernel>(args...);
   else if constexpr (B == 4)
     detail::run_four<Kernel>(args...);
-  else
-    detail::run_two<Kernel>(args...);
-}
-
-/// The same for kernels of rows of n numbers: other rows than of 4 or 8 do not fill wide registers, and run
-/// two by two.
-template <class Kernel, int n, class... Args>
-void run_widest_of(Args... args) {
-  if constexpr (n % 4 == 0)
-    run_widest<Kernel>(args...);
   else
     detail::run_two<Kernel>(args...);
 }
