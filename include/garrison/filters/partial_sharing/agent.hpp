@@ -66,8 +66,8 @@ void PartialSharing::fuse(const Local& l, const Gains& g, State<n>& s, const Inb
                           Message<n>& m) noexcept {
   double* const u = s.group->room_for_one();
   disagreement<n>(s, inbox, u);
-  double squares[partial_sharing::Group<n>::kLanes]{};  // of no use to one agent
-  partial_sharing::update(common(l, g), *s.group, u, s.group->x, squares);
+  partial_sharing::Outcome unused;
+  partial_sharing::update(common(l, g), *s.group, u, s.group->x, unused);
   m.t = -1;  // nothing to say before the next sample
 }
 

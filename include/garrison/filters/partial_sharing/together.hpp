@@ -20,6 +20,7 @@ namespace garrison {
 template <int n>
 class PartialSharing::Together {
   using Group = partial_sharing::Group<n>;
+  using Outcome = partial_sharing::Outcome;
 
  public:
   /// Gives every agent a lane. `local(k)`: what agent k of the engine's order is told.
@@ -76,16 +77,13 @@ class PartialSharing::Together {
     each(workers, [&](std::size_t begin, std::size_t end, Outcome* outcome) {
       for (std::size_t i = begin; i < end; ++i) {
         Group& group = groups_[i];
-        const bool moving = group.moving();
         alignas(64) double u[kGroupSize];
         for (std::size_t lane = 0; lane < static_cast<std::size_t>(group.agents); ++lane) {
           const std::size_t k = i * Group::kLanes + lane;
           disagreement<n>(states_[k], inbox(k), u + lane * n);
           out[k].t = -1;  // nothing to say before the next sample
         }
-        partial_sharing::update(shared, group, u, next(i), outcome->squares);
-        group.x = next(i);
-        outcome->rested |= moving && !group.moving();
+        partial_sharing::update(shared, group, u, next(i), *outcome);
       }
     });
   }
@@ -94,12 +92,6 @@ class PartialSharing::Together {
   static constexpr std::size_t kLarge = 8192;  // agents that do not fit a second-level cache
   static constexpr std::size_t kReach = 1024;  // how far away neighbours are in large plane networks
   static constexpr std::size_t kGroupSize = std::size_t{Group::kLanes} * n;
-
-  /// What came of a sample.
-  struct Outcome {
-    alignas(64) double squares[Group::kLanes]{};  ///< of predictions, summed by lane
-    bool rested = false;                          ///< all gains of some group have become constant
-  };
 
   /// One sample of groups begin..end-1 without messages.
   struct Direct {
@@ -111,16 +103,12 @@ class PartialSharing::Together {
       const std::uint8_t* const shares = all->now_.data();
       for (std::size_t i = begin; i < end; ++i) {
         Group* const group = &all->groups_[i];
-        const bool moving = group->moving();
         const std::size_t first = i * Group::kLanes;
         all->listen(*group, first, *y);
         partial_sharing::Disagreement<n>::template run<B>(x, shares, wiring, first,
                                                           first + static_cast<std::size_t>(group->agents), u);
-        double* const next = all->next(i);
-        run_as_wide<partial_sharing::Update<n>, B>(shared, group, static_cast<const double*>(u), next,
-                                                   outcome->squares);
-        group->x = next;
-        outcome->rested |= moving && !group->moving();
+        run_as_wide<partial_sharing::Update<n>, B>(shared, group, static_cast<const double*>(u), all->next(i),
+                                                   outcome);
       }
     }
   };

@@ -19,16 +19,25 @@ struct Common {
   bool freeze;
 };
 
+/// What came of a sample in some groups.
+struct Outcome {
+  alignas(64) double squares[kGroup]{};  ///< of predictions, summed by lane
+  bool rested = false;                   ///< all gains of some group have become constant
+};
+
 /// One sample of a group, `B` lanes at a time.
 template <int n>
 struct Update {
   /// `u`: sum_j S_j (xbar_j - xhat_i), agent by agent. `next`: where the predictions of the next sample go,
-  /// agent by agent; may be the group's own. `squares`, a value per lane, grows by the sum of theirs.
+  /// agent by agent; may be the group's own, and is afterwards. Adds to `outcome`.
   template <int B>
   GARRISON_INLINE static void run(const Common* common, Group<n>* group, const double* u, double* next,
-                                  double* squares) noexcept {
+                                  Outcome* outcome) noexcept {
+    const bool moving = group->moving();
     for (int first = 0; first < group->agents; first += B)
-      Lanes<B>(*common, *group, first).run(u, next, Block<B>::of(squares + first));
+      Lanes<B>(*common, *group, first).run(u, next, Block<B>::of(outcome->squares + first));
+    outcome->rested |= moving && !group->moving();
+    group->x = next;
     group->started = true;
   }
 
@@ -186,11 +195,11 @@ class Update<n>::Lanes {
 
 /// One sample of a group: see Update.
 template <int n>
-void update(const Common& common, Group<n>& group, const double* u, double* next, double* squares) noexcept {
+void update(const Common& common, Group<n>& group, const double* u, double* next, Outcome& outcome) noexcept {
   if constexpr (n == Dynamic)
-    Update<n>::template run<1>(&common, &group, u, next, squares);
+    Update<n>::template run<1>(&common, &group, u, next, &outcome);
   else
-    run_widest_of<Update<n>, n>(&common, &group, u, next, squares);
+    run_widest_of<Update<n>, n>(&common, &group, u, next, &outcome);
 }
 
 }  // namespace garrison::partial_sharing

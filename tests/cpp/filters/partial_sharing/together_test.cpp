@@ -270,9 +270,10 @@ TEST_CASE("narrow vectors give the bits of wide ones") {
     const Matrix u = test::normal_matrix(rng, m, kGroup);
     for (Group<m>* group : {&narrow, &wide})
       for (int r = 0; r < 3; ++r) std::copy_n(Vector(y.row(r)).data(), kGroup, &group->at(group->y, r, 0));
-    Vector squares[2] = {Vector::Zero(kGroup), Vector::Zero(kGroup)};
-    Update<m>::run<2>(&common, &narrow, u.data(), x[0].data(), squares[0].data());
-    update(common, wide, u.data(), x[1].data(), squares[1].data());
+    Outcome outcome[2];
+    Update<m>::run<2>(&common, &narrow, u.data(), x[0].data(), &outcome[0]);
+    update(common, wide, u.data(), x[1].data(), outcome[1]);
+    const Eigen::Map<const Vector> squares[2] = {{outcome[0].squares, kGroup}, {outcome[1].squares, kGroup}};
     const Vector expected = x[0].leftCols(kGroup - 1).colwise().squaredNorm();
     CHECK(squares[0].head(kGroup - 1).isApprox(expected, 1e-14));
     CHECK(squares[0] == squares[1]);
