@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-fast lint format bench clean
+.PHONY: help setup run dev test test-fast lint format bench clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
 cpp = $(shell find include src bindings tests bench -name '*.hpp' -o -name '*.cpp')
@@ -12,6 +12,9 @@ setup: ## install what is missing: Debian packages, .venv, garrison
 
 run: setup ## the main job: Irish wind with hijacked stations, report in out/wind
 	@.venv/bin/garrison run examples/wind/hijacked.toml -o out/wind --force
+
+dev: ## build quickly for a developer, few dimensions; then PYTHONPATH=python .venv/bin/pytest
+	@tools/dev.sh
 
 test: test-fast ## all tests: C++, Python, and C++ again under the sanitizers
 	@tools/stage.sh "configure asan" cmake --preset asan

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // L rounds of x <- (I - alpha Lap) x: ours, Eigen's, and a whole filter step of ours.
-#include "garrison/runtime/consensus.hpp"
+#include "garrison/engine/plan/consensus.hpp"
 
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "bench.hpp"
-#include "garrison/core/aligned.hpp"
 #include "garrison/core/network.hpp"
-#include "garrison/runtime/family.hpp"
+#include "garrison/engine/any_filter.hpp"
+#include "garrison/kernel/aligned.hpp"
 
 using namespace garrison;
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bench.hpp"
-#include "garrison/core/aligned.hpp"
+#include "garrison/kernel/aligned.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps of the partial-sharing filter for a whole network, timed without plant and record.
 #include "bench.hpp"
-#include "garrison/runtime/family.hpp"
+#include "garrison/engine/any_filter.hpp"
 
 using namespace garrison;
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The convex step of rdkf: exact with cached and with fresh factors, and through Ipopt's C++ interface.
 #include "bench.hpp"
+#include "garrison/engine/any_filter.hpp"
 #include "garrison/filters/rdkf/fresh_step.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"
 #include "garrison/filters/rdkf/steady_state.hpp"
-#include "garrison/runtime/family.hpp"
 
 using namespace garrison;
 using namespace garrison::rdkf;

@@ -3,10 +3,10 @@
 #include "bindings.hpp"
 #include "garrison/analysis/observability.hpp"
 #include "garrison/analysis/subsets.hpp"
-#include "garrison/core/chebyshev.hpp"
 #include "garrison/filters/saturation/coordinates.hpp"
 #include "garrison/filters/saturation/design.hpp"
 #include "garrison/filters/saturation/theorems.hpp"
+#include "garrison/kernel/chebyshev.hpp"
 
 using namespace garrison;
 

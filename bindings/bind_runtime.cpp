@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drivers: simulate, replay, single agents.
 #include "bindings.hpp"
-#include "garrison/runtime/simulate.hpp"
+#include "garrison/drivers/simulate.hpp"
 
 using namespace garrison;
 

@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "garrison/attacks/registry.hpp"
-#include "garrison/runtime/family.hpp"
+#include "garrison/engine/any_filter.hpp"
 
 namespace py = pybind11;
 

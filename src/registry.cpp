@@ -2,7 +2,7 @@
 // All filter families. A new one is declared and listed here.
 #include <array>
 
-#include "garrison/runtime/family.hpp"
+#include "garrison/engine/any_filter.hpp"
 
 namespace garrison {
 

@@ -3,7 +3,7 @@
 
 #include "core/solvers.hpp"
 #include "garrison/analysis/observability.hpp"
-#include "garrison/runtime/filter_of.hpp"
+#include "garrison/engine/filter_of.hpp"
 
 namespace garrison {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "garrison/engine/filter_of.hpp"
 #include "garrison/filters/platoon/baseline.hpp"
 #include "garrison/filters/platoon/filter.hpp"
-#include "garrison/runtime/filter_of.hpp"
 
 namespace garrison {
 FamilyInfo platoon_family() { return family_info<Platoon>(); }

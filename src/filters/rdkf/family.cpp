@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "garrison/engine/filter_of.hpp"
 #include "garrison/filters/rdkf/filter.hpp"
-#include "garrison/runtime/filter_of.hpp"
 
 namespace garrison {
 // In one place: both run the same engine.

@@ -5,10 +5,10 @@
 
 #include "facts.hpp"
 #include "garrison/analysis/observability.hpp"
-#include "garrison/core/chebyshev.hpp"
 #include "garrison/filters/saturation/feasibility.hpp"
 #include "garrison/filters/saturation/filter.hpp"
 #include "garrison/filters/saturation/theorems.hpp"
+#include "garrison/kernel/chebyshev.hpp"
 
 namespace garrison {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/solvers.hpp"
-#include "garrison/core/chebyshev.hpp"
+#include "garrison/kernel/chebyshev.hpp"
 
 namespace garrison::saturation::detail {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "garrison/engine/filter_of.hpp"
 #include "garrison/filters/saturation/filter.hpp"
-#include "garrison/runtime/filter_of.hpp"
 
 namespace garrison {
 FamilyInfo saturation_family() { return family_info<Saturation>(); }

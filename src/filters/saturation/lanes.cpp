@@ -4,11 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "garrison/core/aligned.hpp"
-#include "garrison/core/block.hpp"
-#include "garrison/core/clones.hpp"
+#include "garrison/engine/plan/consensus.hpp"
 #include "garrison/filters/saturation/filter.hpp"
-#include "garrison/runtime/consensus.hpp"
+#include "garrison/kernel/aligned.hpp"
+#include "garrison/kernel/block.hpp"
+#include "garrison/kernel/isa.hpp"
 
 namespace garrison {
 namespace {

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "garrison/attacks/registry.hpp"
-#include "garrison/runtime/simulate.hpp"
+#include "garrison/drivers/simulate.hpp"
 
 using namespace garrison;
 

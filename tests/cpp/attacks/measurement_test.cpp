@@ -7,7 +7,7 @@
 
 #include "../random_system.hpp"
 #include "garrison/attacks/registry.hpp"
-#include "garrison/runtime/simulate.hpp"
+#include "garrison/drivers/simulate.hpp"
 
 using namespace garrison;
 

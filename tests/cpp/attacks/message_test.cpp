@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "garrison/core/types.hpp"
-#include "garrison/runtime/link.hpp"
+#include "garrison/engine/link.hpp"
 
 using namespace garrison;
 

@@ -6,7 +6,7 @@
 #include "garrison/core/params.hpp"
 #include "garrison/core/random.hpp"
 #include "garrison/core/split_outputs.hpp"
-#include "garrison/runtime/family.hpp"
+#include "garrison/engine/any_filter.hpp"
 
 using namespace garrison;
 

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "garrison/core/block.hpp"
-#include "garrison/core/clones.hpp"
 #include "garrison/core/types.hpp"
+#include "garrison/kernel/block.hpp"
+#include "garrison/kernel/isa.hpp"
 
 namespace garrison::partial_sharing {
 

@@ -25,7 +25,6 @@
 #include <tuple>
 #include <vector>
 
-#include "garrison/core/block.hpp"
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/filter.hpp"
 #include "garrison/core/model.hpp"
@@ -34,6 +33,7 @@
 #include "garrison/filters/partial_sharing/group.hpp"
 #include "garrison/filters/partial_sharing/selection.hpp"
 #include "garrison/filters/partial_sharing/update.hpp"
+#include "garrison/kernel/block.hpp"
 
 namespace garrison {
 
@@ -157,7 +157,7 @@ struct GARRISON_EXPORT PartialSharing {
     out[2] = static_cast<double>(g.selection.shared(l.id));
   }
 
-  /// The agents of a whole network in groups (runtime/together.hpp).
+  /// The agents of a whole network in groups (engine/batch/side_by_side.hpp).
   template <int n>
   class Together;
 

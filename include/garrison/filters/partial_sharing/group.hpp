@@ -6,8 +6,8 @@
 #include <array>
 #include <memory>
 
-#include "garrison/core/aligned.hpp"
 #include "garrison/filters/partial_sharing/covariance.hpp"
+#include "garrison/kernel/aligned.hpp"
 
 namespace garrison::partial_sharing {
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <utility>
 
-#include "garrison/core/block.hpp"
-#include "garrison/core/clones.hpp"
 #include "garrison/core/types.hpp"
+#include "garrison/kernel/block.hpp"
+#include "garrison/kernel/isa.hpp"
 
 namespace garrison::partial_sharing {
 

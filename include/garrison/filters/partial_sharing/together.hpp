@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The agents of a whole network in groups, for the engine (runtime/together.hpp).
+// The agents of a whole network in groups, for the engine (engine/batch/side_by_side.hpp).
 #pragma once
 
 #include <algorithm>

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "garrison/core/aligned.hpp"
-#include "garrison/core/block.hpp"
-#include "garrison/core/clones.hpp"
 #include "garrison/core/types.hpp"
+#include "garrison/kernel/aligned.hpp"
+#include "garrison/kernel/block.hpp"
+#include "garrison/kernel/isa.hpp"
 
 namespace garrison::rdkf {
 

@@ -26,8 +26,6 @@
 #include <utility>
 #include <vector>
 
-#include "garrison/core/average.hpp"
-#include "garrison/core/block.hpp"
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/filter.hpp"
 #include "garrison/core/lanes.hpp"
@@ -37,6 +35,8 @@
 #include "garrison/filters/consensus_params.hpp"
 #include "garrison/filters/saturation/adaptive.hpp"
 #include "garrison/filters/saturation/detector.hpp"
+#include "garrison/kernel/average.hpp"
+#include "garrison/kernel/block.hpp"
 
 namespace garrison {
 
@@ -147,7 +147,7 @@ struct GARRISON_EXPORT Saturation {
   }
 
   /// `sense` from A xhat_i(t-1) on and without its message, for drivers that average the whole network at
-  /// once: they keep the estimates themselves, and may be compiled for wider registers (core/clones.hpp).
+  /// once: they keep the estimates themselves, and may be compiled for wider registers (kernel/isa.hpp).
   template <int n, int most = 2>
   GARRISON_INLINE static void update(const Local& l, const Gains& g, State<n>& s, const double* y,
                                      std::int64_t t, const double* prediction, double* estimate) noexcept {

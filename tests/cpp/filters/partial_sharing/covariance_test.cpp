@@ -5,7 +5,7 @@
 #include <iostream>
 
 #include "core/solvers.hpp"
-#include "garrison/runtime/simulate.hpp"
+#include "garrison/drivers/simulate.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

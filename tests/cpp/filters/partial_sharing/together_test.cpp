@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <bit>
 
-#include "garrison/runtime/family.hpp"
-#include "garrison/runtime/mailroom.hpp"
-#include "garrison/runtime/workers.hpp"
+#include "garrison/engine/any_filter.hpp"
+#include "garrison/engine/mailroom.hpp"
+#include "garrison/engine/workers.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

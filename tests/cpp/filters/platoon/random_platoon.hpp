@@ -5,9 +5,9 @@
 #include "../../random_system.hpp"
 #include "garrison/attacks/measurement.hpp"
 #include "garrison/core/network.hpp"
+#include "garrison/drivers/simulate.hpp"
 #include "garrison/filters/platoon/theorems.hpp"
 #include "garrison/filters/platoon/world.hpp"
-#include "garrison/runtime/simulate.hpp"
 
 namespace garrison::test {
 

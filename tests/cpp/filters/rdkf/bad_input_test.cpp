@@ -2,9 +2,9 @@
 // Each kind of bad input is refused with a message that names it, or survived.
 #include <doctest/doctest.h>
 
+#include "garrison/drivers/simulate.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"
 #include "garrison/filters/rdkf/setting.hpp"
-#include "garrison/runtime/simulate.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

@@ -4,9 +4,9 @@
 
 #include <iostream>
 
+#include "garrison/drivers/simulate.hpp"
 #include "garrison/filters/rdkf/analysis.hpp"
 #include "garrison/filters/rdkf/filter.hpp"
-#include "garrison/runtime/simulate.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

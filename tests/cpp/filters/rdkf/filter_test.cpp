@@ -4,8 +4,8 @@
 
 #include <Eigen/QR>
 
+#include "garrison/drivers/simulate.hpp"
 #include "garrison/filters/rdkf/steady_state.hpp"
-#include "garrison/runtime/simulate.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "../../random_system.hpp"
-#include "garrison/runtime/simulate.hpp"
+#include "garrison/drivers/simulate.hpp"
 
 using namespace garrison;
 

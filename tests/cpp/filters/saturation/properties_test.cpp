@@ -7,9 +7,9 @@
 #include "../../random_system.hpp"
 #include "garrison/analysis/subsets.hpp"
 #include "garrison/attacks/registry.hpp"
-#include "garrison/core/chebyshev.hpp"
+#include "garrison/drivers/simulate.hpp"
 #include "garrison/filters/saturation/theorems.hpp"
-#include "garrison/runtime/simulate.hpp"
+#include "garrison/kernel/chebyshev.hpp"
 
 using namespace garrison;
 

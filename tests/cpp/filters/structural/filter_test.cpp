@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "garrison/attacks/measurement.hpp"
+#include "garrison/drivers/simulate.hpp"
 #include "garrison/filters/structural/detection.hpp"
-#include "garrison/runtime/simulate.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// What came out of a run.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "garrison/engine/link.hpp"
+#include "garrison/kernel/pages.hpp"
+
+namespace garrison {
+
+/// Arrays are C-ordered [trial][time][agent]([state] or as said); time runs 0..steps, 0 being the start.
+/// An array that was not asked for is empty. NaN = does not exist.
+struct GARRISON_EXPORT Record {
+  int trials = 0;
+  int steps = 0;
+  int agents = 0;
+  int states = 0;
+  int first_sample = 1;     ///< 0 for families that have a sample at the start too
+  bool own_states = false;  ///< every agent has a state of its own
+  std::vector<std::string> signal_names;
+  std::vector<std::string> detail_names;
+
+  Bulk<double> truth;         ///< [trial][time][state] or [trial][time][agent][state]; empty when not known
+  Bulk<double> measurements;  ///< [trial][time first_sample..steps][measurement], as the filter received them
+  Bulk<double> estimate;      ///< [trial][time][agent][state]
+  Bulk<double> error;         ///< ||estimate - truth||; empty when the truth is not known
+  Bulk<double> bound;         ///< certified bound on the error; NaN when agents lie in messages
+  Bulk<double> statistic;
+  Bulk<double> threshold;
+  Bulk<std::uint8_t> verdict;  ///< values of Verdict
+  Bulk<double> signals;        ///< [trial][time][signal][agent]
+
+  /// The sets of agents believed to be attacked, whenever one of them changed (and at time 0).
+  struct Accusation {
+    int trial;
+    int time;
+    std::vector<std::vector<int>> sets;  ///< per agent, sorted
+  };
+  std::vector<Accusation> accusations;
+
+  /// Lists that the family tells of its agents (sets, gains), whenever one of them changed.
+  struct Detail {
+    int trial;
+    int time;
+    int agent;
+    int name;  ///< index into detail_names
+    std::vector<double> values;
+  };
+  std::vector<Detail> details;
+
+  LinkCounters link;
+  std::int64_t missing = 0;           ///< measurements that were NaN
+  std::int64_t nonfinite = 0;         ///< measurements that were infinite or beyond kHuge
+  std::int64_t overflows = 0;         ///< steps with an estimate that was not finite
+  std::vector<std::string> warnings;  ///< of the family, for people
+  bool interrupted = false;           ///< stopped by the caller before the end
+  std::int64_t bytes_per_step = 0;    ///< payload of all messages of one sample, when none is lost
+};
+
+}  // namespace garrison

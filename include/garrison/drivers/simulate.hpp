@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drivers: a simulated plant, or a recorded log.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "garrison/attacks/measurement.hpp"
+#include "garrison/drivers/record.hpp"
+#include "garrison/engine/any_filter.hpp"
+
+namespace garrison {
+
+/// What to keep of a run. Errors are always kept when the truth is known.
+struct GARRISON_EXPORT Keep {
+  bool estimate = true;
+  bool report = true;    ///< bound, statistic, threshold, verdict, accusations
+  bool signals = false;  ///< the family's own signals
+  bool measurements = true;
+  bool details = false;  ///< the family's lists (sets, gains), whenever one changes
+};
+
+/// Settings that simulation and replay share.
+struct GARRISON_EXPORT RunOptions {
+  int trials = 1;
+  std::uint64_t seed = 0;
+  int threads = 0;              ///< 0 = all cores; the result does not depend on it
+  Matrix start;                 ///< initial estimates, n x N, or n x 1 for all agents alike; empty = zeros
+  std::vector<Attack> attacks;  ///< applied in this order
+  std::vector<std::shared_ptr<const MessageAttack>> message_attacks;
+  LinkFaults link;
+  Keep keep;
+  /// Called now and then with the number of finished samples and their total; false stops the run.
+  std::function<bool(std::int64_t, std::int64_t)> progress;
+};
+
+/// How the simulated plant starts and is disturbed.
+struct GARRISON_EXPORT PlantOptions {
+  int steps = 0;
+  Vector x0;  ///< true initial state; empty = zeros. Agents with states of their own: agent by agent
+  /// The common initial estimate (or, with states of their own, each one) is moved by a random vector of at
+  /// most this length.
+  double start_error = 0.0;
+  /// "uniform" within the model's bounds, "extreme" at them, "normal" with the model's covariances, "none",
+  /// or "auto": uniform where bounds are known, else normal where covariances are, else none.
+  std::string noise = "auto";
+  /// Recorded disturbances in place of a noise law, one row per time; only for families with a world.
+  Matrix disturbances = {};
+};
+
+/// x(t+1) = A x(t) + w(t), y = C x + v, attacked, filtered. Trials differ in noise, attack chance and link
+/// faults; each depends on (seed, trial) only.
+/// @throws InvalidInput when something does not fit; run-time trouble is counted in the record.
+GARRISON_EXPORT Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
+                                const PlantOptions& plant, const RunOptions& options);
+
+/// Recorded runs, C-ordered and not owned; NaN = missing.
+struct GARRISON_EXPORT Log {
+  const double* measurements = nullptr;  ///< [run][time first_sample..steps][Model::total_outputs()]
+  const double* truth = nullptr;  ///< [run][time 0..steps][state] or [..][agent][state]; null = not known
+  int runs = 1;
+  int steps = 0;
+};
+
+/// Feeds a log to the filter: one run to every trial, or as many runs as trials, one to each. Attacks apply
+/// on top (trials of one run differ in their chance).
+/// @throws InvalidInput when something does not fit; run-time trouble is counted in the record.
+GARRISON_EXPORT Record replay(const Model& model, const Network& network, const AnyFilter& filter,
+                              const Log& log, const RunOptions& options);
+
+/// One run: measurements steps x total_outputs; `truth` empty, or (steps+1) x n.
+GARRISON_EXPORT Record replay(const Model& model, const Network& network, const AnyFilter& filter,
+                              const MatrixRef& measurements, const MatrixRef& truth,
+                              const RunOptions& options);
+
+}  // namespace garrison

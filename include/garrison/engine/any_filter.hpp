@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// A filter family behind one interface: what the CLI, the bindings and the drivers know of it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "garrison/core/conditions.hpp"
+#include "garrison/core/lanes.hpp"
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+#include "garrison/core/params.hpp"
+#include "garrison/core/world.hpp"
+#include "garrison/engine/agent.hpp"
+#include "garrison/engine/runner.hpp"
+
+namespace garrison {
+
+/// A filter designed for one model and network; makes any number of runners and agents from it.
+class GARRISON_EXPORT Prepared {
+ public:
+  virtual ~Prepared() = default;
+  virtual std::unique_ptr<Runner> runner(int threads) const = 0;
+  /// Refuses initial estimates (n x N) that the family's promises do not cover.
+  virtual void check_start(const Matrix& x0) const = 0;
+  virtual std::unique_ptr<AnyAgent> agent(int id) const = 0;
+  /// Several trials side by side, with the same bits as `runner`; null where the family has no such path.
+  virtual std::unique_ptr<LaneRunner> lanes() const = 0;
+  /// The plants that the agents drive, for one trial; null for families that watch one common plant.
+  virtual std::unique_ptr<World> world(const WorldOptions& options) const = 0;
+};
+
+/// A filter with its parameters.
+class GARRISON_EXPORT AnyFilter {
+ public:
+  virtual ~AnyFilter() = default;
+  virtual std::string name() const = 0;
+  virtual ParamMap params() const = 0;
+  /// Designs gains. @throws InvalidInput when parameters, model and network do not fit together.
+  virtual std::shared_ptr<const Prepared> prepare(const Model& model, const Network& network) const = 0;
+  /// Conditions and bounds of the family's theorems.
+  virtual Check check(const Model& model, const Network& network) const = 0;
+  virtual std::vector<std::string> signal_names() const = 0;
+  /// What a user should know of a run that ended without an error; empty where the family has nothing to say.
+  virtual std::vector<std::string> warnings(const Model& model, const VerdictLog& log) const = 0;
+  virtual std::vector<std::string> detail_names() const = 0;
+  /// 1, or 0 for families that have a sample at the start too.
+  virtual int first_sample() const = 0;
+  /// Every agent has a state of its own (and the family a world).
+  virtual bool own_states() const = 0;
+};
+
+/// One line of `garrison list filters`.
+struct GARRISON_EXPORT FamilyInfo {
+  std::string name;
+  std::string title;
+  std::string source;
+  std::vector<ParamInfo> params;
+  std::shared_ptr<const AnyFilter> (*make)(const ParamMap&);
+};
+
+/// All families, in the order of registration (src/registry.cpp).
+GARRISON_EXPORT std::span<const FamilyInfo> families();
+/// The filter `name` with the given parameters; refuses unknown names with the nearest one.
+GARRISON_EXPORT std::shared_ptr<const AnyFilter> make_filter(const std::string& name, const ParamMap& params);
+
+}  // namespace garrison

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// All agents of a network in one process.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+#include "garrison/engine/batch/averaging.hpp"
+#include "garrison/engine/batch/side_by_side.hpp"
+#include "garrison/engine/mailroom.hpp"
+#include "garrison/engine/plan/consensus.hpp"
+#include "garrison/engine/runner.hpp"
+#include "garrison/engine/workers.hpp"
+#include "garrison/kernel/aligned.hpp"
+
+namespace garrison {
+
+/// Below this many agents per thread a round is too short to be worth waking another one.
+inline constexpr int kAgentsPerThread = 20000;
+
+/// Runs filter F for all agents. Agents are kept in an order in which neighbours are near (private; public
+/// ids everywhere outside). Each agent writes only its own state and its inbox is in order of sender id, so
+/// the result does not depend on the number of threads. Nothing is allocated after `reset`.
+template <class F, int n>
+class Engine final : public Runner {
+  static_assert(Filter<F, n>);
+  using State = typename F::template State<n>;
+  using Message = typename F::template Message<n>;
+
+ public:
+  Engine(std::shared_ptr<const typename F::Gains> gains, const Model& model, const Network& network,
+         int threads)
+      : gains_(std::move(gains)),
+        model_(model),
+        plan_(network.offsets(), network.lists(), model.states()),
+        mail_(network, plan_.order(), model.states()),
+        workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
+        states_(static_cast<std::size_t>(model.agents())),
+        at_once_(std::span<State>(states_), model.states()),
+        accused_(model.agents()) {
+    position_.resize(states_.size());
+    for (const int i : plan_.order()) {
+      position_[static_cast<std::size_t>(i)] = places_.size();
+      places_.push_back({i, model_.outputs(i), network.degree(i), rows_.size()});
+      first_output_.push_back(model_.offset(i));
+      const Matrix& C = model_.C(i);
+      for (Eigen::Index r = 0; r < C.rows(); ++r)
+        for (Eigen::Index c = 0; c < C.cols(); ++c) rows_.push_back(C(r, c));
+    }
+    if constexpr (StepsTogether<F, n>) together_.join(states_.data(), states_.size(), locals());
+  }
+
+  void reset(const Matrix& x0, Link* link) override {
+    mail_.connect(link);
+    at_once_.release();
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      const Vec<n> start = x0.col(places_[k].id);
+      F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
+    }
+    if constexpr (StepsTogether<F, n>) together_.start(*gains_, locals());
+    mail_.fill();
+    bytes_ = static_cast<std::int64_t>(sizeof(double)) * mail_.numbers_per_round() * F::rounds(*gains_);
+    overflows_ = 0;
+  }
+
+  void step(std::int64_t t, const double* y) override {
+    if constexpr (Averages<F, n>)
+      if (mail_.perfect()) return step_at_once(t, y);
+    at_once_.release();
+    if constexpr (StepsTogether<F, n>)
+      if (mail_.perfect() && together_.agreed())
+        return together_.step(*gains_, local(0), t, measured(y), mail_.wiring(), workers_);
+    each([&, y = measured(y)](std::size_t k, Message* out) {
+      F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
+    });
+    rounds(t, all_finite());
+  }
+
+  void read(const Frame& f) const override {
+    at_once_.settle();
+    const std::size_t N = states_.size();
+    std::array<double, 32> signals{};
+    for (std::size_t k = 0; k < N; ++k) {
+      const auto i = static_cast<std::size_t>(places_[k].id);
+      const Vec<n>& x = F::template estimate<n>(states_[k]);
+      const Report r = F::template report<n>(local(k), *gains_, states_[k]);
+      if (f.estimate != nullptr)
+        std::copy_n(x.data(), x.size(), f.estimate + i * static_cast<std::size_t>(x.size()));
+      if (f.bound != nullptr) f.bound[i] = r.bound;
+      if (f.statistic != nullptr) f.statistic[i] = r.statistic;
+      if (f.threshold != nullptr) f.threshold[i] = r.threshold;
+      if (f.verdict != nullptr) f.verdict[i] = static_cast<std::uint8_t>(r.verdict);
+      if (f.signals == nullptr) continue;
+      F::template signals<n>(local(k), *gains_, states_[k], signals.data());
+      for (std::size_t s = 0; s < F::signal_count; ++s) f.signals[s * N + i] = signals[s];
+    }
+  }
+
+  void expected(int agent, double* out) const override {
+    at_once_.settle();
+    const std::size_t k = position_[static_cast<std::size_t>(agent)];
+    F::template expected<n>(local(k), *gains_, states_[k], out);
+  }
+  double alarm_level(int agent) const override {
+    const std::size_t k = position_[static_cast<std::size_t>(agent)];
+    return F::template alarm_level<n>(local(k), *gains_, states_[k]);
+  }
+  void control(double* out) const override {
+    at_once_.settle();
+    if constexpr (requires(const State& s) { F::template control<n>(s); })
+      for (std::size_t k = 0; k < states_.size(); ++k)
+        out[static_cast<std::size_t>(places_[k].id)] = F::template control<n>(states_[k]);
+  }
+  void detail(int agent, std::size_t which, std::vector<double>& out) const override {
+    at_once_.settle();
+    const std::size_t k = position_[static_cast<std::size_t>(agent)];
+    if constexpr (requires(const State& s) { F::template detail<n>(local(k), *gains_, s, which, out); })
+      F::template detail<n>(local(k), *gains_, states_[k], which, out);
+  }
+  const AgentSet& accused(int agent) const override {
+    const State& s = states_[position_[static_cast<std::size_t>(agent)]];
+    if constexpr (requires { F::template accused_into<n>(s, accused_); }) {
+      accused_.clear();
+      F::template accused_into<n>(s, accused_);
+      return accused_;
+    } else {
+      return *F::template accused<n>(s);
+    }
+  }
+  std::int64_t overflows() const override { return overflows_; }
+  std::int64_t bytes_per_step() const override { return bytes_; }
+
+ private:
+  /// Where things of one agent are; a Local per agent would be twice as much to read at every step.
+  struct Place {
+    int id;
+    int outputs;
+    int degree;
+    std::size_t first;  // in rows_
+  };
+  Local local(std::size_t k) const {
+    const Place& p = places_[k];
+    return {p.id,     model_.agents(),   model_.states(),       p.outputs,
+            p.degree, model_.A().data(), rows_.data() + p.first};
+  }
+
+  auto locals() const {
+    return [this](std::size_t k) { return local(k); };
+  }
+  auto measured(const double* y) const {
+    return [this, y](std::size_t k) { return y + first_output_[k]; };
+  }
+
+  void step_at_once(std::int64_t t, const double* y) {
+    const auto [finite, averaged] = at_once_.step(plan_, *gains_, locals(), t, measured(y), workers_);
+    if (averaged) return;
+    each([&](std::size_t k, Message* out) { F::template send<n>(states_[k], 0, out[k]); });
+    rounds(t, finite);
+  }
+
+  void rounds(std::int64_t t, bool finite) {
+    if (!finite) ++overflows_;
+    const int L = F::rounds(*gains_);
+    for (int round = 0; round < L; ++round) {
+      mail_.collect(t, round, finite);
+      if constexpr (StepsTogether<F, n>) {
+        const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
+        together_.fuse(*gains_, local(0), inbox, mail_.outgoing(), workers_);
+        mail_.post();
+      } else {
+        each([&](std::size_t k, Message* out) {
+          F::template fuse<n>(local(k), *gains_, states_[k], mail_.inbox(k), round, out[k]);
+        });
+      }
+    }
+  }
+
+  /// Runs `action(k, outgoing)` for every agent k, then makes the outgoing messages the current ones.
+  template <class Action>
+  void each(const Action& action) {
+    Message* out = mail_.outgoing();
+    workers_.split(static_cast<std::int64_t>(states_.size()), [&](std::int64_t begin, std::int64_t end, int) {
+      for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) action(k, out);
+    });
+    mail_.post();
+  }
+
+  bool all_finite() const {
+    for (const State& s : states_)
+      if (!F::template estimate<n>(s).allFinite()) return false;
+    return true;
+  }
+
+  std::shared_ptr<const typename F::Gains> gains_;
+  Model model_;
+  ConsensusPlan plan_;
+  Mailroom<Message> mail_;
+  Workers workers_;
+  Aligned<State> states_;
+  [[no_unique_address]] mutable typename detail::AtOnceOf<F, n>::type at_once_;
+  [[no_unique_address]] typename detail::TogetherOf<F, n>::type together_;
+  std::vector<Place> places_;
+  Aligned<double> rows_;           // of all C_i
+  std::vector<int> first_output_;  // of each agent in y
+  std::vector<std::size_t> position_;
+  std::int64_t overflows_ = 0;
+  std::int64_t bytes_ = 0;
+  mutable AgentSet accused_;  // of families that build it when asked
+};
+
+}  // namespace garrison

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole network behind one interface: the library's only virtual seam on the way of a step.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "garrison/core/filter.hpp"
+#include "garrison/engine/link.hpp"
+
+namespace garrison {
+
+/// Where `Runner::read` writes; a null pointer skips that output. Agents are in order of public id.
+struct Frame {
+  double* estimate = nullptr;       ///< N x n, agent by agent
+  double* bound = nullptr;          ///< N
+  double* statistic = nullptr;      ///< N
+  double* threshold = nullptr;      ///< N
+  std::uint8_t* verdict = nullptr;  ///< N, values of Verdict
+  double* signals = nullptr;        ///< number of signals x N, signal by signal
+};
+
+/// All agents of one network, one filter, one trial.
+class GARRISON_EXPORT Runner {
+ public:
+  virtual ~Runner() = default;
+  /// Time 0: one initial estimate per agent, n x N. `link` (null = perfect) must outlive the run.
+  virtual void reset(const Matrix& x0, Link* link) = 0;
+  /// One sample: every agent senses, then all rounds. `y` has Model::total_outputs() entries, NaN = missing.
+  virtual void step(std::int64_t t, const double* y) = 0;
+  virtual void read(const Frame& frame) const = 0;
+  /// The measurement that `agent` predicts for the next sample, and the deviation it tolerates.
+  virtual void expected(int agent, double* out) const = 0;
+  virtual double alarm_level(int agent) const = 0;
+  /// What every agent does to its own plant until the next sample, N numbers; families without one write
+  /// none.
+  virtual void control(double* out) const = 0;
+  /// Detail `which` of the family's detail_names, of one agent.
+  virtual void detail(int agent, std::size_t which, std::vector<double>& out) const = 0;
+  /// Agents that `agent` believes to be attacked.
+  /// Valid until the next call.
+  virtual const AgentSet& accused(int agent) const = 0;
+  /// Steps at which some estimate was no longer finite (its messages are then withheld).
+  virtual std::int64_t overflows() const = 0;
+  /// Payload of all messages of one sample, all rounds, when none is lost; known after `reset`.
+  virtual std::int64_t bytes_per_step() const = 0;
+};
+
+}  // namespace garrison

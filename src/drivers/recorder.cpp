@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "garrison/kernel/magnitude.hpp"
+
+namespace garrison::detail {
+
+Recorder::Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known,
+                   const RunOptions& options)
+    : keep_(options.keep),
+      vouch_(options.message_attacks.empty()),
+      outputs_(static_cast<std::size_t>(model.total_outputs())) {
+  Record& r = record_;
+  r.trials = options.trials;
+  r.steps = steps;
+  r.agents = model.agents();
+  r.states = model.states();
+  r.first_sample = filter.first_sample();
+  r.own_states = filter.own_states();
+  const auto trials = static_cast<std::size_t>(r.trials);
+  const auto rows = trials * static_cast<std::size_t>(steps + 1);
+  const auto N = static_cast<std::size_t>(r.agents);
+  const auto n = static_cast<std::size_t>(r.states);
+  if (truth_known) {
+    r.truth.resize(rows * (r.own_states ? N * n : n));
+    r.error.resize(rows * N);
+  }
+  if (keep_.measurements)
+    r.measurements.resize(trials * static_cast<std::size_t>(steps + 1 - r.first_sample) * outputs_);
+  if (keep_.estimate)
+    r.estimate.resize(rows * N * n);
+  else
+    estimates_.assign(trials, std::vector<double>(N * n));
+  if (keep_.report) {
+    r.bound.resize(rows * N);
+    r.statistic.resize(rows * N);
+    r.threshold.resize(rows * N);
+    r.verdict.resize(rows * N);
+  }
+  if (keep_.signals) {
+    r.signal_names = filter.signal_names();
+    r.signals.resize(rows * N * r.signal_names.size());
+  }
+  if (keep_.details) {
+    r.detail_names = filter.detail_names();
+    lists_.resize(trials);
+  }
+  last_.resize(trials);
+}
+
+std::size_t Recorder::row(int trial, int t) const {
+  return static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps + 1) +
+         static_cast<std::size_t>(t);
+}
+
+double* Recorder::estimate(int trial, int t) {
+  const auto size = static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
+  return keep_.estimate ? record_.estimate.data() + row(trial, t) * size
+                        : estimates_[static_cast<std::size_t>(trial)].data();
+}
+
+void Recorder::errors(std::size_t row, const double* estimate, const double* truth) {
+  const auto n = static_cast<std::size_t>(record_.states);
+  const auto N = static_cast<std::size_t>(record_.agents);
+  const std::size_t width = record_.own_states ? N * n : n;
+  std::copy_n(truth, width, record_.truth.data() + row * width);
+  for (std::size_t i = 0; i < N; ++i, truth += record_.own_states ? n : 0) {
+    double square = 0.0;
+    for (std::size_t k = 0; k < n; ++k)
+      square += (estimate[i * n + k] - truth[k]) * (estimate[i * n + k] - truth[k]);
+    record_.error[row * N + i] = std::sqrt(square);
+  }
+}
+
+void Recorder::count(int trial, int t, std::span<const double> y) {
+  if (!all_below(y.data(), y.size(), kHuge)) {
+    const std::lock_guard lock(mutex_);
+    for (const double v : y) {
+      record_.missing += std::isnan(v) ? 1 : 0;
+      record_.nonfinite += std::abs(v) >= kHuge ? 1 : 0;
+    }
+  }
+  if (!keep_.measurements) return;
+  const int first = record_.first_sample;
+  const auto at = static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps + 1 - first) +
+                  static_cast<std::size_t>(t - first);
+  std::copy(y.begin(), y.end(), record_.measurements.begin() + static_cast<std::ptrdiff_t>(at * outputs_));
+}
+
+void Recorder::take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y) {
+  const std::size_t at = row(trial, t);
+  const auto N = static_cast<std::size_t>(record_.agents);
+  Frame frame;
+  frame.estimate = estimate(trial, t);
+  if (keep_.report) {
+    frame.bound = record_.bound.data() + at * N;
+    frame.statistic = record_.statistic.data() + at * N;
+    frame.threshold = record_.threshold.data() + at * N;
+    frame.verdict = record_.verdict.data() + at * N;
+  }
+  if (keep_.signals) frame.signals = record_.signals.data() + at * N * record_.signal_names.size();
+  runner.read(frame);
+  if (!vouch_ && frame.bound != nullptr) std::fill_n(frame.bound, N, kNaN);
+  if (truth != nullptr) errors(at, frame.estimate, truth);
+  if (keep_.report) accusations(trial, t, runner);
+  if (keep_.details) details(trial, t, runner);
+  if (t >= record_.first_sample) count(trial, t, y);
+}
+
+void Recorder::accusations(int trial, int t, const Runner& runner) {
+  if (runner.accused(0).empty()) return;
+  auto& last = last_[static_cast<std::size_t>(trial)];
+  const auto N = static_cast<std::size_t>(record_.agents);
+  bool changed = last.empty();
+  last.resize(N);
+  for (std::size_t i = 0; i < N; ++i) {
+    const AgentSet& now = runner.accused(static_cast<int>(i));
+    if (!(last[i] == now)) {
+      last[i] = now;
+      changed = true;
+    }
+  }
+  if (!changed) return;
+  Record::Accusation entry{trial, t, {}};
+  for (const AgentSet& set : last) {
+    auto& ids = entry.sets.emplace_back();
+    for (int id = 0; id < record_.agents; ++id)
+      if (set.contains(id)) ids.push_back(id);
+  }
+  const std::lock_guard lock(mutex_);
+  record_.accusations.push_back(std::move(entry));
+}
+
+void Recorder::details(int trial, int t, const Runner& runner) {
+  auto& last = lists_[static_cast<std::size_t>(trial)];
+  const auto names = static_cast<int>(record_.detail_names.size());
+  last.resize(static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(names));
+  std::vector<double> now;
+  std::size_t at = 0;
+  for (int i = 0; i < record_.agents; ++i) {
+    for (int k = 0; k < names; ++k, ++at) {
+      now.clear();
+      runner.detail(i, static_cast<std::size_t>(k), now);
+      if (now == last[at]) continue;
+      last[at] = now;
+      const std::lock_guard lock(mutex_);
+      record_.details.push_back({trial, t, i, k, now});
+    }
+  }
+}
+
+void Recorder::finish(const LinkCounters& link, std::int64_t overflows, std::int64_t bytes_per_step) {
+  const std::lock_guard lock(mutex_);
+  record_.link += link;
+  record_.overflows += overflows;
+  record_.bytes_per_step = bytes_per_step;
+}
+
+Record Recorder::release() {
+  // Threads finish trials in any order; the record must not depend on it.
+  std::sort(record_.accusations.begin(), record_.accusations.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.trial, a.time) < std::tie(b.trial, b.time);
+  });
+  std::sort(record_.details.begin(), record_.details.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.trial, a.time, a.agent, a.name) < std::tie(b.trial, b.time, b.agent, b.name);
+  });
+  return std::move(record_);
+}
+
+}  // namespace garrison::detail

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes one trial after the other into a Record. Internal to the drivers.
+#pragma once
+
+#include <array>
+#include <mutex>
+#include <span>
+
+#include "garrison/drivers/simulate.hpp"
+
+namespace garrison::detail {
+
+/// Trials write to disjoint parts of the arrays, so threads need no lock except for the counters.
+class Recorder {
+ public:
+  Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known,
+           const RunOptions& options);
+
+  const Record& record() const { return record_; }
+  /// Everything asked for at time t of a trial; y is what the filter received (not read at t = 0).
+  void take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y);
+  /// The same of the trials first .. first + used - 1, which run side by side: estimates and errors.
+  /// `truth(lane)`: null when it is not known.
+  template <class Truth>
+  void take_lanes(int first, int used, int t, const LaneRunner& runner, const Truth& truth) {
+    std::array<double*, kLanes> out{};
+    for (int l = 0; l < used; ++l) out[static_cast<std::size_t>(l)] = estimate(first + l, t);
+    runner.read(out.data(), used);
+    for (int l = 0; l < used; ++l)
+      if (const double* x = truth(l)) errors(row(first + l, t), out[static_cast<std::size_t>(l)], x);
+  }
+  /// Counts and keeps the measurements of time t >= 1.
+  void count(int trial, int t, std::span<const double> y);
+  void finish(const LinkCounters& link, std::int64_t overflows, std::int64_t bytes_per_step);
+  Record release();
+
+ private:
+  std::size_t row(int trial, int t) const;
+  /// Where estimates of that time go.
+  double* estimate(int trial, int t);
+  void errors(std::size_t row, const double* estimate, const double* truth);
+  void accusations(int trial, int t, const Runner& runner);
+  void details(int trial, int t, const Runner& runner);
+
+  Record record_;
+  Keep keep_;
+  bool vouch_;  // no agent lies in its messages: only then a family's bounds are covered
+  std::size_t outputs_;
+  std::vector<std::vector<AgentSet>> last_;              // per trial: the sets at the last accusation
+  std::vector<std::vector<std::vector<double>>> lists_;  // per trial, [agent * details + detail]
+  std::vector<std::vector<double>> estimates_;           // per trial, when estimates are not kept
+  std::mutex mutex_;
+};
+
+}  // namespace garrison::detail

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/drivers/simulate.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <mutex>
+
+#include "garrison/engine/workers.hpp"
+#include "plant.hpp"
+#include "recorder.hpp"
+
+namespace garrison {
+namespace {
+
+using MakeSource = std::function<std::unique_ptr<detail::Source>(std::uint32_t trial)>;
+using SourcesOf = std::function<MakeSource(const Prepared&)>;
+
+class RunnerVictims final : public Victims {
+ public:
+  explicit RunnerVictims(const Runner& runner) : runner_(runner) {}
+  void expected(int agent, double* out) const override { runner_.expected(agent, out); }
+  double alarm_level(int agent) const override { return runner_.alarm_level(agent); }
+
+ private:
+  const Runner& runner_;
+};
+
+/// Reports progress from many threads, one at a time, and remembers whether to go on.
+class Progress {
+ public:
+  Progress(const RunOptions& options, std::int64_t total) : report_(options.progress), total_(total) {}
+  /// Counts samples; false = stop.
+  bool advance(int samples = 1) {
+    const std::int64_t done = done_ += samples;
+    if (report_ && done * 100 / total_ != (done - samples) * 100 / total_) {
+      const std::lock_guard lock(mutex_);
+      if (!report_(done, total_)) go_ = false;
+    }
+    return go_;
+  }
+  bool stopped() const { return !go_; }
+
+ private:
+  const std::function<bool(std::int64_t, std::int64_t)>& report_;
+  std::int64_t total_;
+  std::atomic<std::int64_t> done_{0};
+  std::atomic<bool> go_{true};
+  std::mutex mutex_;
+};
+
+Matrix starts(const Model& model, const Matrix& given) {
+  const int n = model.states();
+  const int N = model.agents();
+  if (given.size() == 0) return Matrix::Zero(n, N);
+  if (given.rows() != n || (given.cols() != 1 && given.cols() != N))
+    refuse("start", std::to_string(given.rows()) + " x " + std::to_string(given.cols()),
+           std::to_string(n) + " x 1 or " + std::to_string(n) + " x " + std::to_string(N),
+           "one initial estimate for all, or one per agent");
+  if (!given.allFinite()) refuse("start", "a number that is not finite", "finite initial estimates");
+  return given.cols() == N ? given : given.replicate(1, N);
+}
+
+std::vector<std::unique_ptr<MeasurementAttack>> start_attacks(const Model& model, const RunOptions& options,
+                                                              std::uint32_t trial) {
+  std::vector<std::unique_ptr<MeasurementAttack>> attacks;
+  std::uint32_t salt = 0;
+  for (const Attack& plan : options.attacks)
+    attacks.push_back(plan->start(model, Random(options.seed, trial, Purpose::attack), ++salt));
+  return attacks;
+}
+
+/// One trial on its own runner.
+void run_trial(const Model& model, const Network& network, const RunOptions& options, Runner& runner,
+               detail::Source& source, detail::Recorder& recorder, int trial, Progress& progress) {
+  const auto id = static_cast<std::uint32_t>(trial);
+  Link link(network, options.link, options.message_attacks, options.seed, id);
+  auto attacks = start_attacks(model, options, id);
+  const RunnerVictims victims(runner);
+  std::vector<double> y(static_cast<std::size_t>(model.total_outputs()));
+  runner.reset(source.start(starts(model, options.start)), link.perfect() ? nullptr : &link);
+  source.meet(runner);
+  const auto sample = [&](int t) {
+    source.next(t, y);
+    for (auto& attack : attacks) attack->apply({t, y, victims});
+    runner.step(t, y.data());
+  };
+  if (recorder.record().first_sample == 0) sample(0);
+  recorder.take(trial, 0, runner, source.truth(), y);
+  for (int t = 1; t <= recorder.record().steps; ++t) {
+    sample(t);
+    recorder.take(trial, t, runner, source.truth(), y);
+    if (!progress.advance()) return;
+  }
+  recorder.finish(link.counters, runner.overflows(), runner.bytes_per_step());
+}
+
+/// kLanes trials at once where the family can; trial by trial the same bits.
+void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner, const MakeSource& make,
+               detail::Recorder& recorder, int first, Progress& progress) {
+  struct Lane {
+    std::unique_ptr<detail::Source> source;
+    std::vector<std::unique_ptr<MeasurementAttack>> attacks;
+  };
+  struct Nobody final : Victims {  // closed-loop attacks never come here
+    void expected(int, double*) const override {}
+    double alarm_level(int) const override { return kNaN; }
+  } nobody;
+  const auto& record = recorder.record();
+  const int used = std::min(kLanes, record.trials - first);
+  const auto M = static_cast<std::size_t>(model.total_outputs());
+  std::vector<Lane> lanes;
+  std::vector<Matrix> x0;
+  const Matrix start = starts(model, options.start);
+  for (int l = 0; l < kLanes; ++l) {
+    const auto trial = static_cast<std::uint32_t>(first + std::min(l, used - 1));
+    lanes.push_back({make(trial), start_attacks(model, options, trial)});
+    x0.push_back(lanes.back().source->start(start));
+  }
+  std::vector<double> y(M);
+  std::vector<double> all(M * kLanes);
+  runner.reset(x0.data());
+  const auto truth = [&](int lane) { return lanes[static_cast<std::size_t>(lane)].source->truth(); };
+  recorder.take_lanes(first, used, 0, runner, truth);
+  for (int t = 1; t <= record.steps; ++t) {
+    for (int l = 0; l < kLanes; ++l) {
+      auto& lane = lanes[static_cast<std::size_t>(l)];
+      lane.source->next(t, y);
+      for (auto& attack : lane.attacks) attack->apply({t, y, nobody});
+      for (std::size_t k = 0; k < M; ++k) all[k * kLanes + static_cast<std::size_t>(l)] = y[k];
+      if (l < used) recorder.count(first + l, t, y);
+    }
+    runner.step(all.data());
+    recorder.take_lanes(first, used, t, runner, truth);
+    if (!progress.advance(used)) return;
+  }
+}
+
+bool lanes_fit(const RunOptions& options) {
+  if (options.trials < 2 || options.keep.report || options.keep.signals || options.keep.details) return false;
+  if (!options.message_attacks.empty() || options.link.drop > 0.0 || options.link.delay > 0.0) return false;
+  for (const Attack& attack : options.attacks)
+    if (attack->closed_loop()) return false;
+  return true;
+}
+
+Record drive(const Model& model, const Network& network, const AnyFilter& filter, int steps, bool truth_known,
+             const RunOptions& options, const SourcesOf& sources) {
+  if (options.trials < 1) refuse("trials", std::to_string(options.trials), "at least 1");
+  for (const Attack& attack : options.attacks) attack->schedule().require_agents_below(model.agents());
+  for (const auto& attack : options.message_attacks)
+    if (!attack->fits(model.states()))
+      refuse("attack", "numbers for another plant",
+             "one per attacked agent and state (" + std::to_string(model.states()) + " states)",
+             "see the attack's covariance or deltas");
+  const Link rehearsal(network, options.link, options.message_attacks, options.seed, 0);
+  const auto prepared = filter.prepare(model, network);
+  prepared->check_start(starts(model, options.start));
+  const MakeSource make = sources(*prepared);
+  detail::Recorder recorder(model, filter, steps, truth_known, options);
+  Progress progress(options, static_cast<std::int64_t>(steps) * options.trials);
+  const int threads = thread_count(options.threads);
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto guarded = [&](const auto& work) {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  if (const auto probe = lanes_fit(options) ? prepared->lanes() : nullptr; probe != nullptr) {
+    const auto alone = prepared->runner(1);  // lanes keep no messages to measure
+    alone->reset(starts(model, options.start), nullptr);
+    recorder.finish({}, 0, alone->bytes_per_step());
+    const int groups = (options.trials + kLanes - 1) / kLanes;
+    Workers workers(std::min(threads, groups));
+    workers.split(groups, [&](std::int64_t begin, std::int64_t end, int) {
+      guarded([&] {
+        const auto runner = prepared->lanes();
+        for (auto g = begin; g < end && !progress.stopped(); ++g)
+          run_lanes(model, options, *runner, make, recorder, static_cast<int>(g) * kLanes, progress);
+      });
+    });
+  } else {
+    Workers workers(std::min(threads, options.trials));
+    const int inner = options.trials == 1 ? threads : 1;
+    workers.split(options.trials, [&](std::int64_t begin, std::int64_t end, int) {
+      guarded([&] {
+        const auto runner = prepared->runner(inner);
+        for (auto trial = begin; trial < end && !progress.stopped(); ++trial) {
+          const auto source = make(static_cast<std::uint32_t>(trial));
+          run_trial(model, network, options, *runner, *source, recorder, static_cast<int>(trial), progress);
+        }
+      });
+    });
+  }
+  if (failure) std::rethrow_exception(failure);
+  Record record = recorder.release();
+  record.interrupted = progress.stopped();
+  record.warnings = filter.warnings(model, {record.verdict, record.trials, record.steps + 1, record.agents});
+  return record;
+}
+
+}  // namespace
+
+Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
+                const PlantOptions& plant, const RunOptions& options) {
+  if (plant.steps < 1) refuse("steps", std::to_string(plant.steps), "at least 1");
+  const bool own = filter.own_states();
+  const int width = own ? model.agents() * model.states() : model.states();
+  if (plant.x0.size() != 0 && plant.x0.size() != width)
+    refuse("x0", std::to_string(plant.x0.size()) + " numbers",
+           std::to_string(width) + (own ? ", one per agent and state" : ", one per state"));
+  if (!plant.x0.allFinite()) refuse("x0", "a number that is not finite", "a finite initial state");
+  if (!(plant.start_error >= 0.0) || !std::isfinite(plant.start_error))
+    refuse("start_error", text(plant.start_error), "a finite number >= 0");
+  if (own) {
+    const Matrix* recorded = plant.disturbances.size() == 0 ? nullptr : &plant.disturbances;
+    if (recorded != nullptr && recorded->rows() != plant.steps + 1)
+      refuse("noise", std::to_string(recorded->rows()) + " rows of recorded disturbances",
+             std::to_string(plant.steps + 1) + ", one per time 0..steps");
+    return drive(model, network, filter, plant.steps, true, options, [&](const Prepared& prepared) {
+      return [&, start = starts(model, options.start)](std::uint32_t trial) {
+        return detail::world_source(
+            prepared.world({plant.x0, start, plant.start_error, plant.noise, recorded, options.seed, trial}),
+            model.agents());
+      };
+    });
+  }
+  if (plant.disturbances.size() != 0)
+    refuse("noise", "recorded disturbances", "the name of a noise law",
+           "only families whose agents drive plants of their own take recorded ones");
+  const detail::NoiseLaw law(plant.noise, model);
+  return drive(model, network, filter, plant.steps, true, options, [&](const Prepared&) {
+    return
+        [&](std::uint32_t trial) { return detail::simulated_source(model, law, plant, options.seed, trial); };
+  });
+}
+
+Record replay(const Model& model, const Network& network, const AnyFilter& filter, const Log& log,
+              const RunOptions& options) {
+  if (log.steps < 1) refuse("measurements", std::to_string(log.steps) + " samples", "at least 1");
+  if (log.runs != 1 && log.runs != options.trials)
+    refuse("trials", std::to_string(options.trials), std::to_string(log.runs) + ", one per run of the log",
+           "a log of one run serves any number of trials");
+  const int width = filter.own_states() ? model.agents() * model.states() : model.states();
+  return drive(model, network, filter, log.steps, log.truth != nullptr, options, [&](const Prepared&) {
+    return [&, width](std::uint32_t trial) {
+      return detail::recorded_source(model, log, log.runs == 1 ? 0 : trial, width, filter.first_sample());
+    };
+  });
+}
+
+Record replay(const Model& model, const Network& network, const AnyFilter& filter,
+              const MatrixRef& measurements, const MatrixRef& truth, const RunOptions& options) {
+  const auto shape = [](const MatrixRef& m) {
+    return std::to_string(m.rows()) + " x " + std::to_string(m.cols());
+  };
+  if (measurements.rows() < 1 || measurements.cols() != model.total_outputs())
+    refuse("measurements", shape(measurements), "steps x " + std::to_string(model.total_outputs()),
+           "one column per row of the C_i, agent by agent; NaN where a measurement is missing");
+  const auto steps = measurements.rows() + filter.first_sample() - 1;
+  const int width = filter.own_states() ? model.agents() * model.states() : model.states();
+  if (truth.size() != 0 && (truth.rows() != steps + 1 || truth.cols() != width))
+    refuse("truth", shape(truth), std::to_string(steps + 1) + " x " + std::to_string(width),
+           "one row per time 0..steps");
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Rows y = measurements;
+  const Rows x = truth;
+  return replay(model, network, filter,
+                Log{y.data(), x.size() == 0 ? nullptr : x.data(), 1, static_cast<int>(steps)}, options);
+}
+
+}  // namespace garrison

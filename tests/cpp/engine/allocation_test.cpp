@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program of its own: it counts every call of operator new while a step runs.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "../random_system.hpp"
+#include "garrison/engine/any_filter.hpp"
+#include "garrison/filters/lfre.hpp"
+#include "garrison/filters/partial_sharing/filter.hpp"
+#include "garrison/filters/platoon/world.hpp"
+#include "garrison/filters/rdkf/filter.hpp"
+#include "garrison/filters/scalar_gain.hpp"
+
+namespace {
+std::atomic<bool> armed{false};
+std::atomic<long> count{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  if (armed) ++count;
+  void* memory = alignment > alignof(std::max_align_t)
+                     ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                     : std::malloc(size);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+/// Not inlined: gcc would see `free` next to a `new` and warn that they do not belong together.
+[[gnu::noinline]] void release(void* memory) noexcept { std::free(memory); }
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size, 0); }
+void* operator new[](std::size_t size) { return counted(size, 0); }
+void* operator new(std::size_t size, std::align_val_t a) {
+  return counted(size, static_cast<std::size_t>(a));
+}
+void* operator new[](std::size_t size, std::align_val_t a) {
+  return counted(size, static_cast<std::size_t>(a));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return counted(size, 0); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return counted(size, 0); }
+void operator delete(void* p) noexcept { release(p); }
+void operator delete[](void* p) noexcept { release(p); }
+void operator delete(void* p, std::size_t) noexcept { release(p); }
+void operator delete[](void* p, std::size_t) noexcept { release(p); }
+void operator delete(void* p, std::align_val_t) noexcept { release(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { release(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { release(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { release(p); }
+
+using namespace garrison;
+
+TEST_CASE("the counter counts") {
+  armed = true;
+  int* volatile kept = new int(3);  // volatile: a compiler may leave out a pair of new and delete
+  delete kept;
+  armed = false;
+  CHECK(count == 1);
+}
+
+TEST_CASE("no step of any family allocates, at any dimension, on good and on bad links") {
+  for (int n = 1; n <= 9; ++n) {
+    test::Rng rng(static_cast<std::uint64_t>(n));
+    const Model model = test::scalar_model(rng, n, 8, 0.98, 0.02, 0.01);
+    const Network network = test::connected_network(rng, 8);
+    const ParamMap bounded{{"threshold", 0.2},
+                           {"rounds", std::int64_t{12}},
+                           {"attacked", std::int64_t{2}},
+                           {"initial_error", 2.0},
+                           {"detector", true}};
+    for (const auto& filter :
+         {make_filter("saturation", {{"threshold", 0.5}}),
+          make_filter("saturation", {{"threshold", 0.5}, {"chebyshev", true}}),
+          make_filter("saturation", bounded), make_filter("scalar_gain", {}), make_filter("lfre", {}),
+          make_filter("dkf", {}), make_filter("rdkf", {{"initial_error", 2.0}}),
+          make_filter("rdkf", {{"penalty", std::string("l1")}}),
+          make_filter("rdkf", {{"penalty", std::string("group")}}), make_filter("structural", {}),
+          make_filter("structural",
+                      {{"window", std::int64_t{4}}, {"settle", std::int64_t{0}}, {"isolate", true}}),
+          make_filter("partial_sharing", {{"gain", 0.1}, {"shared", std::int64_t{1}}})}) {
+      const auto runner = filter->prepare(model, network)->runner(1);
+      for (const bool faults : {false, true}) {
+        Link link(network, {0.2, 0.2, 3},
+                  {forge(Schedule(3, {1}), 2.0, false), equivocate(Schedule(2, {4}), 1.0)}, 1, 0);
+        runner->reset(Matrix::Zero(n, 8), faults ? &link : nullptr);
+        std::vector<double> y(8);
+        for (int t = 1; t <= 40; ++t) {
+          for (double& v : y) v = test::uniform(rng, -1, 1);
+          if (t == 10) y[2] = 50.0;  // proves an attack: sets differ and are flooded
+          if (t == 15) y[3] = kNaN;
+          count = 0;
+          armed = true;
+          runner->step(t, y.data());
+          armed = false;
+          CAPTURE(n);
+          CAPTURE(filter->name());
+          CAPTURE(faults);
+          CHECK(count == 0);
+        }
+      }
+    }
+  }
+}
+
+namespace {
+
+/// Allocations of 40 samples of two agents that hear each other, driven without any driver.
+template <class F, int n>
+long allocations_alone(const typename F::Params& params, const Model& model) {
+  const auto gains = F::design(params, model, Network::path(2));
+  typename F::template State<n> state[2];
+  typename F::template Message<n> message[2];
+  typename F::template Message<n> next[2];
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows[2];
+  Local local[2];
+  const Vec<n> x0 = Vector::Zero(model.states());
+  for (int i = 0; i < 2; ++i) {
+    rows[i] = model.C(i);
+    local[i] = {i, 2, model.states(), 1, 1, model.A().data(), rows[i].data()};
+    F::template init<n>(local[i], gains, x0, state[i], message[i]);
+    next[i] = message[i];
+  }
+  const std::uint32_t slots[2] = {1, 0};
+  double out[32];
+  count = 0;
+  armed = true;
+  for (int t = 1; t <= 40; ++t) {
+    for (int i = 0; i < 2; ++i) {
+      const double y = t == 7 ? kNaN : t == 9 ? kInfinity : 0.1 * t * (1 - 2 * i);
+      F::template sense<n>(local[i], gains, state[i], &y, t, message[i]);
+    }
+    for (int round = 0; round < F::rounds(gains); ++round) {
+      for (int i = 0; i < 2; ++i)
+        F::template fuse<n>(local[i], gains, state[i], {message, {slots + i, 1}}, round, next[i]);
+      for (int i = 0; i < 2; ++i) message[i] = next[i];
+    }
+    for (int i = 0; i < 2; ++i) {
+      F::template report<n>(local[i], gains, state[i]);
+      F::template signals<n>(local[i], gains, state[i], out);
+      F::template expected<n>(local[i], gains, state[i], out);
+      F::template alarm_level<n>(local[i], gains, state[i]);
+    }
+  }
+  armed = false;
+  return count;
+}
+
+/// Engines of all dimensions are tested above; here, what no engine calls is.
+template <int n>
+void check_alone(int states) {
+  test::Rng rng(static_cast<std::uint64_t>(states));
+  const Model model = test::scalar_model(rng, states, 2, 0.98, 0.02, 0.01);
+  Saturation::Params detector;
+  detector.threshold = 0.2;
+  detector.attacked = 1;
+  detector.initial_error = 2.0;
+  detector.detector = true;
+  Saturation::Params adaptive = detector;
+  adaptive.detector = false;
+  adaptive.adaptive = true;
+  adaptive.threshold = kNaN;
+  CAPTURE(states);
+  CHECK(allocations_alone<Saturation, n>(detector, model) == 0);
+  CHECK(allocations_alone<Saturation, n>(adaptive, model) == 0);
+  CHECK(allocations_alone<ScalarGain, n>({}, model) == 0);
+  CHECK(allocations_alone<Lfre, n>({}, model) == 0);
+  CHECK(allocations_alone<Rdkf, n>({}, model) == 0);
+  PartialSharing::Params sharing;
+  sharing.gain = 0.1;
+  sharing.shared = 1;
+  CHECK(allocations_alone<PartialSharing, n>(sharing, model) == 0);
+}
+
+}  // namespace
+
+TEST_CASE("sense, fuse and report on their own do not allocate") {
+  check_alone<1>(1);
+  check_alone<8>(8);
+  check_alone<Dynamic>(9);
+}
+
+TEST_CASE("no step of a string of vehicles allocates, attacked, on good and on bad links") {
+  const Model model = platoon::model(9, 0.01);
+  const Network network = Network::band(9, 3);
+  ParamMap base{{"reference", std::vector<double>{0.0, 10.0}}, {"gs", 50.0}, {"gv", 50.0}};
+  base.insert({{"process_noise", 0.1}, {"measurement_noise", 0.1}, {"attacked", std::int64_t{2}}});
+  ParamMap plain = base;
+  plain.insert({{"threshold", 200.0}, {"initial_error", 300.0}});
+  ParamMap strong = plain;
+  strong.insert({{"pairs", true}, {"neighbours", true}, {"median", true}});
+  strong.insert({{"count", std::string("cover")}, {"bound", std::string("tight")}});
+  base["kind"] = std::string("pbe");
+  for (const auto& filter : {make_filter("platoon", plain), make_filter("platoon", strong),
+                             make_filter("platoon_baseline", base)}) {
+    const auto runner = filter->prepare(model, network)->runner(1);
+    for (const bool faults : {false, true}) {
+      Link link(network, {0.2, 0.2, 3}, {forge(Schedule(3, {1}), 2.0, false)}, 1, 0);
+      Matrix start = Matrix::Zero(2, 9);
+      for (int i = 0; i < 9; ++i) start(0, i) = -20.0 * i;
+      runner->reset(start, faults ? &link : nullptr);
+      std::vector<double> y(static_cast<std::size_t>(model.total_outputs()));
+      std::vector<double> u(9);
+      test::Rng rng(3);
+      for (int t = 0; t <= 40; ++t) {
+        for (int i = 0; i < 9; ++i) {
+          double* own = y.data() + model.offset(i);
+          own[0] = -20.0 * i + test::uniform(rng, -0.05, 0.05);
+          own[1] = test::uniform(rng, -0.05, 0.05);
+          if (i > 0) {
+            own[2] = -20.0;
+            own[3] = 0.0;
+          }
+        }
+        if (t > 5) y[static_cast<std::size_t>(model.offset(4))] = 1e3 * t;
+        if (t > 8) y[static_cast<std::size_t>(model.offset(7))] = t % 2 == 0 ? kNaN : kInfinity;
+        count = 0;
+        armed = true;
+        runner->step(t, y.data());
+        runner->control(u.data());
+        armed = false;
+        CAPTURE(filter->name());
+        CAPTURE(faults);
+        CAPTURE(t);
+        CHECK(count == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("eight trials side by side do not allocate either") {
+  for (const int n : {1, 3, 8}) {
+    test::Rng rng(static_cast<std::uint64_t>(n));
+    const Model model = test::scalar_model(rng, n, 8, 0.98, 0.02, 0.01);
+    const Network network = test::connected_network(rng, 8);
+    const auto lanes = make_filter("saturation", {{"threshold", 0.5}})->prepare(model, network)->lanes();
+    REQUIRE(lanes != nullptr);
+    const std::vector<Matrix> x0(kLanes, Matrix::Zero(n, 8));
+    lanes->reset(x0.data());
+    std::vector<double> y(8 * kLanes, 0.3);
+    count = 0;
+    armed = true;
+    for (int t = 0; t < 20; ++t) lanes->step(y.data());
+    armed = false;
+    CHECK(count == 0);
+  }
+}
