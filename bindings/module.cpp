@@ -8,7 +8,8 @@ PYBIND11_MODULE(_core, m) {
   bind_core(m);
   bind_filters(m);
   bind_attacks(m);
-  bind_runtime(m);
+  bind_agents(m);
+  bind_drivers(m);
   bind_analysis(m);
   bind_fit(m);
   bind_rdkf(m);

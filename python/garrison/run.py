@@ -12,7 +12,7 @@ from garrison import _core
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
-VERDICTS = ("cleared", "suspected", "attacked", "silent")
+VERDICTS = ("cleared", "suspected", "attacked", "silent", "not tested")
 
 
 class Run:
@@ -151,9 +151,7 @@ def simulate(
     Same arguments, same bits. Raises InvalidInput when something does not fit.
     """
     data = _core.simulate(
-        model,
-        network,
-        filter,
+        _core.Design(model, network, filter),
         steps=steps,
         x0=np.zeros(0) if x0 is None else np.asarray(x0, dtype=float).ravel(),
         start_error=start_error,
@@ -197,9 +195,7 @@ def replay(
     if trials is None:
         trials = len(y) if y.ndim == 3 else 1
     data = _core.replay(
-        model,
-        network,
-        filter,
+        _core.Design(model, network, filter),
         measurements=y,
         truth=None if truth is None else np.asarray(truth, dtype=float),
         trials=trials,

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/solvers.hpp"
+#include "garrison/core/params.hpp"
 
 namespace garrison {
 namespace {
@@ -14,8 +16,8 @@ class Forge final : public MessageAttack {
  public:
   Forge(Schedule schedule, double offset, bool replace)
       : MessageAttack(std::move(schedule)), offset_(offset), replace_(replace) {}
-  bool rewrite(const Hop&, const Random&, std::span<double> values) const override {
-    for (double& v : values) v = replace_ ? offset_ : v + offset_;
+  bool rewrite(const Hop&, const Random&, const FieldList& message) const override {
+    message.each_number([&](std::size_t, double& v) { v = replace_ ? offset_ : v + offset_; });
     return true;
   }
 
@@ -27,13 +29,14 @@ class Forge final : public MessageAttack {
 class Equivocate final : public MessageAttack {
  public:
   Equivocate(Schedule schedule, double size) : MessageAttack(std::move(schedule)), size_(size) {}
-  bool rewrite(const Hop& hop, const Random& random, std::span<double> values) const override {
+  bool rewrite(const Hop& hop, const Random& random, const FieldList& message) const override {
     const auto receiver = static_cast<std::uint32_t>(hop.receiver);
     double square = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k)
-      square += std::pow(direction(hop, random, receiver, k), 2);
-    for (std::size_t k = 0; k < values.size(); ++k)
-      values[k] += size_ * direction(hop, random, receiver, k) / std::sqrt(square);
+    message.each_number(
+        [&](std::size_t k, double&) { square += std::pow(direction(hop, random, receiver, k), 2); });
+    message.each_number([&](std::size_t k, double& v) {
+      v += size_ * direction(hop, random, receiver, k) / std::sqrt(square);
+    });
     return true;
   }
 
@@ -49,22 +52,26 @@ class Equivocate final : public MessageAttack {
 std::size_t place(const std::vector<int>& liars, int sender) {
   return static_cast<std::size_t>(std::lower_bound(liars.begin(), liars.end(), sender) - liars.begin());
 }
-/// State that number k of a message belongs to.
-int state_of(const Hop& hop, std::size_t k) {
-  return hop.entries.empty() ? static_cast<int>(k) : hop.entries[k];
+/// Calls action(state, value) for every number of a message that belongs to a state.
+template <class Action>
+void each_state(const Hop& hop, const FieldList& message, const Action& action) {
+  const std::size_t count = hop.entries.empty() ? static_cast<std::size_t>(hop.states) : hop.entries.size();
+  message.each_number([&](std::size_t k, double& v) {
+    if (k < count) action(hop.entries.empty() ? static_cast<int>(k) : hop.entries[k], v);
+  });
 }
 
 class Coordinated final : public MessageAttack {
  public:
   Coordinated(Schedule schedule, Matrix root)
       : MessageAttack(std::move(schedule)), liars_(this->schedule().everyone()), root_(std::move(root)) {}
-  bool rewrite(const Hop& hop, const Random& random, std::span<double> values) const override {
+  bool rewrite(const Hop& hop, const Random& random, const FieldList& message) const override {
     const auto first = static_cast<Eigen::Index>(place(liars_, hop.sender)) * root_.rows() /
                        static_cast<Eigen::Index>(liars_.size());
     for (Eigen::Index c = 0; c < root_.cols(); ++c) {
       const double z =
           random.normal(hop.t, hop.salt, static_cast<std::uint32_t>(c));  // the same for all liars
-      for (std::size_t k = 0; k < values.size(); ++k) values[k] += root_(first + state_of(hop, k), c) * z;
+      each_state(hop, message, [&](int state, double& v) { v += root_(first + state, c) * z; });
     }
     return true;
   }
@@ -81,12 +88,12 @@ class Perturb final : public MessageAttack {
  public:
   Perturb(Schedule schedule, Matrix deltas)
       : MessageAttack(std::move(schedule)), liars_(this->schedule().everyone()), deltas_(std::move(deltas)) {}
-  bool rewrite(const Hop& hop, const Random&, std::span<double> values) const override {
+  bool rewrite(const Hop& hop, const Random&, const FieldList& message) const override {
     const std::int64_t row = hop.t - schedule().first();
     if (row >= deltas_.rows()) return true;
     const auto first = static_cast<Eigen::Index>(place(liars_, hop.sender)) * deltas_.cols() /
                        static_cast<Eigen::Index>(liars_.size());
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] += deltas_(row, first + state_of(hop, k));
+    each_state(hop, message, [&](int state, double& v) { v += deltas_(row, first + state); });
     return true;
   }
   bool fits(int states) const override {
@@ -126,7 +133,71 @@ void require_blocks(const char* which, const Schedule& schedule, Eigen::Index co
 class Silence final : public MessageAttack {
  public:
   using MessageAttack::MessageAttack;
-  bool rewrite(const Hop&, const Random&, std::span<double>) const override { return false; }
+  bool rewrite(const Hop&, const Random&, const FieldList&) const override { return false; }
+};
+
+class Falsify final : public MessageAttack {
+ public:
+  Falsify(Schedule schedule, std::string field, double value, std::vector<int> members)
+      : MessageAttack(std::move(schedule)),
+        field_(std::move(field)),
+        value_(value),
+        members_(std::move(members)) {}
+  bool rewrite(const Hop&, const Random&, const FieldList& message) const override {
+    const FieldRef* field = message.find(field_);
+    if (field == nullptr) return true;
+    switch (field->kind) {
+      case FieldKind::numbers:
+      case FieldKind::optional:
+        std::fill_n(static_cast<double*>(field->data), field->size, value_);
+        break;
+      case FieldKind::flag:
+        *static_cast<bool*>(field->data) = value_ != 0.0;
+        break;
+      case FieldKind::count:
+        *static_cast<int*>(field->data) =
+            value_ >= 0.0 && value_ <= field->size ? static_cast<int>(value_) : -1;  // refused by who gets it
+        break;
+      case FieldKind::set:
+        accuse(*static_cast<AgentSet*>(field->data));
+        break;
+      case FieldKind::labels:
+        accuse(*static_cast<LabelSet*>(field->data));
+        break;
+    }
+    return true;
+  }
+  void require(const FieldList& message) const override {
+    std::vector<std::string> known;
+    for (const FieldRef& field : message.all()) known.emplace_back(field.name);
+    if (message.find(field_) == nullptr) refuse_unknown("falsify.field", field_, known);
+  }
+
+ private:
+  void accuse(AgentSet& set) const {
+    if (set.empty()) return;
+    set.clear();
+    for (const int id : members_)
+      if (static_cast<std::size_t>(id) < 64 * set.words()) set.insert(id);
+  }
+  void accuse(LabelSet& set) const {
+    if (set.capacity() == 0) return;
+    set.clear();
+    for (const int id : members_) set.insert(id);
+  }
+  std::string field_;
+  double value_;
+  std::vector<int> members_;
+};
+
+class Outdated final : public MessageAttack {
+ public:
+  Outdated(Schedule schedule, int age) : MessageAttack(std::move(schedule)), age_(age) {}
+  bool rewrite(const Hop&, const Random&, const FieldList&) const override { return true; }
+  int age() const override { return age_; }
+
+ private:
+  int age_;
 };
 
 }  // namespace
@@ -155,6 +226,20 @@ std::shared_ptr<MessageAttack> perturb(Schedule schedule, const Matrix& deltas) 
   require_blocks("deltas", schedule, deltas.cols());
   if (!deltas.allFinite()) refuse("deltas", "a number that is not finite", "finite numbers");
   return std::make_shared<Perturb>(std::move(schedule), deltas);
+}
+
+std::shared_ptr<MessageAttack> falsify(Schedule schedule, std::string field, double value,
+                                       std::vector<int> members) {
+  for (const int id : members)
+    if (id < 0) refuse("falsify.members", "agent " + std::to_string(id), "agents that exist");
+  return std::make_shared<Falsify>(std::move(schedule), std::move(field), value, std::move(members));
+}
+
+std::shared_ptr<MessageAttack> outdated(Schedule schedule, int age) {
+  constexpr int kMostAge = 10000;  // engines keep the messages of so many samples
+  if (age < 1 || age > kMostAge)
+    refuse("outdated.age", std::to_string(age), "1.." + std::to_string(kMostAge) + " samples");
+  return std::make_shared<Outdated>(std::move(schedule), age);
 }
 
 std::shared_ptr<MessageAttack> silence(Schedule schedule) {

@@ -169,6 +169,36 @@ struct PerturbParams {
   }
 };
 
+struct FalsifyParams {
+  std::string which;
+  double value = 0.0;
+  std::vector<double> members;
+  static auto fields() {
+    return std::make_tuple(
+        field(&FalsifyParams::which,
+              {.name = "field",
+               .unit = "",
+               .doc = "name of the field, e.g. \"estimate\", \"intact\", \"proved\", \"bound\" (the page of "
+                      "each filter lists them)",
+               .required = true}),
+        field(&FalsifyParams::value,
+              {.name = "value",
+               .unit = "of the field",
+               .doc = "what numbers, counts and optional numbers become; a flag is set where it "
+                      "is not 0"}),
+        field(&FalsifyParams::members,
+              {.name = "members", .unit = "agents", .doc = "what a set becomes", .least = 0.0}));
+  }
+};
+struct OutdatedParams {
+  int age = 1;
+  static auto fields() {
+    return std::make_tuple(field(
+        &OutdatedParams::age,
+        {.name = "age", .unit = "samples", .doc = "how old what is sent is", .required = true, .least = 1}));
+  }
+};
+
 double number_from(const std::string& words) {
   std::size_t used = 0;
   try {
@@ -207,6 +237,17 @@ std::shared_ptr<const MessageAttack> build(Schedule s, const ForgeParams& p) {
 }
 std::shared_ptr<const MessageAttack> build(Schedule s, const EquivocateParams& p) {
   return equivocate(std::move(s), p.size);
+}
+std::shared_ptr<const MessageAttack> build(Schedule s, const FalsifyParams& p) {
+  std::vector<int> members;
+  for (const double id : p.members) {
+    if (id != std::floor(id) || id > 1e9) refuse("falsify.members", text(id), "whole numbers, ids of agents");
+    members.push_back(static_cast<int>(id));
+  }
+  return falsify(std::move(s), p.which, p.value, std::move(members));
+}
+std::shared_ptr<const MessageAttack> build(Schedule s, const OutdatedParams& p) {
+  return outdated(std::move(s), p.age);
 }
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -262,6 +303,9 @@ std::span<const AttackInfo> attack_infos() {
       on_messages<EquivocateParams>("equivocate", "the agent tells each neighbour another lie"),
       on_messages<CoordinatedParams>("coordinated", "the agents add Gaussian noise that they draw together"),
       on_messages<PerturbParams>("perturb", "the agents add given numbers"),
+      on_messages<FalsifyParams>("falsify",
+                                 "the agent lies in one field of its messages, e.g. a set or a flag"),
+      on_messages<OutdatedParams>("outdated", "the agent sends what it sent some samples ago, as new"),
       AttackInfo{"silence",
                  "message",
                  "the agent sends nothing",

@@ -49,6 +49,7 @@ Recorder::Recorder(const Model& model, const AnyFilter& filter, int steps, bool 
     lists_.resize(trials);
   }
   last_.resize(trials);
+  counts_.resize(trials);
 }
 
 std::size_t Recorder::row(int trial, int t) const {
@@ -57,8 +58,7 @@ std::size_t Recorder::row(int trial, int t) const {
 }
 
 double* Recorder::estimate(int trial, int t) {
-  const auto size = static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
-  return keep_.estimate ? record_.estimate.data() + row(trial, t) * size
+  return keep_.estimate ? record_.estimate.data() + row(trial, t) * size()
                         : estimates_[static_cast<std::size_t>(trial)].data();
 }
 
@@ -77,10 +77,10 @@ void Recorder::errors(std::size_t row, const double* estimate, const double* tru
 
 void Recorder::count(int trial, int t, std::span<const double> y) {
   if (!all_below(y.data(), y.size(), kHuge)) {
-    const std::lock_guard lock(mutex_);
+    Counts& counts = counts_[static_cast<std::size_t>(trial)];
     for (const double v : y) {
-      record_.missing += std::isnan(v) ? 1 : 0;
-      record_.nonfinite += std::abs(v) >= kHuge ? 1 : 0;
+      counts.missing += std::isnan(v) ? 1 : 0;
+      counts.nonfinite += std::abs(v) >= kHuge ? 1 : 0;
     }
   }
   if (!keep_.measurements) return;
@@ -152,14 +152,19 @@ void Recorder::details(int trial, int t, const Runner& runner) {
   }
 }
 
-void Recorder::finish(const LinkCounters& link, std::int64_t overflows, std::int64_t bytes_per_step) {
+void Recorder::finish(const LinkCounters& link, const Runner& runner) {
   const std::lock_guard lock(mutex_);
   record_.link += link;
-  record_.overflows += overflows;
-  record_.bytes_per_step = bytes_per_step;
+  record_.overflows += runner.overflows();
+  record_.resets += runner.resets();
+  record_.bytes_per_step = runner.bytes_per_step();
 }
 
 Record Recorder::release() {
+  for (const Counts& counts : counts_) {
+    record_.missing += counts.missing;
+    record_.nonfinite += counts.nonfinite;
+  }
   // Threads finish trials in any order; the record must not depend on it.
   std::sort(record_.accusations.begin(), record_.accusations.end(), [](const auto& a, const auto& b) {
     return std::tie(a.trial, a.time) < std::tie(b.trial, b.time);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "garrison/drivers/simulate.hpp"
+#include "garrison/kernel/magnitude.hpp"
 
 namespace garrison::detail {
 
@@ -20,21 +21,39 @@ class Recorder {
   /// Everything asked for at time t of a trial; y is what the filter received (not read at t = 0).
   void take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y);
   /// The same of the trials first .. first + used - 1, which run side by side: estimates and errors.
-  /// `truth(lane)`: null when it is not known.
+  /// `truth(lane)`: null when it is not known. False: an estimate is so large that it may not have been of
+  /// use.
   template <class Truth>
-  void take_lanes(int first, int used, int t, const LaneRunner& runner, const Truth& truth) {
+  bool take_lanes(int first, int used, int t, const LaneRunner& runner, const Truth& truth) {
     std::array<double*, kLanes> out{};
     for (int l = 0; l < used; ++l) out[static_cast<std::size_t>(l)] = estimate(first + l, t);
     runner.read(out.data(), used);
-    for (int l = 0; l < used; ++l)
-      if (const double* x = truth(l)) errors(row(first + l, t), out[static_cast<std::size_t>(l)], x);
+    bool fine = true;
+    for (int l = 0; l < used; ++l) {
+      const double* const estimates = out[static_cast<std::size_t>(l)];
+      if (const double* x = truth(l)) errors(row(first + l, t), estimates, x);
+      fine = fine && all_below(estimates, size(), kSurelyUsable);
+    }
+    return fine;
   }
   /// Counts and keeps the measurements of time t >= 1.
   void count(int trial, int t, std::span<const double> y);
-  void finish(const LinkCounters& link, std::int64_t overflows, std::int64_t bytes_per_step);
+  /// Forgets what was counted of a trial that is about to be run (again).
+  void begin(int trial) { counts_[static_cast<std::size_t>(trial)] = {}; }
+  void finish(const LinkCounters& link, const Runner& runner);
   Record release();
 
  private:
+  /// Averages of estimates below this are averages of estimates below kHuge, however small the weights.
+  static constexpr double kSurelyUsable = 1e100;
+  struct Counts {
+    std::int64_t missing = 0;
+    std::int64_t nonfinite = 0;
+  };
+  /// Numbers of all estimates at one time.
+  std::size_t size() const {
+    return static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
+  }
   std::size_t row(int trial, int t) const;
   /// Where estimates of that time go.
   double* estimate(int trial, int t);
@@ -46,6 +65,7 @@ class Recorder {
   Keep keep_;
   bool vouch_;  // no agent lies in its messages: only then a family's bounds are covered
   std::size_t outputs_;
+  std::vector<Counts> counts_;                           // per trial
   std::vector<std::vector<AgentSet>> last_;              // per trial: the sets at the last accusation
   std::vector<std::vector<std::vector<double>>> lists_;  // per trial, [agent * details + detail]
   std::vector<std::vector<double>> estimates_;           // per trial, when estimates are not kept

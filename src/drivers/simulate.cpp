@@ -13,7 +13,6 @@ namespace garrison {
 namespace {
 
 using MakeSource = std::function<std::unique_ptr<detail::Source>(std::uint32_t trial)>;
-using SourcesOf = std::function<MakeSource(const Prepared&)>;
 
 class RunnerVictims final : public Victims {
  public:
@@ -56,7 +55,8 @@ Matrix starts(const Model& model, const Matrix& given) {
     refuse("start", std::to_string(given.rows()) + " x " + std::to_string(given.cols()),
            std::to_string(n) + " x 1 or " + std::to_string(n) + " x " + std::to_string(N),
            "one initial estimate for all, or one per agent");
-  if (!given.allFinite()) refuse("start", "a number that is not finite", "finite initial estimates");
+  if (!(given.cwiseAbs().maxCoeff() < kHuge))
+    refuse("start", "a number that is not finite, or beyond 1e150", "finite initial estimates");
   return given.cols() == N ? given : given.replicate(1, N);
 }
 
@@ -70,12 +70,15 @@ std::vector<std::unique_ptr<MeasurementAttack>> start_attacks(const Model& model
 }
 
 /// One trial on its own runner.
-void run_trial(const Model& model, const Network& network, const RunOptions& options, Runner& runner,
-               detail::Source& source, detail::Recorder& recorder, int trial, Progress& progress) {
+void run_trial(const Prepared& prepared, const RunOptions& options, Runner& runner, detail::Source& source,
+               detail::Recorder& recorder, int trial, Progress& progress) {
+  const Model& model = prepared.model();
+  const Network& network = prepared.network();
   const auto id = static_cast<std::uint32_t>(trial);
   Link link(network, options.link, options.message_attacks, options.seed, id);
   auto attacks = start_attacks(model, options, id);
   const RunnerVictims victims(runner);
+  recorder.begin(trial);
   std::vector<double> y(static_cast<std::size_t>(model.total_outputs()));
   runner.reset(source.start(starts(model, options.start)), link.perfect() ? nullptr : &link);
   source.meet(runner);
@@ -91,11 +94,12 @@ void run_trial(const Model& model, const Network& network, const RunOptions& opt
     recorder.take(trial, t, runner, source.truth(), y);
     if (!progress.advance()) return;
   }
-  recorder.finish(link.counters, runner.overflows(), runner.bytes_per_step());
+  recorder.finish(link.counters, runner);
 }
 
-/// kLanes trials at once where the family can; trial by trial the same bits.
-void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner, const MakeSource& make,
+/// kLanes trials at once where the family can; trial by trial the same bits. False: some estimate grew so
+/// large that agents might have rejoined, which these do not; their trials are then to be run one by one.
+bool run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner, const MakeSource& make,
                detail::Recorder& recorder, int first, Progress& progress) {
   struct Lane {
     std::unique_ptr<detail::Source> source;
@@ -120,7 +124,7 @@ void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
   std::vector<double> all(M * kLanes);
   runner.reset(x0.data());
   const auto truth = [&](int lane) { return lanes[static_cast<std::size_t>(lane)].source->truth(); };
-  recorder.take_lanes(first, used, 0, runner, truth);
+  bool fine = recorder.take_lanes(first, used, 0, runner, truth);
   for (int t = 1; t <= record.steps; ++t) {
     for (int l = 0; l < kLanes; ++l) {
       auto& lane = lanes[static_cast<std::size_t>(l)];
@@ -130,9 +134,10 @@ void run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
       if (l < used) recorder.count(first + l, t, y);
     }
     runner.step(all.data());
-    recorder.take_lanes(first, used, t, runner, truth);
-    if (!progress.advance(used)) return;
+    fine = recorder.take_lanes(first, used, t, runner, truth) && fine;
+    if (!progress.advance(used)) return true;
   }
+  return fine;
 }
 
 bool lanes_fit(const RunOptions& options) {
@@ -143,8 +148,11 @@ bool lanes_fit(const RunOptions& options) {
   return true;
 }
 
-Record drive(const Model& model, const Network& network, const AnyFilter& filter, int steps, bool truth_known,
-             const RunOptions& options, const SourcesOf& sources) {
+Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOptions& options,
+             const MakeSource& make) {
+  const Model& model = prepared.model();
+  const Network& network = prepared.network();
+  const AnyFilter& filter = prepared.filter();
   if (options.trials < 1) refuse("trials", std::to_string(options.trials), "at least 1");
   for (const Attack& attack : options.attacks) attack->schedule().require_agents_below(model.agents());
   for (const auto& attack : options.message_attacks)
@@ -152,10 +160,9 @@ Record drive(const Model& model, const Network& network, const AnyFilter& filter
       refuse("attack", "numbers for another plant",
              "one per attacked agent and state (" + std::to_string(model.states()) + " states)",
              "see the attack's covariance or deltas");
+  for (const auto& attack : options.message_attacks) prepared.require(*attack);
   const Link rehearsal(network, options.link, options.message_attacks, options.seed, 0);
-  const auto prepared = filter.prepare(model, network);
-  prepared->check_start(starts(model, options.start));
-  const MakeSource make = sources(*prepared);
+  prepared.check_start(starts(model, options.start));
   detail::Recorder recorder(model, filter, steps, truth_known, options);
   Progress progress(options, static_cast<std::int64_t>(steps) * options.trials);
   const int threads = thread_count(options.threads);
@@ -169,45 +176,56 @@ Record drive(const Model& model, const Network& network, const AnyFilter& filter
       if (!failure) failure = std::current_exception();
     }
   };
-  if (const auto probe = lanes_fit(options) ? prepared->lanes() : nullptr; probe != nullptr) {
-    const auto alone = prepared->runner(1);  // lanes keep no messages to measure
+  const auto one_by_one = [&](std::int64_t begin, std::int64_t end, Runner& runner) {
+    for (auto trial = begin; trial < end && !progress.stopped(); ++trial) {
+      const auto source = make(static_cast<std::uint32_t>(trial));
+      run_trial(prepared, options, runner, *source, recorder, static_cast<int>(trial), progress);
+    }
+  };
+  if (const auto probe = lanes_fit(options) ? prepared.lanes() : nullptr; probe != nullptr) {
+    const auto alone = prepared.runner(1);  // lanes keep no messages to measure
     alone->reset(starts(model, options.start), nullptr);
-    recorder.finish({}, 0, alone->bytes_per_step());
+    recorder.finish({}, *alone);
     const int groups = (options.trials + kLanes - 1) / kLanes;
     Workers workers(std::min(threads, groups));
     workers.split(groups, [&](std::int64_t begin, std::int64_t end, int) {
       guarded([&] {
-        const auto runner = prepared->lanes();
-        for (auto g = begin; g < end && !progress.stopped(); ++g)
-          run_lanes(model, options, *runner, make, recorder, static_cast<int>(g) * kLanes, progress);
+        const auto runner = prepared.lanes();
+        for (auto g = begin; g < end && !progress.stopped(); ++g) {
+          const int first = static_cast<int>(g) * kLanes;
+          if (!run_lanes(model, options, *runner, make, recorder, first, progress))
+            one_by_one(first, std::min(first + kLanes, options.trials), *prepared.runner(1));
+        }
       });
     });
   } else {
     Workers workers(std::min(threads, options.trials));
     const int inner = options.trials == 1 ? threads : 1;
     workers.split(options.trials, [&](std::int64_t begin, std::int64_t end, int) {
-      guarded([&] {
-        const auto runner = prepared->runner(inner);
-        for (auto trial = begin; trial < end && !progress.stopped(); ++trial) {
-          const auto source = make(static_cast<std::uint32_t>(trial));
-          run_trial(model, network, options, *runner, *source, recorder, static_cast<int>(trial), progress);
-        }
-      });
+      guarded([&] { one_by_one(begin, end, *prepared.runner(inner)); });
     });
   }
   if (failure) std::rethrow_exception(failure);
   Record record = recorder.release();
   record.interrupted = progress.stopped();
   record.warnings = filter.warnings(model, {record.verdict, record.trials, record.steps + 1, record.agents});
+  if (!options.message_attacks.empty())
+    record.warnings.emplace_back(
+        "Agents lie in their messages: no bound is reported, and a sensor called attacked may be honest, "
+        "because both "
+        "rest on what agents tell each other.");
+  if (record.resets > 0)
+    record.warnings.push_back("Estimates overflowed and were taken anew from the neighbours " +
+                              std::to_string(record.resets) + " times.");
   return record;
 }
 
 }  // namespace
 
-Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
-                const PlantOptions& plant, const RunOptions& options) {
+Record simulate(const Prepared& prepared, const PlantOptions& plant, const RunOptions& options) {
+  const Model& model = prepared.model();
   if (plant.steps < 1) refuse("steps", std::to_string(plant.steps), "at least 1");
-  const bool own = filter.own_states();
+  const bool own = prepared.filter().own_states();
   const int width = own ? model.agents() * model.states() : model.states();
   if (plant.x0.size() != 0 && plant.x0.size() != width)
     refuse("x0", std::to_string(plant.x0.size()) + " numbers",
@@ -220,36 +238,43 @@ Record simulate(const Model& model, const Network& network, const AnyFilter& fil
     if (recorded != nullptr && recorded->rows() != plant.steps + 1)
       refuse("noise", std::to_string(recorded->rows()) + " rows of recorded disturbances",
              std::to_string(plant.steps + 1) + ", one per time 0..steps");
-    return drive(model, network, filter, plant.steps, true, options, [&](const Prepared& prepared) {
-      return [&, start = starts(model, options.start)](std::uint32_t trial) {
-        return detail::world_source(
-            prepared.world({plant.x0, start, plant.start_error, plant.noise, recorded, options.seed, trial}),
-            model.agents());
-      };
+    const Matrix start = starts(model, options.start);
+    return drive(prepared, plant.steps, true, options, [&](std::uint32_t trial) {
+      return detail::world_source(
+          prepared.world({plant.x0, start, plant.start_error, plant.noise, recorded, options.seed, trial}),
+          model.agents());
     });
   }
   if (plant.disturbances.size() != 0)
     refuse("noise", "recorded disturbances", "the name of a noise law",
            "only families whose agents drive plants of their own take recorded ones");
   const detail::NoiseLaw law(plant.noise, model);
-  return drive(model, network, filter, plant.steps, true, options, [&](const Prepared&) {
-    return
-        [&](std::uint32_t trial) { return detail::simulated_source(model, law, plant, options.seed, trial); };
+  return drive(prepared, plant.steps, true, options, [&](std::uint32_t trial) {
+    return detail::simulated_source(model, law, plant, options.seed, trial);
+  });
+}
+
+Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
+                const PlantOptions& plant, const RunOptions& options) {
+  return simulate(*filter.prepare(model, network), plant, options);
+}
+
+Record replay(const Prepared& prepared, const Log& log, const RunOptions& options) {
+  const Model& model = prepared.model();
+  if (log.steps < 1) refuse("measurements", std::to_string(log.steps) + " samples", "at least 1");
+  if (log.runs != 1 && log.runs != options.trials)
+    refuse("trials", std::to_string(options.trials), std::to_string(log.runs) + ", one per run of the log",
+           "a log of one run serves any number of trials");
+  const int width = prepared.filter().own_states() ? model.agents() * model.states() : model.states();
+  return drive(prepared, log.steps, log.truth != nullptr, options, [&](std::uint32_t trial) {
+    return detail::recorded_source(model, log, log.runs == 1 ? 0 : trial, width,
+                                   prepared.filter().first_sample());
   });
 }
 
 Record replay(const Model& model, const Network& network, const AnyFilter& filter, const Log& log,
               const RunOptions& options) {
-  if (log.steps < 1) refuse("measurements", std::to_string(log.steps) + " samples", "at least 1");
-  if (log.runs != 1 && log.runs != options.trials)
-    refuse("trials", std::to_string(options.trials), std::to_string(log.runs) + ", one per run of the log",
-           "a log of one run serves any number of trials");
-  const int width = filter.own_states() ? model.agents() * model.states() : model.states();
-  return drive(model, network, filter, log.steps, log.truth != nullptr, options, [&](const Prepared&) {
-    return [&, width](std::uint32_t trial) {
-      return detail::recorded_source(model, log, log.runs == 1 ? 0 : trial, width, filter.first_sample());
-    };
-  });
+  return replay(*filter.prepare(model, network), log, options);
 }
 
 Record replay(const Model& model, const Network& network, const AnyFilter& filter,

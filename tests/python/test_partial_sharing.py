@@ -42,8 +42,10 @@ def test_bytes_are_counted_and_half_the_entries_are_half_the_bytes() -> None:
         assert run.bytes_per_step == payload
     plain = gr.simulate(model, net, gr.filters.PartialSharing(gain=0.1, shared=1), steps=3, trials=9, keep=["estimate"])
     assert plain.bytes_per_step == 12 * 8
-    message = gr.Agent(gr.filters.PartialSharing(gain=0.1, shared=3), model, net, 0).sense([0.0] * 4)
-    assert len(message.values) == 3
+    message = gr.Agent(model, net, gr.filters.PartialSharing(gain=0.1, shared=3), 0).sense(1, [0.0] * 4)
+    assert message is not None
+    assert len(message.fields["shared"]) == 3
+    assert len(message.body) == 3 * 8
 
 
 def test_a_coordinated_attack_does_not_touch_honest_agents() -> None:

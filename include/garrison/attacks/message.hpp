@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "garrison/attacks/schedule.hpp"
+#include "garrison/core/fields.hpp"
 #include "garrison/core/types.hpp"
 
 namespace garrison {
@@ -23,22 +26,26 @@ struct Hop {
   std::uint32_t salt = 0;  ///< keeps the chance of several attacks apart
 };
 
-/// What lying agents do to the numbers of a message. Stateless: the result depends on its arguments only.
+/// What lying agents do to a message. Stateless: the result depends on its arguments only.
 class GARRISON_EXPORT MessageAttack {
  public:
   explicit MessageAttack(Schedule schedule) : schedule_(std::move(schedule)) {}
   virtual ~MessageAttack() = default;
   const Schedule& schedule() const { return schedule_; }
-  /// Changes `values` in place for this receiver; false = the message is withheld.
-  virtual bool rewrite(const Hop& hop, const Random& random, std::span<double> values) const = 0;
+  /// Changes fields in place for this receiver; false = the message is withheld.
+  virtual bool rewrite(const Hop& hop, const Random& random, const FieldList& message) const = 0;
+  /// How many samples old what is sent as new is, before `rewrite`; 0 = new.
+  virtual int age() const { return 0; }
   /// Its numbers fit a plant with that many states; drivers refuse an attack that does not.
   virtual bool fits(int) const { return true; }
+  /// Refuses a family whose messages do not have what the attack lies about. @throws InvalidInput
+  virtual void require(const FieldList&) const {}
 
  private:
   Schedule schedule_;
 };
 
-/// Every neighbour gets values + offset (or `offset` alone when `replace`).
+/// Every neighbour gets each number + offset (or `offset` alone when `replace`).
 std::shared_ptr<MessageAttack> forge(Schedule schedule, double offset, bool replace);
 /// Different lies to different neighbours: values + size * (a random direction per receiver and round).
 std::shared_ptr<MessageAttack> equivocate(Schedule schedule, double size);
@@ -50,6 +57,13 @@ std::shared_ptr<MessageAttack> coordinated(Schedule schedule, const Matrix& cova
 /// Every neighbour gets values + delta(t) with given delta: `deltas` has one row per sample from the start of
 /// the schedule on (zero afterwards) and B n columns, agents in ascending order.
 std::shared_ptr<MessageAttack> perturb(Schedule schedule, const Matrix& deltas);
+/// A lie in one field, whatever it is: numbers, a count and an optional number become `value`, a flag whether
+/// it is not 0, a set just the agents `members`. A value that no honest agent could send is refused by the
+/// receivers.
+std::shared_ptr<MessageAttack> falsify(Schedule schedule, std::string field, double value,
+                                       std::vector<int> members);
+/// What was sent `age` >= 1 samples ago is sent again, as new.
+std::shared_ptr<MessageAttack> outdated(Schedule schedule, int age);
 /// Nothing is sent.
 std::shared_ptr<MessageAttack> silence(Schedule schedule);
 

@@ -43,13 +43,22 @@ class AgentSet {
   void unite(const AgentSet& other) {
     for (std::size_t k = 1; k <= words(); ++k) data_[k] |= other.data_[k];
   }
+  /// Of 64 agents each; 0 where there is no set.
+  std::size_t words() const { return data_ == nullptr ? 0 : static_cast<std::size_t>(data_[0]); }
+  /// Eight agents at a time, from 8 k on, the first one in the lowest bit.
+  std::uint8_t byte(int k) const {
+    return static_cast<std::uint8_t>(data_[1 + static_cast<std::size_t>(k) / 8] >> (8 * (k % 8)));
+  }
+  /// Adds the agents of a byte to a set that has none of them.
+  void set_byte(int k, std::uint8_t bits) {
+    data_[1 + static_cast<std::size_t>(k) / 8] |= std::uint64_t{bits} << (8 * (k % 8));
+  }
   bool operator==(const AgentSet& other) const {
     return words() == other.words() &&
            (data_ == nullptr || std::equal(data_.get(), data_.get() + 1 + words(), other.data_.get()));
   }
 
  private:
-  std::size_t words() const { return data_ == nullptr ? 0 : static_cast<std::size_t>(data_[0]); }
   void allocate(std::size_t words) {
     data_ = words == 0 ? nullptr : std::make_unique<std::uint64_t[]>(1 + words);
     if (words != 0) data_[0] = words;

@@ -54,10 +54,11 @@ struct GARRISON_EXPORT Record {
   LinkCounters link;
   std::int64_t missing = 0;           ///< measurements that were NaN
   std::int64_t nonfinite = 0;         ///< measurements that were infinite or beyond kHuge
-  std::int64_t overflows = 0;         ///< steps with an estimate that was not finite
+  std::int64_t overflows = 0;         ///< samples with an estimate that was not finite, or beyond kHuge
+  std::int64_t resets = 0;            ///< agents that rejoined because of that, over all samples
   std::vector<std::string> warnings;  ///< of the family, for people
   bool interrupted = false;           ///< stopped by the caller before the end
-  std::int64_t bytes_per_step = 0;    ///< payload of all messages of one sample, when none is lost
+  std::int64_t bytes_per_step = 0;    ///< of the bodies of all messages of one sample, when none is lost
 };
 
 }  // namespace garrison

@@ -53,6 +53,9 @@ struct GARRISON_EXPORT PlantOptions {
 /// x(t+1) = A x(t) + w(t), y = C x + v, attacked, filtered. Trials differ in noise, attack chance and link
 /// faults; each depends on (seed, trial) only.
 /// @throws InvalidInput when something does not fit; run-time trouble is counted in the record.
+GARRISON_EXPORT Record simulate(const Prepared& prepared, const PlantOptions& plant,
+                                const RunOptions& options);
+/// The same, designed for this one run.
 GARRISON_EXPORT Record simulate(const Model& model, const Network& network, const AnyFilter& filter,
                                 const PlantOptions& plant, const RunOptions& options);
 
@@ -67,6 +70,8 @@ struct GARRISON_EXPORT Log {
 /// Feeds a log to the filter: one run to every trial, or as many runs as trials, one to each. Attacks apply
 /// on top (trials of one run differ in their chance).
 /// @throws InvalidInput when something does not fit; run-time trouble is counted in the record.
+GARRISON_EXPORT Record replay(const Prepared& prepared, const Log& log, const RunOptions& options);
+/// The same, designed for this one run.
 GARRISON_EXPORT Record replay(const Model& model, const Network& network, const AnyFilter& filter,
                               const Log& log, const RunOptions& options);
 

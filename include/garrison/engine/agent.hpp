@@ -1,186 +1,115 @@
 // SPDX-License-Identifier: Apache-2.0
-// One agent on its own, driven by hand or by a node.
+// One agent on its own, driven by bytes: what a node, and everything that stands for one, holds.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
+#include "garrison/core/envelope.hpp"
+#include "garrison/core/error.hpp"
 #include "garrison/core/filter.hpp"
-#include "garrison/core/model.hpp"
-#include "garrison/core/network.hpp"
+#include "garrison/wire/letter.hpp"
 
 namespace garrison {
 
-/// A message as a driver handles it: who sent it, and its numbers.
-class GARRISON_EXPORT AnyMessage {
+/// The same agent as inside the engine, with the same bits: `sense` once per sample, then per round `deliver`
+/// what came and `fuse`. Nothing is allocated after construction but by `reset` and what returns vectors. It
+/// holds its own part of the gains only. One thread at a time.
+///
+/// Time is the driver's. An agent is at sample t, in round r of it, or between samples (round() == rounds()).
+/// It starts, at the first sample less one, with the estimate zero.
+class GARRISON_EXPORT Agent {
  public:
-  explicit AnyMessage(int sender) : sender_(sender) {}
-  virtual ~AnyMessage() = default;
-  int sender() const { return sender_; }
-  virtual std::vector<double> values() const = 0;
-
- private:
-  int sender_;
-};
-
-/// The same agent as inside the engine: `sense` once per sample, then `fuse` once per round.
-class GARRISON_EXPORT AnyAgent {
- public:
-  virtual ~AnyAgent() = default;
-  virtual int id() const = 0;
-  virtual int rounds() const = 0;
-  virtual void reset(const Vector& x0) = 0;
-  /// `y`: one number per row of C_i, NaN = missing. Returns the first message to send.
-  virtual std::shared_ptr<AnyMessage> sense(std::span<const double> y) = 0;
-  /// Messages of the neighbours in any order; a missing neighbour is left out. A message that is not from a
-  /// neighbour is refused; one with a number that is not finite is dropped and counted.
-  virtual std::shared_ptr<AnyMessage> fuse(std::span<const std::shared_ptr<AnyMessage>> inbox) = 0;
-  virtual Vector estimate() const = 0;
-  virtual Report report() const = 0;
-  /// What the agent does to its own plant until the next sample; NaN where the family has none.
-  virtual double control() const = 0;
-  virtual std::vector<int> accused() const = 0;
-  virtual std::int64_t dropped() const = 0;
-};
-
-template <class F, int n>
-class Agent final : public AnyAgent {
-  static_assert(Filter<F, n>);
-  using Message = typename F::template Message<n>;
-  struct Letter final : AnyMessage {
-    Letter(int sender, const Message& m) : AnyMessage(sender), message(m) {}
-    std::vector<double> values() const override {
-      const auto all = const_cast<Message&>(message).values();
-      return {all.begin(), all.end()};
-    }
-    Message message;
+  /// What a call has to send, or why it was refused. No bytes and no refusal: the estimate is of no use (not
+  /// finite, or beyond kHuge), so nothing is sent.
+  struct Sent {
+    Refusal refusal = Refusal::none;
+    std::size_t bytes = 0;
   };
+  /// Samples that an agent catches up on by itself.
+  static constexpr std::int64_t kMostGap = 1000;
 
- public:
-  Agent(std::shared_ptr<const typename F::Gains> gains, const Model& model, const Network& network, int id)
-      : gains_(std::move(gains)),
-        model_(model),
-        neighbours_(network.neighbours(id).begin(), network.neighbours(id).end()),
-        rows_(model.C(id)),
-        local_{id,
-               model.agents(),
-               model.states(),
-               model.outputs(id),
-               network.degree(id),
-               model_.A().data(),
-               rows_.data()} {
-    reset(Vector::Zero(model.states()));
+  virtual ~Agent() = default;
+  virtual std::string_view family() const = 0;
+  virtual int id() const = 0;
+  virtual int agents() const = 0;  ///< of the whole network
+  virtual int states() const = 0;
+  virtual int outputs() const = 0;
+  virtual int rounds() const = 0;
+  /// Ids of those it hears, ascending.
+  virtual std::span<const int> neighbours() const = 0;
+  /// Of one body, whoever sends it.
+  virtual std::size_t most_bytes() const = 0;
+  virtual std::int64_t sample() const = 0;
+  virtual int round() const = 0;
+
+  /// Starts anew at sample t with the estimate x0 (n numbers). Unless t is the family's start nothing is known
+  /// of how far x0 is off: no bound and no test, and in its next sample the agent says nothing and rejoins from
+  /// what it hears, so that x0 does not spread (it stays where nothing is heard). @throws InvalidInput
+  virtual void reset(const Vector& x0, std::int64_t t) = 0;
+  void reset(const Vector& x0) { reset(x0, start()); }
+  /// Where a run starts: the sample before the first.
+  virtual std::int64_t start() const = 0;
+
+  /// Sample t with its measurement (outputs() numbers, NaN = missing) to the first message. Samples that were
+  /// missed in between, kMostGap at most, are made up for without measurements and messages, and nothing is
+  /// claimed that they may have broken. Refused: order (rounds are left), late, early (too many were missed:
+  /// reset or listen), size.
+  virtual Sent sense(std::int64_t t, std::span<const double> y, std::span<std::byte> out) noexcept = 0;
+  /// A body that a neighbour sent in this sample or the next, in any round not yet fused.
+  virtual Refusal deliver(const Envelope& envelope, std::span<const std::byte> body) noexcept = 0;
+  /// Whether the neighbour's message of the present round is here.
+  virtual bool has(int sender) const noexcept = 0;
+  /// Ends the present round with what was delivered; what it has to send is for the next one, or nobody.
+  virtual Sent fuse(std::span<std::byte> out) noexcept = 0;
+
+  /// Listens to sample t without taking part, to `join` with what was delivered for its first round: an
+  /// estimate from the neighbours, after which the agent is at the end of sample t. Refused: order.
+  virtual Refusal listen(std::int64_t t) noexcept = 0;
+  virtual Refusal join() noexcept = 0;
+  /// A gap lies behind this state, whatever the driver saw: nothing is claimed that it may have broken.
+  virtual void uncover() noexcept = 0;
+
+  virtual Report report() const noexcept = 0;
+  virtual void estimate(std::span<double> out) const noexcept = 0;
+  /// Control input applied until the next sample; NaN if the family has none.
+  virtual double control() const noexcept = 0;
+  virtual std::vector<int> accused() const = 0;
+  /// How often the estimate was of no use and the agent rejoined.
+  virtual std::int64_t resets() const noexcept = 0;
+
+  /// Bytes of a snapshot, and the snapshot: between samples only (else 0). Loading refuses: order (rounds are
+  /// left), size, foreign (another design, agent or version), damaged.
+  virtual std::size_t snapshot_bytes() const noexcept = 0;
+  virtual std::size_t save(std::span<std::byte> out) const noexcept = 0;
+  virtual Refusal load(std::span<const std::byte> snapshot) noexcept = 0;
+
+  /// What the body of a neighbour's message is made of, for people and for `Letter`.
+  virtual std::vector<wire::FieldInfo> fields(int sender, std::int64_t t) = 0;
+};
+
+/// What an agent needs besides its part of the gains: who it is, its plant, its sensor and whom it hears.
+struct AgentPart {
+  int id = 0;
+  int agents = 0;
+  Matrix A;
+  Matrix C_transposed;  ///< n x outputs, so that rows of C follow each other in memory
+  std::vector<int> neighbours;
+  std::uint64_t design = 0;  ///< fingerprint of the whole design: snapshots and bodies of another are refused
+
+  template <class V>
+  void visit(V& v) {
+    v.range("id", id, 0, agents > 0 ? agents - 1 : 65535);
+    v.range("agents", agents, 1, INT32_MAX);
+    v("A", A);
+    v("C_transposed", C_transposed);
+    v("neighbours", neighbours);
+    v("design", design);
   }
-  Agent(const Agent&) = delete;
-  Agent& operator=(const Agent&) = delete;
-
-  int id() const override { return local_.id; }
-  int rounds() const override { return F::rounds(*gains_); }
-
-  void reset(const Vector& x0) override {
-    if (x0.size() != local_.states)
-      refuse("x0", std::to_string(x0.size()) + " numbers", std::to_string(local_.states) + ", one per state");
-    const Vec<n> start = x0;
-    F::template init<n>(local_, *gains_, start, state_, outgoing_);
-    t_ = first_sample<F>() - 1;
-    round_ = rounds();
-    dropped_ = 0;
-  }
-
-  std::shared_ptr<AnyMessage> sense(std::span<const double> y) override {
-    if (y.size() != static_cast<std::size_t>(local_.outputs))
-      refuse("y", std::to_string(y.size()) + " numbers",
-             std::to_string(local_.outputs) + ", one per row of C[" + std::to_string(local_.id) + "]");
-    if (round_ < rounds())
-      refuse("sense", "a call after " + std::to_string(round_) + " rounds", "fuse to be called first",
-             "this filter needs " + std::to_string(rounds()) + " rounds per sample");
-    F::template sense<n>(local_, *gains_, state_, y.data(), ++t_, outgoing_);
-    round_ = 0;
-    return std::make_shared<Letter>(local_.id, outgoing_);
-  }
-
-  std::shared_ptr<AnyMessage> fuse(std::span<const std::shared_ptr<AnyMessage>> inbox) override {
-    if (round_ >= rounds())
-      refuse("fuse", "a call after " + std::to_string(round_) + " rounds", "sense to be called first",
-             "this filter needs " + std::to_string(rounds()) + " rounds per sample");
-    std::vector<const Letter*> letters = sorted(inbox);
-    mailbox_.clear();
-    slots_.clear();
-    for (const Letter* letter : letters) {
-      mailbox_.push_back(letter->message);
-      const auto values = mailbox_.back().values();
-      if (std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
-        slots_.push_back(static_cast<std::uint32_t>(mailbox_.size() - 1));
-      else
-        ++dropped_;
-    }
-    F::template fuse<n>(local_, *gains_, state_, Inbox<Message>(mailbox_.data(), slots_), round_, outgoing_);
-    ++round_;
-    return std::make_shared<Letter>(local_.id, outgoing_);
-  }
-
-  Vector estimate() const override { return F::template estimate<n>(state_); }
-  Report report() const override { return F::template report<n>(local_, *gains_, state_); }
-  double control() const override {
-    if constexpr (requires { F::template control<n>(state_); })
-      return F::template control<n>(state_);
-    else
-      return kNaN;
-  }
-  std::vector<int> accused() const override {
-    std::vector<int> all;
-    AgentSet built;
-    const AgentSet* found = &built;
-    if constexpr (requires { F::template accused_into<n>(state_, built); }) {
-      built.resize(local_.agents);
-      F::template accused_into<n>(state_, built);
-    } else {
-      found = F::template accused<n>(state_);
-    }
-    const AgentSet& set = *found;
-    for (int i = 0; i < local_.agents && !set.empty(); ++i)
-      if (set.contains(i)) all.push_back(i);
-    return all;
-  }
-  std::int64_t dropped() const override { return dropped_; }
-
- private:
-  std::vector<const Letter*> sorted(std::span<const std::shared_ptr<AnyMessage>> inbox) const {
-    std::vector<const Letter*> letters;
-    for (const auto& any : inbox) {
-      const auto* letter = dynamic_cast<const Letter*>(any.get());
-      if (letter == nullptr)
-        refuse("inbox", "a message of another filter or dimension", "messages of the same filter");
-      if (!std::binary_search(neighbours_.begin(), neighbours_.end(), letter->sender()))
-        refuse("inbox", "a message from agent " + std::to_string(letter->sender()),
-               "messages from neighbours of agent " + std::to_string(local_.id));
-      letters.push_back(letter);
-    }
-    std::sort(letters.begin(), letters.end(), [](auto a, auto b) { return a->sender() < b->sender(); });
-    const auto twice = std::adjacent_find(letters.begin(), letters.end(),
-                                          [](auto a, auto b) { return a->sender() == b->sender(); });
-    if (twice != letters.end())
-      refuse("inbox", "two messages from agent " + std::to_string((*twice)->sender()),
-             "one per neighbour and round");
-    return letters;
-  }
-
-  std::shared_ptr<const typename F::Gains> gains_;
-  Model model_;
-  std::vector<int> neighbours_;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows_;
-  Local local_;
-  typename F::template State<n> state_;
-  Message outgoing_;
-  std::vector<Message> mailbox_;
-  std::vector<std::uint32_t> slots_;
-  std::int64_t t_ = 0;
-  int round_ = 0;
-  std::int64_t dropped_ = 0;
 };
 
 }  // namespace garrison

@@ -18,18 +18,35 @@
 
 namespace garrison {
 
-/// A filter designed for one model and network; makes any number of runners and agents from it.
+class AnyFilter;
+
+/// A filter designed for one model and network; makes any number of runners and agents from it. Constant:
+/// threads may share it.
 class GARRISON_EXPORT Prepared {
  public:
   virtual ~Prepared() = default;
+  virtual const Model& model() const = 0;
+  virtual const Network& network() const = 0;
+  virtual const AnyFilter& filter() const = 0;
   virtual std::unique_ptr<Runner> runner(int threads) const = 0;
   /// Refuses initial estimates (n x N) that the family's promises do not cover.
   virtual void check_start(const Matrix& x0) const = 0;
-  virtual std::unique_ptr<AnyAgent> agent(int id) const = 0;
+  /// @throws InvalidInput when there is no such agent
+  virtual std::unique_ptr<Agent> agent(int id) const = 0;
+  /// Refuses an attack on messages that the family's messages have no place for. @throws InvalidInput
+  virtual void require(const MessageAttack& attack) const = 0;
   /// Several trials side by side, with the same bits as `runner`; null where the family has no such path.
   virtual std::unique_ptr<LaneRunner> lanes() const = 0;
   /// The plants that the agents drive, for one trial; null for families that watch one common plant.
   virtual std::unique_ptr<World> world(const WorldOptions& options) const = 0;
+
+  /// The gains alone (wire/archive.hpp), and as lines "name: size or number" for people.
+  virtual std::vector<std::byte> gains_bytes() const = 0;
+  virtual std::vector<std::string> gains_outline() const = 0;
+  /// What agent `id` needs of them: a `Part` of the design file.
+  virtual std::vector<std::byte> part_bytes(int id) const = 0;
+  /// First eight bytes of the digest of the whole design (engine/design_file.hpp).
+  virtual std::uint64_t fingerprint() const = 0;
 };
 
 /// A filter with its parameters.
@@ -40,6 +57,11 @@ class GARRISON_EXPORT AnyFilter {
   virtual ParamMap params() const = 0;
   /// Designs gains. @throws InvalidInput when parameters, model and network do not fit together.
   virtual std::shared_ptr<const Prepared> prepare(const Model& model, const Network& network) const = 0;
+  /// The same from gains that were designed before. @throws InvalidInput when the bytes are not gains of it
+  virtual std::shared_ptr<const Prepared> restore(const Model& model, const Network& network,
+                                                  std::span<const std::byte> gains) const = 0;
+  /// An agent from its part of a design. @throws InvalidInput when the bytes are not one
+  virtual std::unique_ptr<Agent> agent(std::span<const std::byte> part) const = 0;
   /// Conditions and bounds of the family's theorems.
   virtual Check check(const Model& model, const Network& network) const = 0;
   virtual std::vector<std::string> signal_names() const = 0;

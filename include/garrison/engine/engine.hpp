@@ -38,12 +38,13 @@ class Engine final : public Runner {
       : gains_(std::move(gains)),
         model_(model),
         plan_(network.offsets(), network.lists(), model.states()),
-        mail_(network, plan_.order(), model.states()),
+        mail_(network, plan_.order(), model.states(), F::rounds(*gains_)),
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
         states_(static_cast<std::size_t>(model.agents())),
         at_once_(std::span<State>(states_), model.states()),
         accused_(model.agents()) {
     position_.resize(states_.size());
+    lost_.reserve(states_.size());
     for (const int i : plan_.order()) {
       position_[static_cast<std::size_t>(i)] = places_.size();
       places_.push_back({i, model_.outputs(i), network.degree(i), rows_.size()});
@@ -64,8 +65,10 @@ class Engine final : public Runner {
     }
     if constexpr (StepsTogether<F, n>) together_.start(*gains_, locals());
     mail_.fill();
-    bytes_ = static_cast<std::int64_t>(sizeof(double)) * mail_.numbers_per_round() * F::rounds(*gains_);
-    overflows_ = 0;
+    bytes_ = mail_.bytes() * F::rounds(*gains_);
+    variable_ = mail_.variable();
+    samples_ = 0;
+    overflows_ = resets_ = 0;
   }
 
   void step(std::int64_t t, const double* y) override {
@@ -78,7 +81,7 @@ class Engine final : public Runner {
     each([&, y = measured(y)](std::size_t k, Message* out) {
       F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
     });
-    rounds(t, all_finite());
+    rounds(t, all_usable());
   }
 
   void read(const Frame& f) const override {
@@ -133,7 +136,10 @@ class Engine final : public Runner {
     }
   }
   std::int64_t overflows() const override { return overflows_; }
-  std::int64_t bytes_per_step() const override { return bytes_; }
+  std::int64_t resets() const override { return resets_; }
+  std::int64_t bytes_per_step() const override {
+    return variable_ && samples_ > 0 ? bytes_ / samples_ : bytes_;
+  }
 
  private:
   /// Where things of one agent are; a Local per agent would be twice as much to read at every step.
@@ -157,20 +163,25 @@ class Engine final : public Runner {
   }
 
   void step_at_once(std::int64_t t, const double* y) {
-    const auto [finite, averaged] = at_once_.step(plan_, *gains_, locals(), t, measured(y), workers_);
+    const auto [plain, averaged] = at_once_.step(plan_, *gains_, locals(), t, measured(y), workers_);
     if (averaged) return;
-    each([&](std::size_t k, Message* out) { F::template send<n>(states_[k], 0, out[k]); });
-    rounds(t, finite);
+    each([&](std::size_t k, Message* out) { F::template send<n>(states_[k], out[k]); });
+    rounds(t, plain);
   }
 
-  void rounds(std::int64_t t, bool finite) {
-    if (!finite) ++overflows_;
+  /// `plain`: every estimate can be worked with. Agents whose cannot send nothing that is delivered, and
+  /// rejoin after the last round.
+  void rounds(std::int64_t t, bool plain) {
+    if (!plain) note_lost();
     const int L = F::rounds(*gains_);
     for (int round = 0; round < L; ++round) {
-      mail_.collect(t, round, finite);
+      count_bytes(round);
+      mail_.collect(t, round, plain, [&](std::size_t k, int sender, Message& m) {
+        shape<F, n>(local(k), *gains_, sender, t, m);
+      });
       if constexpr (StepsTogether<F, n>) {
         const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
-        together_.fuse(*gains_, local(0), inbox, mail_.outgoing(), workers_);
+        together_.fuse(*gains_, local(0), inbox, workers_);
         mail_.post();
       } else {
         each([&](std::size_t k, Message* out) {
@@ -178,6 +189,24 @@ class Engine final : public Runner {
         });
       }
     }
+    if (!plain) rejoin(t);
+  }
+
+  void note_lost() {
+    ++overflows_;
+    lost_.clear();
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      if (!usable<n>(F::template estimate<n>(states_[k]))) lost_.push_back(k);
+  }
+  void rejoin(std::int64_t t) {
+    for (const std::size_t k : lost_) F::template rejoin<n>(local(k), *gains_, mail_.inbox(k), t, states_[k]);
+    resets_ += static_cast<std::int64_t>(lost_.size());
+  }
+  void count_bytes(int round) {
+    if (!variable_) return;
+    if (samples_ == 0) bytes_ = 0;
+    bytes_ += mail_.bytes();
+    samples_ += round == 0 ? 1 : 0;
   }
 
   /// Runs `action(k, outgoing)` for every agent k, then makes the outgoing messages the current ones.
@@ -190,9 +219,9 @@ class Engine final : public Runner {
     mail_.post();
   }
 
-  bool all_finite() const {
+  bool all_usable() const {
     for (const State& s : states_)
-      if (!F::template estimate<n>(s).allFinite()) return false;
+      if (!usable<n>(F::template estimate<n>(s))) return false;
     return true;
   }
 
@@ -209,7 +238,11 @@ class Engine final : public Runner {
   std::vector<int> first_output_;  // of each agent in y
   std::vector<std::size_t> position_;
   std::int64_t overflows_ = 0;
-  std::int64_t bytes_ = 0;
+  std::vector<std::size_t> lost_;  // agents whose estimate is of no use at this sample
+  std::int64_t resets_ = 0;
+  std::int64_t bytes_ = 0;  // of a sample; where bodies vary: of all samples so far
+  std::int64_t samples_ = 0;
+  bool variable_ = false;
   mutable AgentSet accused_;  // of families that build it when asked
 };
 

@@ -2,35 +2,89 @@
 // Turns a family F into an AnyFilter. Included only by the one source file that instantiates the family.
 #pragma once
 
+#include <memory>
+#include <mutex>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "garrison/core/dispatch.hpp"
+#include "garrison/engine/agent_of.hpp"
 #include "garrison/engine/any_filter.hpp"
+#include "garrison/engine/design_file.hpp"
 #include "garrison/engine/engine.hpp"
+#include "garrison/wire/archive.hpp"
+#include "garrison/wire/outline.hpp"
 
 namespace garrison {
+
+/// A family that exists for one dimension only (and has refused others in `design`) is compiled for that one.
+template <class F, class Action>
+auto dispatched(int states, const Action& action) {
+  if constexpr (requires { F::only_states; })
+    return action.template operator()<F::only_states>();
+  else
+    return dispatch(states, action);
+}
+
+/// An agent's part of a design: who it is and its gains.
+template <class F>
+struct Part {
+  AgentPart who;
+  typename F::Gains gains;
+
+  template <class V>
+  void visit(V& v) {
+    v("who", who);
+    v("gains", gains);
+  }
+};
+
+template <class F>
+std::unique_ptr<Agent> agent_of(Part<F> part) {
+  auto gains = std::make_shared<const typename F::Gains>(std::move(part.gains));
+  return dispatched<F>(static_cast<int>(part.who.A.rows()), [&]<int n>() -> std::unique_ptr<Agent> {
+    return std::make_unique<AgentOf<F, n>>(std::move(gains), std::move(part.who));
+  });
+}
 
 template <class F>
 class PreparedOf final : public Prepared {
  public:
-  PreparedOf(typename F::Gains gains, const Model& model, const Network& network)
-      : gains_(std::make_shared<const typename F::Gains>(std::move(gains))),
+  PreparedOf(std::shared_ptr<const AnyFilter> filter, typename F::Gains gains, const Model& model,
+             const Network& network)
+      : filter_(std::move(filter)),
+        gains_(std::make_shared<const typename F::Gains>(std::move(gains))),
         model_(model),
         network_(network) {}
 
+  const Model& model() const override { return model_; }
+  const Network& network() const override { return network_; }
+  const AnyFilter& filter() const override { return *filter_; }
   std::unique_ptr<Runner> runner(int threads) const override {
-    return dispatched([&]<int n>() -> std::unique_ptr<Runner> {
+    return dispatched<F>(model_.states(), [&]<int n>() -> std::unique_ptr<Runner> {
       return std::make_unique<Engine<F, n>>(gains_, model_, network_, threads);
     });
   }
   void check_start(const Matrix& x0) const override {
     if constexpr (requires { F::check_start(*gains_, x0); }) F::check_start(*gains_, x0);
   }
-  std::unique_ptr<AnyAgent> agent(int id) const override {
-    if (id < 0 || id >= model_.agents())
-      refuse("id", std::to_string(id), "an agent in 0.." + std::to_string(model_.agents() - 1));
-    return dispatched([&]<int n>() -> std::unique_ptr<AnyAgent> {
-      return std::make_unique<Agent<F, n>>(gains_, model_, network_, id);
+  std::unique_ptr<Agent> agent(int id) const override { return agent_of<F>(part(id)); }
+  void require(const MessageAttack& attack) const override {
+    dispatched<F>(model_.states(), [&]<int n>() {
+      typename F::template State<n> state;
+      typename F::template Message<n> message;
+      const AgentPart who = part_of(0);
+      const Local local{0,
+                        who.agents,
+                        model_.states(),
+                        model_.outputs(0),
+                        network_.degree(0),
+                        who.A.data(),
+                        who.C_transposed.data()};
+      F::template init<n>(local, *gains_, Vec<n>::Zero(model_.states()), state, message);
+      attack.require(FieldList(message));
+      return 0;
     });
   }
   std::unique_ptr<LaneRunner> lanes() const override {
@@ -46,20 +100,36 @@ class PreparedOf final : public Prepared {
       return nullptr;
   }
 
- private:
-  /// A family that exists for one dimension only (and has refused others in `design`) is compiled for that
-  /// one.
-  template <class Action>
-  auto dispatched(const Action& action) const {
-    if constexpr (requires { F::only_states; })
-      return action.template operator()<F::only_states>();
-    else
-      return dispatch(model_.states(), action);
+  std::vector<std::byte> gains_bytes() const override { return wire::to_bytes(*gains_); }
+  std::vector<std::string> gains_outline() const override { return wire::outline(*gains_); }
+  std::vector<std::byte> part_bytes(int id) const override { return wire::to_bytes(part(id)); }
+  std::uint64_t fingerprint() const override {
+    std::call_once(known_, [&] { fingerprint_ = fingerprint_of(*filter_, model_, network_, gains_bytes()); });
+    return fingerprint_;
   }
 
+ private:
+  AgentPart part_of(int id) const {
+    if (id < 0 || id >= model_.agents())
+      refuse("id", std::to_string(id), "an agent in 0.." + std::to_string(model_.agents() - 1));
+    const auto heard = network_.neighbours(id);
+    return {id, model_.agents(), model_.A(), model_.C(id).transpose(), {heard.begin(), heard.end()}, 0};
+  }
+  Part<F> part(int id) const {
+    AgentPart who = part_of(id);
+    who.design = fingerprint();
+    if constexpr (requires { F::part(*gains_, id, std::span<const int>()); })
+      return {who, F::part(*gains_, id, who.neighbours)};
+    else
+      return {who, *gains_};
+  }
+
+  std::shared_ptr<const AnyFilter> filter_;
   std::shared_ptr<const typename F::Gains> gains_;
   Model model_;
   Network network_;
+  mutable std::once_flag known_;
+  mutable std::uint64_t fingerprint_ = 0;
 };
 
 namespace detail {
@@ -86,8 +156,19 @@ class FilterOf final : public AnyFilter {
   ParamMap params() const override { return values(params_); }
   std::shared_ptr<const Prepared> prepare(const Model& model, const Network& network) const override {
     require_same_size(model, network);
-    using Runs = typename detail::RunsAs<F>::type;
-    return std::make_shared<PreparedOf<Runs>>(F::design(params_, model, network), model, network);
+    return std::make_shared<PreparedOf<Runs>>(copy(), F::design(params_, model, network), model, network);
+  }
+  std::shared_ptr<const Prepared> restore(const Model& model, const Network& network,
+                                          std::span<const std::byte> gains) const override {
+    require_same_size(model, network);
+    typename F::Gains restored;
+    require_read(wire::from_bytes(gains, model.agents(), restored));
+    return std::make_shared<PreparedOf<Runs>>(copy(), std::move(restored), model, network);
+  }
+  std::unique_ptr<Agent> agent(std::span<const std::byte> bytes) const override {
+    Part<Runs> part;
+    require_read(wire::from_bytes(bytes, INT32_MAX, part));
+    return agent_of<Runs>(std::move(part));
   }
   Check check(const Model& model, const Network& network) const override {
     require_same_size(model, network);
@@ -112,6 +193,13 @@ class FilterOf final : public AnyFilter {
   }
 
  private:
+  using Runs = typename detail::RunsAs<F>::type;
+  std::shared_ptr<const AnyFilter> copy() const { return std::make_shared<FilterOf>(params_); }
+  static void require_read(Refusal refusal) {
+    if (refusal != Refusal::none)
+      refuse("design", "gains with a wrong " + std::string(word(refusal)),
+             "gains of " + std::string(F::name) + " that this version of garrison wrote");
+  }
   static void require_same_size(const Model& model, const Network& network) {
     if (model.agents() != network.agents())
       refuse("network", std::to_string(network.agents()) + " agents",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the network does to messages: loss, delay, and agents that lie.
+// What happens to the messages of one run: channels that lose them, and agents that lie in them.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,26 @@
 
 #include "garrison/attacks/message.hpp"
 #include "garrison/core/network.hpp"
+#include "garrison/engine/channel.hpp"
 
 namespace garrison {
 
-/// Random faults of honest links; every message meets its fate independently.
+/// Faults of honest links: random, scheduled and recorded ones, in any combination.
 struct GARRISON_EXPORT LinkFaults {
   double drop = 0.0;     ///< probability in [0, 1] that a message is lost
-  double delay = 0.0;    ///< probability in [0, 1] that a message is late by `delay_rounds`
-  int delay_rounds = 1;  ///< >= 1; the receiver sees the sender's message of that many rounds ago
+  double delay = 0.0;    ///< probability in [0, 1] that a message is late, and therefore lost to its receiver
+  int delay_rounds = 1;  ///< >= 1: by how many rounds; one is too late already, so this changes nothing
+  std::vector<Cut> cuts = {};
+  std::vector<Lost> lost = {};
 };
 
 /// What happened to messages during a run.
 struct GARRISON_EXPORT LinkCounters {
   std::int64_t sent = 0;     ///< messages that honest links carried as they were
-  std::int64_t lost = 0;     ///< dropped, late beyond the start, or withheld by the sender
-  std::int64_t late = 0;     ///< delivered, but an old one
+  std::int64_t lost = 0;     ///< dropped, or withheld by the sender
+  std::int64_t late = 0;     ///< of an earlier round when they came, and therefore not delivered
   std::int64_t forged = 0;   ///< delivered with other values than the receiver should have got
-  std::int64_t refused = 0;  ///< not delivered because a value was not finite
+  std::int64_t refused = 0;  ///< not delivered because a number was not finite, or beyond kHuge
   LinkCounters& operator+=(const LinkCounters& other);
 };
 
@@ -37,22 +40,28 @@ class GARRISON_EXPORT Link {
        std::uint64_t seed, std::uint32_t trial);
 
   /// Nothing can happen to any message, ever.
-  bool perfect() const { return faults_.drop <= 0.0 && faults_.delay <= 0.0 && attacks_.empty(); }
-  /// Rounds that an engine must keep messages for.
-  int memory() const { return faults_.delay > 0.0 ? faults_.delay_rounds : 0; }
+  bool perfect() const { return channels_.empty() && attacks_.empty(); }
+  /// Samples that an engine must keep messages for, because a liar sends old ones as new.
+  int memory() const { return memory_; }
   bool lies(int sender) const { return liar_[static_cast<std::size_t>(sender)] != 0; }
 
-  enum class Fate : std::uint8_t { delivered, lost, late };
-  Fate fate(const Hop& hop) const;
-  /// Lets the attacks rewrite `values`; false = the sender withholds the message.
-  bool rewrite(const Hop& hop, std::span<double> values, bool& changed) const;
+  Fate fate(const Envelope& message, int receiver) const;
+  /// How many samples old what this sender sends is now; 0 = new.
+  int age(const Hop& hop) const;
+  /// Lets the attacks rewrite the message; false = the sender withholds it.
+  bool rewrite(const Hop& hop, const FieldList& message, bool& changed) const;
 
   LinkCounters counters;
 
  private:
-  LinkFaults faults_;
+  /// Calls action(attack, hop with the attack's salt) for those that strike, until it returns false.
+  template <class Action>
+  bool strike(const Hop& hop, const Action& action) const;
+
+  std::vector<std::unique_ptr<Channel>> channels_;
   std::vector<std::shared_ptr<const MessageAttack>> attacks_;
   std::vector<char> liar_;
+  int memory_ = 0;
   std::uint64_t seed_;
   std::uint32_t trial_;
 };

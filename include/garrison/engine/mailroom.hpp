@@ -8,9 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "garrison/core/fields.hpp"
 #include "garrison/core/inbox.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/engine/link.hpp"
+#include "garrison/wire/message.hpp"
 
 namespace garrison {
 
@@ -22,23 +24,29 @@ struct Wiring {
 
 /// One array of messages: a ring of buffers (one message per agent, in the engine's order) and behind them a
 /// place per lying edge. On perfect links every agent reads its neighbours' slots of the current buffer.
-/// Faults only rewrite slots: a lost message leaves its slot out, a late one points into an older buffer, a
-/// forged one is written behind the honest ones and only the victim points to it.
+/// Faults only rewrite slots: a lost or late message leaves its slot out, a forged one is written behind the
+/// honest ones and only the victim points to it.
 template <class Message>
 class Mailroom {
  public:
-  /// `order`: engine position -> public id. `states`: n of the plant.
-  Mailroom(const Network& network, std::span<const int> order, int states)
-      : order_(order.begin(), order.end()), states_(states) {
+  /// `order`: engine position -> public id. `states`: n of the plant; `rounds` per sample.
+  Mailroom(const Network& network, std::span<const int> order, int states, int rounds)
+      : order_(order.begin(), order.end()), states_(states), rounds_(rounds) {
     std::vector<std::uint32_t> position(order_.size());
     for (std::size_t k = 0; k < order_.size(); ++k)
       position[static_cast<std::size_t>(order_[k])] = static_cast<std::uint32_t>(k);
     for (const int i : order_) {
       first_.push_back(slots_.size());
-      for (const int j : network.neighbours(i)) slots_.push_back(position[static_cast<std::size_t>(j)]);
+      for (const int j : network.neighbours(i)) {
+        slots_.push_back(position[static_cast<std::size_t>(j)]);
+        senders_.push_back(j);
+      }
     }
     first_.push_back(slots_.size());
+    listeners_.resize(order_.size());
+    for (const std::uint32_t sender : slots_) ++listeners_[sender];
     delivered_.resize(slots_.size());
+    delivered_from_.resize(slots_.size());
     received_.resize(order_.size());
     connect(nullptr);
   }
@@ -46,10 +54,10 @@ class Mailroom {
   /// Starts a run over `link` (null = perfect).
   void connect(Link* link) {
     link_ = link;
-    depth_ = 2 + (link == nullptr ? 0 : static_cast<std::size_t>(link->memory()));
+    depth_ = 2 + (link == nullptr ? 0 : posts_in(link->memory()));
     std::size_t lies = 0;
     if (link != nullptr)
-      for (const std::uint32_t sender : slots_) lies += link->lies(order_[sender]) ? 1 : 0;
+      for (const int sender : senders_) lies += link->lies(sender) ? 1 : 0;
     messages_.resize(depth_ * order_.size() + lies);
     posted_ = 0;
   }
@@ -59,12 +67,17 @@ class Mailroom {
       messages_[k] = messages_[k % order_.size()];
   }
 
-  /// Numbers that all links carry in one round when no message is lost.
-  std::int64_t numbers_per_round() {
-    std::int64_t sum = 0;
-    for (const std::uint32_t sender : slots_)
-      sum += static_cast<std::int64_t>(messages_[sender].values().size());
-    return sum;
+  /// Bytes of the bodies that all links carry in this round when no message is lost.
+  std::int64_t bytes() const {
+    const Message* const current = messages_.data() + base(posted_ == 0 ? 0 : posted_ - 1);
+    std::size_t sum = 0;
+    for (std::size_t k = 0; k < order_.size(); ++k) sum += listeners_[k] * size(current[k]);
+    return static_cast<std::int64_t>(sum);
+  }
+  /// Whether bodies grow and shrink with what they hold.
+  bool variable() const {
+    return std::any_of(messages_.begin(), messages_.end(),
+                       [&](const Message& m) { return wire::most_bytes(m, agents()) != size(m); });
   }
 
   Wiring wiring() const { return {first_.data(), slots_.data()}; }
@@ -73,28 +86,37 @@ class Mailroom {
   Message* outgoing() { return messages_.data() + base(posted_); }
   void post() { ++posted_; }
 
-  /// Prepares the inboxes of one round from the current messages. `finite`: nobody has an estimate that is
-  /// not.
-  void collect(std::int64_t t, int round, bool finite) {
-    as_wired_ = perfect() && finite;
+  /// Prepares the inboxes of one round from the current messages. `plain`: every estimate is finite and below
+  /// kHuge. `shape(receiver, sender, message)` derives what a message does not carry.
+  template <class Shape>
+  void collect(std::int64_t t, int round, bool plain, const Shape& shape) {
+    as_wired_ = perfect() && plain;
     if (as_wired_) return;
     std::size_t forged = depth_ * order_.size();
     for (std::size_t k = 0; k < order_.size(); ++k) {
       received_[k] = 0;
       for (std::size_t e = first_[k]; e < first_[k + 1]; ++e)
-        deliver({t, round, order_[slots_[e]], order_[k], states_}, slots_[e], k, forged);
+        deliver({t, round, senders_[e], order_[k], states_}, slots_[e], k, forged, shape);
     }
   }
 
   Inbox<Message> inbox(std::size_t k) const {
+    const std::size_t due = first_[k + 1] - first_[k];
     if (as_wired_)
-      return {messages_.data() + base(posted_ - 1),
-              std::span(slots_).subspan(first_[k], first_[k + 1] - first_[k])};
-    return {messages_.data(), std::span(delivered_).subspan(first_[k], received_[k])};
+      return {messages_.data() + base(posted_ - 1), std::span(slots_).subspan(first_[k], due),
+              senders_.data() + first_[k], static_cast<int>(due)};
+    return {messages_.data(), std::span(delivered_).subspan(first_[k], received_[k]),
+            delivered_from_.data() + first_[k], static_cast<int>(due)};
   }
 
  private:
+  int agents() const { return static_cast<int>(order_.size()); }
+  std::size_t size(const Message& m) const { return wire::size(m, agents()); }
   std::size_t base(std::uint64_t hop) const { return static_cast<std::size_t>(hop % depth_) * order_.size(); }
+  /// A sample posts the messages of each round, and those after the last one.
+  std::size_t posts_in(int samples) const {
+    return static_cast<std::size_t>(samples) * static_cast<std::size_t>(rounds_ + 1);
+  }
 
   /// Which states a message speaks of; families that send the whole state do not say.
   static std::span<const int> entries(const Message& message) {
@@ -104,37 +126,43 @@ class Mailroom {
       return {};
   }
 
-  void deliver(const Hop& hop, std::uint32_t sender, std::size_t receiver, std::size_t& forged) {
+  template <class Shape>
+  void deliver(const Hop& hop, std::uint32_t sender, std::size_t receiver, std::size_t& forged,
+               const Shape& shape) {
     LinkCounters nobody_counts;
     LinkCounters& counters = link_ == nullptr ? nobody_counts : link_->counters;
-    const auto fate = link_ == nullptr ? Link::Fate::delivered : link_->fate(hop);
-    std::uint64_t from = posted_ - 1;
-    if (fate == Link::Fate::late) {
-      const auto rounds_ago = static_cast<std::uint64_t>(link_->memory());
-      if (from < rounds_ago) return void(++counters.lost);
-      from -= rounds_ago;
-    }
-    if (fate == Link::Fate::lost) return void(++counters.lost);
-    std::size_t slot = base(from) + sender;
+    const Fate fate =
+        link_ == nullptr ? Fate::delivered : link_->fate({hop.sender, hop.t, hop.round}, hop.receiver);
+    if (fate == Fate::late) return void(++counters.late);
+    if (fate == Fate::lost) return void(++counters.lost);
+    std::size_t slot = base(posted_ - 1) + sender;
     bool changed = false;
     if (link_ != nullptr && link_->lies(hop.sender)) {
-      messages_[forged] = messages_[slot];
+      const std::size_t age = posts_in(link_->age(hop));
+      if (age >= posted_) return void(++counters.lost);  // nothing that old
+      messages_[forged] = messages_[base(posted_ - 1 - age) + sender];
       slot = forged++;
+      shape(receiver, hop.sender, messages_[slot]);
       Hop told = hop;
       told.entries = entries(messages_[slot]);
-      if (!link_->rewrite(told, messages_[slot].values(), changed)) return void(++counters.lost);
+      if (!link_->rewrite(told, FieldList(messages_[slot]), changed)) return void(++counters.lost);
     }
-    for (const double v : messages_[slot].values())
-      if (!std::isfinite(v)) return void(++counters.refused);
-    delivered_[first_[receiver] + received_[receiver]++] = static_cast<std::uint32_t>(slot);
-    ++(changed ? counters.forged : fate == Link::Fate::late ? counters.late : counters.sent);
+    if (!bounded(messages_[slot])) return void(++counters.refused);
+    const std::size_t place = first_[receiver] + received_[receiver]++;
+    delivered_[place] = static_cast<std::uint32_t>(slot);
+    delivered_from_[place] = hop.sender;
+    ++(changed ? counters.forged : counters.sent);
   }
 
   std::vector<int> order_;
   int states_;
+  int rounds_;
   std::vector<std::size_t> first_;        // of each agent's slots, N+1
   std::vector<std::uint32_t> slots_;      // as wired: positions of the neighbours, by public id
+  std::vector<int> senders_;              // their public ids
+  std::vector<std::size_t> listeners_;    // of each agent
   std::vector<std::uint32_t> delivered_;  // as delivered this round: indices into messages_
+  std::vector<int> delivered_from_;       // their senders
   std::vector<std::size_t> received_;     // how many of them
   std::vector<Message> messages_;
   std::size_t depth_ = 2;

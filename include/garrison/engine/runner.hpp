@@ -41,9 +41,12 @@ class GARRISON_EXPORT Runner {
   /// Agents that `agent` believes to be attacked.
   /// Valid until the next call.
   virtual const AgentSet& accused(int agent) const = 0;
-  /// Steps at which some estimate was no longer finite (its messages are then withheld).
+  /// Samples at which some estimate was not finite, or beyond kHuge (its messages are then withheld).
   virtual std::int64_t overflows() const = 0;
-  /// Payload of all messages of one sample, all rounds, when none is lost; known after `reset`.
+  /// Agents that rejoined because of that, summed over samples.
+  virtual std::int64_t resets() const = 0;
+  /// Bytes of the bodies of all messages of one sample, all rounds, when none is lost; known after `reset`.
+  /// Where bodies vary in size (sets): the mean over the samples so far.
   virtual std::int64_t bytes_per_step() const = 0;
 };
 

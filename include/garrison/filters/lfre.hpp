@@ -24,6 +24,9 @@ namespace garrison {
 /// Every other one averages, entry by entry, its parents' xhat(t-1) without the f largest and f smallest, and
 /// predicts: xhat_i(t) = A mean. Parents are the neighbours closer to a source, or all neighbours when fewer
 /// than 2f + 1 are. Missing neighbours are left out; with none left the agent predicts from its own estimate.
+///
+/// No agent tests anything, and none reports a bound. Up to f parents that lie in their messages are trimmed
+/// away; one more, or a source that lies, moves its children without limit.
 struct GARRISON_EXPORT Lfre {
   static constexpr std::string_view name = "lfre";
   static constexpr std::string_view title = "Local-filtering-based resilient estimation";
@@ -56,7 +59,23 @@ struct GARRISON_EXPORT Lfre {
     int faulty = 1;
     std::vector<Vector> observer;           ///< H_i per agent; empty = not a source
     std::vector<std::vector<int>> parents;  ///< sorted ids; of a source: all neighbours, unused
+
+    template <class V>
+    void visit(V& v) {
+      v.range("faulty", faulty, 0, INT32_MAX);
+      v("observer", observer);
+      v("parents", parents);
+    }
   };
+  /// What agent `id` needs of them.
+  static Gains part(const Gains& all, int id, std::span<const int>) {
+    const auto i = static_cast<std::size_t>(id);
+    Gains g{all.faulty, std::vector<Vector>(all.observer.size()),
+            std::vector<std::vector<int>>(all.parents.size())};
+    g.observer[i] = all.observer[i];
+    g.parents[i] = all.parents[i];
+    return g;
+  }
 
   template <int n>
   struct State {
@@ -66,12 +85,22 @@ struct GARRISON_EXPORT Lfre {
     double y_now = kNaN;
     std::vector<double> column;
     AgentSet nobody;
+
+    template <class V>
+    void visit(V& v) {
+      v("estimate", x);
+      v("y_before", y_before);
+      v("y_now", y_now);
+    }
   };
   template <int n>
   struct Message {
-    int sender = 0;
     Vec<n> x;
-    std::span<double> values() { return {x.data(), static_cast<std::size_t>(x.size())}; }
+
+    template <class V>
+    void visit(V& v) {
+      v.numbers("estimate", x);
+    }
   };
 
   /// @throws InvalidInput when poles do not match the state, or when no agent is a source
@@ -85,7 +114,6 @@ struct GARRISON_EXPORT Lfre {
     fresh.x = fresh.mean = m.x = x0;
     fresh.column.resize(static_cast<std::size_t>(l.degree));
     s = std::move(fresh);
-    m.sender = l.id;
   }
 
   template <int n>
@@ -119,11 +147,27 @@ struct GARRISON_EXPORT Lfre {
     m.x = s.x;
   }
 
+  /// A times the entrywise median of what the neighbours estimated a sample ago, parents or not.
+  template <int n>
+  static void rejoin(const Local& l, const Gains&, const Inbox<Message<n>>& inbox, std::int64_t,
+                     State<n>& s) noexcept {
+    const int nn = dimension<n>(l);
+    s.y_before = kNaN;
+    if (inbox.size() > 0) {
+      median_into<n>(inbox.size(), [&](std::size_t k) { return inbox[k].x.data(); }, s.mean);
+      for (int i = 0; i < nn; ++i) {
+        s.x[i] = 0.0;
+        for (int k = 0; k < nn; ++k) s.x[i] += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.mean[k];
+      }
+    }
+    if (!usable<n>(s.x)) s.x.setZero();
+  }
+
   template <int n>
   static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept {
     const bool listens = g.observer[static_cast<std::size_t>(l.id)].size() == 0;
     Report r;
-    r.verdict = listens || std::isnan(s.y_now) ? Verdict::silent : Verdict::cleared;
+    r.verdict = listens || std::isnan(s.y_now) ? Verdict::silent : Verdict::not_tested;
     return r;
   }
   template <int n>
@@ -156,7 +200,7 @@ struct GARRISON_EXPORT Lfre {
     for (int k = 0; k < nn; ++k) {
       std::size_t m = 0;
       for (std::size_t j = 0; j < inbox.size(); ++j)
-        if (std::binary_search(parents.begin(), parents.end(), inbox[j].sender))
+        if (std::binary_search(parents.begin(), parents.end(), inbox.sender(j)))
           s.column[m++] = inbox[j].x[k];
       s.mean[k] = s.x[k];
       if (m == 0) continue;

@@ -63,16 +63,6 @@ Selection Selection::coordinated(int states, std::span<const int> shared, std::i
   return {start, shift};
 }
 
-std::span<const int> Selection::entries(int agent) const {
-  const auto i = static_cast<std::size_t>(agent);
-  return std::span(entries_).subspan(first_[i], first_[i + 1] - first_[i]);
-}
-
-int Selection::offset(std::int64_t k) const {
-  const auto rest = static_cast<int>(((k % period_) + period_) % period_);
-  return rest * shift_ % states_;
-}
-
 Matrix Selection::at(std::int64_t k) const {
   const int moved = offset(k);
   Matrix s = Matrix::Zero(agents(), states_);

@@ -26,7 +26,7 @@ PlatoonBaseline::Gains PlatoonBaseline::design(const Params& p, const Model& mod
   s.varpi = p.varpi;
   s.eps = p.process_noise;
   s.mu = p.measurement_noise;
-  s.q = kHuge;  // nothing rests on the start
+  s.q = kNaN;  // nothing rests on the start
   g.shared.formation =
       formation("platoon_baseline", p.reference, p.spacing, p.gs, p.gv, s.period, s.vehicles);
   return g;
@@ -81,8 +81,8 @@ void trimmed_mean(const Setting& g, const View& view, VehicleState& s) noexcept 
 
 }  // namespace
 
-void PlatoonBaseline::fuse_one(const Local& l, const Gains& g, Driver& s, const Inbox<VehicleMessage>& inbox,
-                               VehicleMessage& m) noexcept {
+void PlatoonBaseline::fuse_one(const Local& l, const Gains& g, Driver& s,
+                               const Inbox<VehicleMessage>& inbox) noexcept {
   const Setting& setting = g.shared.setting;
   const Formation& f = g.shared.formation;
   const View view(l.id, l.agents, setting.range, s, inbox);
@@ -112,7 +112,6 @@ void PlatoonBaseline::fuse_one(const Local& l, const Gains& g, Driver& s, const 
     s.known[slot] = other != nullptr;
     if (other != nullptr) std::copy_n(other->y(), 2, s.heard[slot]);
   }
-  m.t = -1;
 }
 
 }  // namespace garrison

@@ -15,23 +15,31 @@ struct Gap {
   double error;
 };
 
+/// u_i of Algorithm 3. `ahead`, `behind`: messages of these vehicles, null where there is none.
+double steer(const Local& l, const Formation& f, const Motion& own, const VehicleMessage* ahead,
+             const VehicleMessage* behind, const VehicleState& s) noexcept {
+  double u = 0.0;
+  if (l.id == 0)
+    u += f.pull(own, f.reference_at(s.t), 0);
+  else if (ahead != nullptr && ahead->covered())
+    u += f.pull(own, {ahead->prediction()[0], ahead->prediction()[1]}, -1);
+  else if (s.has_link)  // nothing to be had from it: where our own secured sensor sees it
+    u += f.pull(own, {own.s - s.link[0], own.v - s.link[1]}, -1);
+  if (behind != nullptr && behind->covered())
+    u += f.pull(own, {behind->prediction()[0], behind->prediction()[1]}, 1);
+  return u;
+}
+
 }  // namespace
 
+/// A vehicle that does not know where it is keeps its speed.
 void control(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
   const Formation& f = shared.formation;
   const Setting& g = shared.setting;
   const Motion own{s.x[0], s.x[1]};
   const VehicleMessage* ahead = l.id > 0 ? view[g.range - 1].message : nullptr;
   const VehicleMessage* behind = l.id + 1 < l.agents ? view[g.range + 1].message : nullptr;
-  s.u = 0.0;
-  if (l.id == 0)
-    s.u += f.pull(own, f.reference_at(s.t), 0);
-  else if (ahead != nullptr)
-    s.u += f.pull(own, {ahead->prediction()[0], ahead->prediction()[1]}, -1);
-  else if (s.has_link)  // its message is missing: where our own secured sensor sees it
-    s.u += f.pull(own, {own.s - s.link[0], own.v - s.link[1]}, -1);
-  if (behind != nullptr) s.u += f.pull(own, {behind->prediction()[0], behind->prediction()[1]}, 1);
-
+  s.u = std::isnan(s.alpha) ? 0.0 : steer(l, f, own, ahead, behind, s);
   s.gap[0] = s.gap[1] = kNaN;
   if (l.id == 0) return;
   const auto certify = [&](const Gap& gap) {
@@ -41,8 +49,9 @@ void control(const Local& l, const Shared& shared, const View& view, VehicleStat
     if (!(s.gap[1] <= off)) s.gap[1] = off;
   };
   if (s.has_link) certify({-s.link[0], g.mu});
-  if (ahead != nullptr && s.trouble == 0 && shared.options.bound != BoundKind::printed) {
-    const double other = s.t == 0 ? ahead->alpha() : predicted_bound(g, ahead->alpha());
+  if (ahead != nullptr && ahead->covered() && !std::isnan(s.alpha) && s.trouble == 0 &&
+      shared.options.bound != BoundKind::printed) {
+    const double other = s.t == 0 ? ahead->alpha : predicted_bound(g, ahead->alpha);
     certify({ahead->prediction()[0] - own.s, other + s.alpha});
   }
 }

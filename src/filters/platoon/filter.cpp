@@ -96,7 +96,7 @@ Platoon::Gains Platoon::design(const Params& p, const Model& model, const Networ
   g.options.accuse_missing = p.accuse_missing;
   g.priors = platoon::detail::priors_of(p, N);
   // b attackers make at most 3 b suspects; four times that, and everything in a short string.
-  g.room = std::min({N, 64 + 8 * p.attacked, platoon::LabelSet::kMost});
+  g.room = std::min({N, 64 + 8 * p.attacked, LabelSet::kMost});
   std::vector<int> told;
   for (const auto& prior : g.priors) {
     for (const auto* set : {&prior.attacked, &prior.suspected})
@@ -122,7 +122,7 @@ Report Platoon::report_of(const Local&, const Gains& g, const platoon::VehicleSt
   r.verdict = s.verdict;
   r.statistic = s.innovation;
   r.threshold = s.level;
-  if (g.options.bound != BoundKind::printed && s.trouble == 0 && s.alpha < kHuge) r.bound = s.alpha;
+  if (g.options.bound != BoundKind::printed && s.trouble == 0) r.bound = s.alpha;
   return r;
 }
 
@@ -141,7 +141,7 @@ void Platoon::detail_of(const Local& l, const Gains& g, const platoon::VehicleSt
     if (s.gains != nullptr && s.t > 0) out.assign(s.gains.get(), s.gains.get() + 2 * g.setting.range + 1);
     return;
   }
-  const platoon::LabelSet& set = which == 0 ? s.sets.attacked : which == 1 ? s.sets.suspected : s.sets.free;
+  const LabelSet& set = which == 0 ? s.sets.attacked : which == 1 ? s.sets.suspected : s.sets.free;
   const bool pairs = which == 1 && g.options.cover;
   for (int id = 0; id < l.agents; ++id)
     if (set.contains(id) || (pairs && id > 0 && set.contains(id - 1))) out.push_back(id);

@@ -30,10 +30,30 @@ bool take_median(const Shared& shared, const View& view, VehicleState& s) noexce
   return true;
 }
 
+/// V_1 behind a gap: nothing of the past counts. Where too little is heard the estimate is the mean of what
+/// is, and stays without a bound.
+void start_anew(const Shared& shared, const View& view, VehicleState& s) noexcept {
+  s.beta = kNaN;
+  s.source = -1;
+  s.x = s.prediction;
+  std::fill_n(s.gains.get(), view.size(), 0.0);
+  s.verdict = Verdict::not_tested;
+  if (take_median(shared, view, s)) return;
+  Vec<2> sum = Vec<2>::Zero();
+  int count = 0;
+  for (int p = 0; p < view.size(); ++p) {
+    if (!view[p].measured || s.sets.attacked.contains(view.id_of(p))) continue;
+    for (int k = 0; k < 2; ++k) sum[k] += view[p].y[k];
+    ++count;
+  }
+  if (count > 0) s.x = sum / count;
+}
+
 /// V_1: saturated innovations of everybody in range.
 void update_inner(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
   const Setting& g = shared.setting;
   const double before = s.alpha;
+  if (std::isnan(before)) return start_anew(shared, view, s);
   s.beta = threshold(g, before);
   s.source = -1;
   Window w;
@@ -89,17 +109,21 @@ void update_outer(const Local& l, const Shared& shared, const View& view, Vehicl
   s.source = -1;
   s.beta = kNaN;
   const bool free = s.sets.free.contains(l.id);
+  // Behind a gap the prediction is worth nothing: gain 1 in place of 1/varpi.
+  const bool gap = std::isnan(s.alpha);
+  const double varpi = gap ? 1.0 : g.varpi;
   if (free && s.has_y) {
-    for (int k = 0; k < 2; ++k) s.x[k] = s.prediction[k] + (s.y[k] - s.prediction[k]) / g.varpi;
-    s.alpha = free_bound(g, s.alpha);
+    for (int k = 0; k < 2; ++k) s.x[k] = s.prediction[k] + (s.y[k] - s.prediction[k]) / varpi;
+    s.alpha = gap ? g.mu : free_bound(g, s.alpha);
     return;
   }
   BestSource best(shared.options.tie_by_bound);
   for (int p = 0; p < view.size(); ++p) {
-    if (p == g.range || !view[p].linked || view[p].message == nullptr) continue;
+    if (p == g.range || !view[p].linked || view[p].message == nullptr || !view[p].message->covered())
+      continue;
     const int j = view.id_of(p);
     if (in_V1(j, l.agents, g.range) || s.sets.free.contains(j))
-      best.offer(j, std::abs(p - g.range), view[p].message->alpha());
+      best.offer(j, std::abs(p - g.range), view[p].message->alpha);
   }
   s.source = best.id();
   if (s.source < 0) {  // nobody within reach: the prediction stands
@@ -109,8 +133,10 @@ void update_outer(const Local& l, const Shared& shared, const View& view, Vehicl
   }
   const Seen& j = view[s.source - l.id + g.range];
   for (int k = 0; k < 2; ++k)
-    s.x[k] = s.prediction[k] + (j.message->prediction()[k] + j.link[k] - s.prediction[k]) / g.varpi;
-  s.alpha = borrowed_bound(g, s.alpha, j.message->alpha(), std::abs(s.source - l.id));
+    s.x[k] = s.prediction[k] + (j.message->prediction()[k] + j.link[k] - s.prediction[k]) / varpi;
+  const int distance = std::abs(s.source - l.id);
+  s.alpha = gap ? anew_bound(g, j.message->alpha, distance)
+                : borrowed_bound(g, s.alpha, j.message->alpha, distance);
 }
 
 }  // namespace
@@ -124,7 +150,7 @@ void observe(const Local& l, const Shared& shared, const View& view, VehicleStat
   }
   if (!s.has_y) s.verdict = Verdict::silent;
   if (s.sets.attacked.contains(l.id)) s.verdict = Verdict::attacked;
-  s.alpha = std::min(s.alpha, kHuge);  // a bound that has grown this far is not reported
+  if (!(s.alpha < kHuge)) s.alpha = kNaN;  // a bound that has grown this far says nothing
 }
 
 }  // namespace garrison::platoon

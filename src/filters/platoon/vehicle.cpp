@@ -34,9 +34,9 @@ void start(const Local& l, const Shared& shared, const Vec<2>& x0, VehicleState&
   }
   if (in_V1(l.id, l.agents, shared.setting.range))
     fresh.gains = std::make_unique<double[]>(static_cast<std::size_t>(2 * shared.setting.range + 1));
+  fresh.window = 2 * shared.setting.range + 1;
   if (shared.options.pairs) fresh.suspicions = std::make_unique<Suspicions>(2 * shared.setting.range + 1);
   m = VehicleMessage{};
-  m.sender = l.id;
   m.sets = fresh.sets;
   s = std::move(fresh);
 }
@@ -60,8 +60,6 @@ void sense(const Local& l, const Shared& shared, VehicleState& s, const double* 
     s.link[k] = s.has_link ? y[2 + k] : 0.0;
   }
   s.applied = outputs.input && std::abs(y[outputs.at_input()]) < kHuge ? y[outputs.at_input()] : kNaN;
-  m.sender = l.id;
-  m.t = t;
   m.has_y = s.has_y;
   m.has_link = s.has_link;
   for (int k = 0; k < 2; ++k) {
@@ -69,18 +67,17 @@ void sense(const Local& l, const Shared& shared, VehicleState& s, const double* 
     m.numbers[2 + k] = s.link[k];
     m.numbers[4 + k] = s.prediction[k];
   }
-  m.numbers[6] = s.alpha;
+  m.alpha = s.alpha;
   m.doubt = s.trouble != 0;
   m.sets = s.sets;
 }
 
-void fuse(const Local& l, const Shared& shared, VehicleState& s, const Inbox<VehicleMessage>& inbox,
-          VehicleMessage& m) noexcept {
+void fuse(const Local& l, const Shared& shared, VehicleState& s,
+          const Inbox<VehicleMessage>& inbox) noexcept {
   const View view(l.id, l.agents, shared.setting.range, s, inbox);
   if (s.t > 0) {
     if (shared.options.detector) {
       for (std::size_t k = 0; k < inbox.size(); ++k) {
-        // An old message still proves what it says: sets only grow.
         const Sets& told = inbox[k].sets;
         if (inbox[k].doubt) s.trouble |= kHeard;
         const bool same = s.sets.attacked == told.attacked && s.sets.suspected == told.suspected &&
@@ -96,7 +93,17 @@ void fuse(const Local& l, const Shared& shared, VehicleState& s, const Inbox<Veh
     observe(l, shared, view, s);
   }
   control(l, shared, view, s);
-  m.t = -1;  // nobody reads this one in time; whoever gets it late must not take it for the present
+}
+
+void rejoin(const Local& l, const Shared& shared, VehicleState& s, const Inbox<VehicleMessage>& inbox,
+            std::int64_t t) noexcept {
+  if (!(std::abs(s.x[0]) < kHuge) || !(std::abs(s.x[1]) < kHuge)) s.x.setZero();
+  s.prediction = s.x;
+  s.alpha = kNaN;
+  s.t = t;
+  const View view(l.id, l.agents, shared.setting.range, s, inbox);
+  observe(l, shared, view, s);
+  control(l, shared, view, s);
 }
 
 }  // namespace garrison::platoon

@@ -115,7 +115,7 @@ class SaturationLanes final : public LaneRunner {
   }
 
   void reset(const Matrix* x0) override {
-    clock_.t = 0;
+    clock_.started = false;
     clock_.rho = gains_->bounded ? gains_->setting.eta0 : kNaN;
     clock_.p = 0.0;
     for (int l = 0; l < kLanes; ++l)
@@ -124,7 +124,7 @@ class SaturationLanes final : public LaneRunner {
   }
 
   void step(const double* y) override {
-    Saturation::advance_bounds(*gains_, clock_, clock_.t + 1);
+    Saturation::advance_bounds(*gains_, clock_);
     const SenseJob job{model_.A().data(),
                        rows_.data(),
                        outputs_.data(),

@@ -183,6 +183,39 @@ GainMatrices Structural::gains_of(const Params& p, const Setting& s) {
   return K;
 }
 
+Structural::Gains Structural::part(const Gains& all, int id, std::span<const int>) {
+  const auto i = static_cast<std::size_t>(id);
+  const std::size_t N = all.has_sensor.size();
+  const std::size_t n = all.rows.size() / N;
+  Gains g = all;
+  g.offsets.assign(N + 1, 0);
+  g.heard.assign(all.heard.begin() + all.offsets[i], all.heard.begin() + all.offsets[i + 1]);
+  std::fill(g.offsets.begin() + id + 1, g.offsets.end(), static_cast<int>(g.heard.size()));
+  g.columns.clear();
+  g.rows.assign(N * n, 0.0);
+  const auto copy_row = [&](int j) {
+    const auto first = static_cast<std::ptrdiff_t>(n) * j;
+    std::copy_n(all.rows.begin() + first, n, g.rows.begin() + first);
+  };
+  copy_row(id);
+  for (Heard& j : g.heard) {
+    if (j.first < 0) continue;
+    const auto column = all.columns.begin() + j.first;
+    j.first = static_cast<int>(g.columns.size());
+    g.columns.insert(g.columns.end(), column, column + static_cast<std::ptrdiff_t>(n));
+    copy_row(j.id);
+  }
+  g.std.assign(N, kNaN);
+  g.std[i] = all.std[i];
+  g.innovation_std.assign(N, kNaN);
+  g.innovation_std[i] = all.innovation_std[i];
+  const std::size_t square = all.precision.size() / N;
+  std::fill(g.precision.begin(), g.precision.end(), 0.0);
+  std::copy_n(all.precision.begin() + static_cast<std::ptrdiff_t>(square * i), square,
+              g.precision.begin() + static_cast<std::ptrdiff_t>(square * i));
+  return g;
+}
+
 Structural::Gains Structural::design(const Params& p, const Model& model, const Network& network) {
   if (!(p.false_alarm < 1.0)) refuse("structural.false_alarm", text(p.false_alarm), "a probability below 1");
   const Setting s = setting(p, model, network);
@@ -217,7 +250,8 @@ Structural::Gains Structural::design(const Params& p, const Model& model, const 
     g.innovation_std = g.std;
   }
   const double rest = g.rho > 0.0 && g.rho < 1.0 ? std::ceil(std::log(kSettled) / std::log(g.rho)) : 1.0;
-  g.settle = p.settle >= 0 ? p.settle : static_cast<int>(std::min<double>(rest, kMostSettle));
+  g.settle =
+      p.settle >= 0 ? std::min(p.settle, kMostRest) : static_cast<int>(std::min<double>(rest, kMostSettle));
   return g;
 }
 

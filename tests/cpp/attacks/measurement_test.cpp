@@ -114,7 +114,7 @@ TEST_CASE("an informed attacker stays below the detector's threshold") {
 }
 
 TEST_CASE("attacks by name") {
-  CHECK(attack_infos().size() == 16);
+  CHECK(attack_infos().size() == 18);
   CHECK_THROWS_WITH_AS(make_attack("bais", one(), {}), doctest::Contains("did you mean \"bias\"?"),
                        InvalidInput);
   CHECK_THROWS_WITH_AS(make_attack("bias", one(), {}), doctest::Contains("attack.value: got nothing"),

@@ -7,13 +7,10 @@
 #include <cstdlib>
 #include <new>
 
+#include "../every_filter.hpp"
 #include "../random_system.hpp"
 #include "garrison/engine/any_filter.hpp"
-#include "garrison/filters/lfre.hpp"
-#include "garrison/filters/partial_sharing/filter.hpp"
 #include "garrison/filters/platoon/world.hpp"
-#include "garrison/filters/rdkf/filter.hpp"
-#include "garrison/filters/scalar_gain.hpp"
 
 namespace {
 std::atomic<bool> armed{false};
@@ -65,24 +62,10 @@ TEST_CASE("no step of any family allocates, at any dimension, on good and on bad
     test::Rng rng(static_cast<std::uint64_t>(n));
     const Model model = test::scalar_model(rng, n, 8, 0.98, 0.02, 0.01);
     const Network network = test::connected_network(rng, 8);
-    const ParamMap bounded{{"threshold", 0.2},
-                           {"rounds", std::int64_t{12}},
-                           {"attacked", std::int64_t{2}},
-                           {"initial_error", 2.0},
-                           {"detector", true}};
-    for (const auto& filter :
-         {make_filter("saturation", {{"threshold", 0.5}}),
-          make_filter("saturation", {{"threshold", 0.5}, {"chebyshev", true}}),
-          make_filter("saturation", bounded), make_filter("scalar_gain", {}), make_filter("lfre", {}),
-          make_filter("dkf", {}), make_filter("rdkf", {{"initial_error", 2.0}}),
-          make_filter("rdkf", {{"penalty", std::string("l1")}}),
-          make_filter("rdkf", {{"penalty", std::string("group")}}), make_filter("structural", {}),
-          make_filter("structural",
-                      {{"window", std::int64_t{4}}, {"settle", std::int64_t{0}}, {"isolate", true}}),
-          make_filter("partial_sharing", {{"gain", 0.1}, {"shared", std::int64_t{1}}})}) {
+    for (const auto& filter : test::every_filter()) {
       const auto runner = filter->prepare(model, network)->runner(1);
       for (const bool faults : {false, true}) {
-        Link link(network, {0.2, 0.2, 3},
+        Link link(network, {0.2, 0.2, 3, {}, {}},
                   {forge(Schedule(3, {1}), 2.0, false), equivocate(Schedule(2, {4}), 1.0)}, 1, 0);
         runner->reset(Matrix::Zero(n, 8), faults ? &link : nullptr);
         std::vector<double> y(8);
@@ -106,79 +89,67 @@ TEST_CASE("no step of any family allocates, at any dimension, on good and on bad
 
 namespace {
 
-/// Allocations of 40 samples of two agents that hear each other, driven without any driver.
-template <class F, int n>
-long allocations_alone(const typename F::Params& params, const Model& model) {
-  const auto gains = F::design(params, model, Network::path(2));
-  typename F::template State<n> state[2];
-  typename F::template Message<n> message[2];
-  typename F::template Message<n> next[2];
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows[2];
-  Local local[2];
-  const Vec<n> x0 = Vector::Zero(model.states());
-  for (int i = 0; i < 2; ++i) {
-    rows[i] = model.C(i);
-    local[i] = {i, 2, model.states(), 1, 1, model.A().data(), rows[i].data()};
-    F::template init<n>(local[i], gains, x0, state[i], message[i]);
-    next[i] = message[i];
+/// Allocations of 40 samples of agents driven by bytes: everything a node does with them.
+long allocations_by_hand(const AnyFilter& filter, const Model& model, const Network& network) {
+  const auto prepared = filter.prepare(model, network);
+  std::vector<std::unique_ptr<Agent>> agents;
+  std::vector<std::vector<std::byte>> sent;
+  std::vector<std::size_t> bytes(static_cast<std::size_t>(model.agents()));
+  for (int i = 0; i < model.agents(); ++i) {
+    agents.push_back(prepared->agent(i));
+    sent.emplace_back(agents.back()->most_bytes());
   }
-  const std::uint32_t slots[2] = {1, 0};
-  double out[32];
+  std::vector<std::byte> snapshot(agents[0]->snapshot_bytes());
+  std::vector<double> x(static_cast<std::size_t>(model.states()));
+  std::vector<double> y(static_cast<std::size_t>(model.outputs(0)));
   count = 0;
   armed = true;
   for (int t = 1; t <= 40; ++t) {
-    for (int i = 0; i < 2; ++i) {
-      const double y = t == 7 ? kNaN : t == 9 ? kInfinity : 0.1 * t * (1 - 2 * i);
-      F::template sense<n>(local[i], gains, state[i], &y, t, message[i]);
+    const int rounds = agents[0]->rounds();
+    for (std::size_t i = 0; i < agents.size(); ++i) {
+      for (double& v : y) v = t == 7 ? kNaN : t == 9 ? kInfinity : t == 11 && i == 2 ? 50.0 : 0.01 * t;
+      bytes[i] = agents[i]->sense(t, y, sent[i]).bytes;
     }
-    for (int round = 0; round < F::rounds(gains); ++round) {
-      for (int i = 0; i < 2; ++i)
-        F::template fuse<n>(local[i], gains, state[i], {message, {slots + i, 1}}, round, next[i]);
-      for (int i = 0; i < 2; ++i) message[i] = next[i];
+    for (int round = 0; round < rounds; ++round) {
+      for (std::size_t i = 0; i < agents.size(); ++i)
+        for (const int j : agents[i]->neighbours())
+          if ((t + j) % 5 != 0)
+            agents[i]->deliver(
+                {j, t, round},
+                std::span(sent[static_cast<std::size_t>(j)]).first(bytes[static_cast<std::size_t>(j)]));
+      for (std::size_t i = 0; i < agents.size(); ++i) bytes[i] = agents[i]->fuse(sent[i]).bytes;
     }
-    for (int i = 0; i < 2; ++i) {
-      F::template report<n>(local[i], gains, state[i]);
-      F::template signals<n>(local[i], gains, state[i], out);
-      F::template expected<n>(local[i], gains, state[i], out);
-      F::template alarm_level<n>(local[i], gains, state[i]);
+    for (const auto& agent : agents) {
+      (void)agent->report();
+      agent->estimate(x);
+      (void)agent->control();
+    }
+    if (t % 10 == 0) {
+      agents[0]->load(std::span(snapshot).first(agents[0]->save(snapshot)));
+      agents[0]->uncover();
+    }
+    if (t == 20 && agents[1]->listen(t + 1) == Refusal::none) {
+      agents[1]->join();
+      t += 1;  // the others catch up on what they missed
     }
   }
   armed = false;
   return count;
 }
 
-/// Engines of all dimensions are tested above; here, what no engine calls is.
-template <int n>
-void check_alone(int states) {
-  test::Rng rng(static_cast<std::uint64_t>(states));
-  const Model model = test::scalar_model(rng, states, 2, 0.98, 0.02, 0.01);
-  Saturation::Params detector;
-  detector.threshold = 0.2;
-  detector.attacked = 1;
-  detector.initial_error = 2.0;
-  detector.detector = true;
-  Saturation::Params adaptive = detector;
-  adaptive.detector = false;
-  adaptive.adaptive = true;
-  adaptive.threshold = kNaN;
-  CAPTURE(states);
-  CHECK(allocations_alone<Saturation, n>(detector, model) == 0);
-  CHECK(allocations_alone<Saturation, n>(adaptive, model) == 0);
-  CHECK(allocations_alone<ScalarGain, n>({}, model) == 0);
-  CHECK(allocations_alone<Lfre, n>({}, model) == 0);
-  CHECK(allocations_alone<Rdkf, n>({}, model) == 0);
-  PartialSharing::Params sharing;
-  sharing.gain = 0.1;
-  sharing.shared = 1;
-  CHECK(allocations_alone<PartialSharing, n>(sharing, model) == 0);
-}
-
 }  // namespace
 
-TEST_CASE("sense, fuse and report on their own do not allocate") {
-  check_alone<1>(1);
-  check_alone<8>(8);
-  check_alone<Dynamic>(9);
+TEST_CASE("agents driven by bytes do not allocate") {
+  for (const int n : {1, 4, 8, 9}) {
+    test::Rng rng(static_cast<std::uint64_t>(n));
+    const Model model = test::scalar_model(rng, n, 5, 0.98, 0.02, 0.01);
+    const Network network = test::connected_network(rng, 5);
+    for (const auto& filter : test::every_filter()) {
+      CAPTURE(n);
+      CAPTURE(filter->name());
+      CHECK(allocations_by_hand(*filter, model, network) == 0);
+    }
+  }
 }
 
 TEST_CASE("no step of a string of vehicles allocates, attacked, on good and on bad links") {
@@ -196,7 +167,7 @@ TEST_CASE("no step of a string of vehicles allocates, attacked, on good and on b
                              make_filter("platoon_baseline", base)}) {
     const auto runner = filter->prepare(model, network)->runner(1);
     for (const bool faults : {false, true}) {
-      Link link(network, {0.2, 0.2, 3}, {forge(Schedule(3, {1}), 2.0, false)}, 1, 0);
+      Link link(network, {0.2, 0.2, 3, {}, {}}, {forge(Schedule(3, {1}), 2.0, false)}, 1, 0);
       Matrix start = Matrix::Zero(2, 9);
       for (int i = 0; i < 9; ++i) start(0, i) = -20.0 * i;
       runner->reset(start, faults ? &link : nullptr);

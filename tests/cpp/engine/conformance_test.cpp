@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
-#include <map>
+#include <set>
 
+#include "../agents_by_hand.hpp"
+#include "../every_filter.hpp"
 #include "../random_system.hpp"
 #include "garrison/attacks/registry.hpp"
 #include "garrison/drivers/simulate.hpp"
@@ -14,36 +16,6 @@ using namespace garrison;
 namespace {
 
 const std::vector<int> kDimensions{1, 2, 3, 5, 8, 9};
-
-/// Filters that together take every path of every family.
-std::vector<std::shared_ptr<const AnyFilter>> filters(bool bounded) {
-  std::vector<std::shared_ptr<const AnyFilter>> all{
-      make_filter("saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{3}}}),
-      make_filter("saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{4}}, {"chebyshev", true}}),
-      make_filter("scalar_gain", {{"rounds", std::int64_t{2}}}),
-      make_filter("lfre", {}),
-      make_filter("dkf", {}),
-      make_filter("rdkf", {{"weight", 0.5}}),
-      make_filter("rdkf", {{"weight", 0.5}, {"penalty", std::string("l1")}}),
-      make_filter("rdkf", {{"weight", 0.5}, {"penalty", std::string("group")}}),
-      make_filter("structural", {}),
-      make_filter("structural",
-                  {{"window", std::int64_t{3}}, {"isolate", true}, {"settle", std::int64_t{0}}}),
-      make_filter("partial_sharing", {{"gain", 0.1}, {"starts", "coordinated"}, {"shared", std::int64_t{1}}}),
-      make_filter("partial_sharing", {{"gain", 0.1}, {"gains", "varying"}})};
-  if (bounded) {
-    const ParamMap base{{"rounds", std::int64_t{12}}, {"attacked", std::int64_t{2}}, {"initial_error", 2.0}};
-    ParamMap detector = base;
-    detector.insert({{"threshold", 0.5}, {"detector", true}});
-    ParamMap adaptive = base;
-    adaptive.insert({"adaptive", true});
-    all.push_back(make_filter("saturation", detector));
-    all.push_back(make_filter("saturation", adaptive));
-    all.push_back(
-        make_filter("rdkf", {{"weight", 0.5}, {"penalty", std::string("huber")}, {"initial_error", 2.0}}));
-  }
-  return all;
-}
 
 struct Setup {
   Model model;
@@ -68,40 +40,15 @@ bool same(const Bulk<double>& a, const Bulk<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-/// Estimates of agents that are driven by hand, [time][agent][state].
-Bulk<double> by_hand(const Setup& s, const AnyFilter& filter, const Vector& x0) {
-  const auto prepared = filter.prepare(s.model, s.network);
-  std::vector<std::unique_ptr<AnyAgent>> agents;
-  for (int i = 0; i < s.model.agents(); ++i) {
-    agents.push_back(prepared->agent(i));
-    agents.back()->reset(x0);
-  }
+/// Estimates of agents that are driven by hand over `link`, [time][agent][state].
+Bulk<double> by_hand(const Setup& s, const AnyFilter& filter, const Vector& x0, const Link* link = nullptr) {
+  test::AgentsByHand agents(*filter.prepare(s.model, s.network), s.network, link);
+  for (const auto& agent : agents.all()) agent->reset(x0);
   Bulk<double> out;
-  const auto note = [&] {
-    for (const auto& agent : agents) {
-      const Vector x = agent->estimate();
-      out.insert(out.end(), x.data(), x.data() + x.size());
-    }
-  };
-  note();
+  agents.append_estimates(out);
   for (Eigen::Index t = 0; t < s.y.rows(); ++t) {
-    std::vector<std::shared_ptr<AnyMessage>> sent;
-    for (int i = 0; i < s.model.agents(); ++i) {
-      const double y = s.y(t, i);
-      sent.push_back(agents[static_cast<std::size_t>(i)]->sense({&y, 1}));
-    }
-    for (int round = 0; round < agents.front()->rounds(); ++round) {
-      std::vector<std::shared_ptr<AnyMessage>> next;
-      for (int i = 0; i < s.model.agents(); ++i) {
-        std::vector<std::shared_ptr<AnyMessage>> inbox;
-        const auto heard = s.network.neighbours(i);
-        for (auto j = heard.rbegin(); j != heard.rend(); ++j)
-          inbox.push_back(sent[static_cast<std::size_t>(*j)]);
-        next.push_back(agents[static_cast<std::size_t>(i)]->fuse(inbox));
-      }
-      sent = next;
-    }
-    note();
+    agents.step(t + 1, [&](int i) { return Vector::Constant(1, s.y(t, i)); });
+    agents.append_estimates(out);
   }
   return out;
 }
@@ -126,7 +73,7 @@ TEST_CASE("replay gives the bits of agents driven by hand, and survives bad meas
   for (const int n : kDimensions) {
     const Setup s = setup(n, 7, static_cast<std::uint64_t>(40 + n));
     const Vector x0 = Vector::Constant(n, 0.3);
-    for (const auto& filter : filters(true)) {
+    for (const auto& filter : test::every_filter()) {
       CAPTURE(n);
       CAPTURE(filter->name());
       const Record record = replay(s.model, s.network, *filter, s.y, Matrix(), options_with(x0));
@@ -138,6 +85,32 @@ TEST_CASE("replay gives the bits of agents driven by hand, and survives bad meas
   }
 }
 
+TEST_CASE("agents driven by bytes lose and hear just what the engine says, bit for bit") {
+  for (const int n : {1, 3, 9}) {
+    const Setup s = setup(n, 7, static_cast<std::uint64_t>(60 + n));
+    const Vector x0 = Vector::Constant(n, 0.3);
+    for (const auto& filter : test::every_filter()) {
+      CAPTURE(n);
+      CAPTURE(filter->name());
+      RunOptions o = options_with(x0);
+      o.link = {0.2, 0.1, 2, {{2, -1, 5, 9}}, {{{3, 12, 0}, 1}}};
+      const Record record = replay(s.model, s.network, *filter, s.y, Matrix(), o);
+      const Link link(s.network, o.link, {}, o.seed, 0);
+      CHECK(same(record.estimate, by_hand(s, *filter, x0, &link)));
+      CHECK(record.link.late > 0);
+    }
+  }
+}
+
+TEST_CASE("every family has a place in the tests of all families") {
+  std::set<std::string> tested{"platoon", "platoon_baseline"};
+  for (const auto& filter : test::every_filter()) tested.insert(filter->name());
+  for (const FamilyInfo& family : families()) {
+    CAPTURE(family.name);
+    CHECK(tested.count(family.name) == 1);
+  }
+}
+
 TEST_CASE("any number of threads gives the same bits, and so do trials side by side") {
   for (const int n : {1, 3, 8, 9}) {
     test::Rng rng(static_cast<std::uint64_t>(n));
@@ -146,7 +119,7 @@ TEST_CASE("any number of threads gives the same bits, and so do trials side by s
     const std::vector<Attack> attacks{scale(Schedule(5, {2}), 3.0),
                                       random_noise(Schedule(9, {4, 5}, 20, 0.5), "normal", 2.0, false),
                                       denial(Schedule(12, {7}))};
-    for (const auto& filter : filters(true)) {
+    for (const auto& filter : test::every_filter()) {
       CAPTURE(n);
       CAPTURE(filter->name());
       RunOptions o = options_with(Vector::Zero(n), 13);
@@ -218,7 +191,7 @@ TEST_CASE("other names for the agents change nothing but rounding") {
   for (const auto& [a, b] : s.network.edges())
     edges.emplace_back(name[static_cast<std::size_t>(a)], name[static_cast<std::size_t>(b)]);
   const Model renamed(s.model.A(), C, s.model.noise());
-  for (const auto& filter : filters(true)) {
+  for (const auto& filter : test::every_filter()) {
     const auto a = replay(s.model, s.network, *filter, s.y, Matrix(), options_with(Vector::Zero(3)));
     const auto b = replay(renamed, Network(8, edges), *filter, y, Matrix(), options_with(Vector::Zero(3)));
     double worst = 0.0;
@@ -235,11 +208,11 @@ TEST_CASE("other names for the agents change nothing but rounding") {
 TEST_CASE("lost, late and forged messages are counted and never spread what is not finite") {
   for (const int n : {1, 3, 9}) {
     const Setup s = setup(n, 7, static_cast<std::uint64_t>(90 + n));
-    for (const auto& filter : filters(true)) {
+    for (const auto& filter : test::every_filter()) {
       CAPTURE(n);
       CAPTURE(filter->name());
       RunOptions o = options_with(Vector::Zero(n));
-      o.link = {0.2, 0.2, 2};
+      o.link = {0.2, 0.2, 2, {}, {}};
       o.message_attacks = {forge(Schedule(4, {1}), kNaN, true), forge(Schedule(8, {2}, 12), 5.0, false),
                            equivocate(Schedule(6, {3}), 2.0), silence(Schedule(10, {4}))};
       const Record record = replay(s.model, s.network, *filter, s.y, Matrix(), o);
@@ -259,14 +232,36 @@ TEST_CASE("lost, late and forged messages are counted and never spread what is n
   }
 }
 
-TEST_CASE("an estimate that overflows is withheld from the neighbours and counted") {
-  const Model model(Matrix::Constant(1, 1, 1e200), std::vector<Matrix>(3, Matrix::Ones(1, 1)));
+TEST_CASE("an estimate that overflows is withheld, and the agent rejoins from its neighbours") {
+  const Model model(Matrix::Constant(1, 1, 1e100), std::vector<Matrix>(3, Matrix::Ones(1, 1)));
   const auto filter = make_filter("scalar_gain", {{"rounds", std::int64_t{1}}});
-  Matrix y = Matrix::Constant(4, 3, kNaN);
+  const Matrix y = Matrix::Constant(4, 3, kNaN);
   RunOptions o;
   o.start = Matrix::Zero(1, 3);
-  o.start(0, 0) = 1e200;
+  o.start(0, 0) = 1e100;  // 1e200 after one step
   const Record record = replay(model, Network::path(3), *filter, y, Matrix(), o);
-  CHECK(record.overflows > 0);
-  CHECK(std::isfinite(record.estimate.back()));  // agent 2 never hears a number that is not finite
+  CHECK(record.overflows == 1);
+  CHECK(record.resets == 1);
+  CHECK(record.estimate[3] == 0.0);  // what agent 1 sent
+  CHECK(all_finite(record.estimate));
+  CHECK_THROWS_WITH_AS(
+      replay(model, Network::path(3), *filter, y, Matrix(), options_with(Vector::Constant(1, 1e200))),
+      doctest::Contains("start: got a number that is not finite, or beyond 1e150"), InvalidInput);
+}
+
+TEST_CASE("a liar that sends 1e308 for three samples leaves nobody with an estimate that is of no use") {
+  for (const int n : {2, 9}) {
+    const Setup s = setup(n, 7, static_cast<std::uint64_t>(80 + n));
+    for (const auto& filter : test::every_filter()) {
+      for (const double lie : {1e308, 1e149, -1e140}) {
+        CAPTURE(filter->name());
+        CAPTURE(lie);
+        RunOptions o = options_with(Vector::Zero(n));
+        o.message_attacks = {forge(Schedule(4, {1}, 7), lie, true)};
+        const Record record = replay(s.model, s.network, *filter, s.y, Matrix(), o);
+        CHECK(all_finite(record.estimate));
+        CHECK((lie == 1e308 ? record.link.refused : record.link.forged) > 0);
+      }
+    }
+  }
 }

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "../agents_by_hand.hpp"
 #include "../random_system.hpp"
 #include "garrison/drivers/simulate.hpp"
 #include "garrison/engine/engine.hpp"
@@ -113,28 +114,13 @@ TEST_CASE("agents with several outputs or none agree with the engine, from start
   const auto filter = make_filter("saturation", {{"threshold", 0.7}});
   const Record record = replay(model, net, *filter, y, Matrix(), o);
   const auto prepared = filter->prepare(model, net);
-  std::vector<std::unique_ptr<AnyAgent>> agents;
-  for (int i = 0; i < 4; ++i) {
-    agents.push_back(prepared->agent(i));
-    agents.back()->reset(o.start.col(i));
-  }
+  test::AgentsByHand agents(*prepared, net);
+  for (int i = 0; i < 4; ++i) agents[i].reset(o.start.col(i));
+  std::vector<double> estimates(record.estimate.begin(), record.estimate.begin() + 12);
   for (int t = 0; t < 15; ++t) {
-    const Vector row = y.row(t);
-    std::vector<std::shared_ptr<AnyMessage>> sent;
-    for (int i = 0; i < 4; ++i)
-      sent.push_back(agents[static_cast<std::size_t>(i)]->sense(
-          {row.data() + model.offset(i), static_cast<std::size_t>(model.outputs(i))}));
-    for (int round = 0; round < 3; ++round) {
-      std::vector<std::shared_ptr<AnyMessage>> next;
-      for (int i = 0; i < 4; ++i)
-        next.push_back(agents[static_cast<std::size_t>(i)]->fuse(std::vector{
-            sent[static_cast<std::size_t>((i + 1) % 4)], sent[static_cast<std::size_t>((i + 3) % 4)]}));
-      sent = next;
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Vector x = agents[i]->estimate();
-      CHECK(std::memcmp(x.data(), record.estimate.data() + ((static_cast<std::size_t>(t) + 1) * 4 + i) * 3,
-                        3 * sizeof(double)) == 0);
-    }
+    agents.step(t + 1, [&](int i) { return Vector(y.row(t).segment(model.offset(i), model.outputs(i))); });
+    agents.append_estimates(estimates);
   }
+  REQUIRE(estimates.size() == record.estimate.size());
+  CHECK(std::memcmp(estimates.data(), record.estimate.data(), estimates.size() * sizeof(double)) == 0);
 }

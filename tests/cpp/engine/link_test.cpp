@@ -31,14 +31,34 @@ Record two_agents(int rounds, int steps, const LinkFaults& faults,
 
 }  // namespace
 
-TEST_CASE("a late message is the sender's message of that many rounds ago") {
-  const Record one = two_agents(1, 3, {0.0, 1.0, 1}, {});
-  CHECK(one.estimate == Bulk<double>{0, 8, 0, 8, 2, 6, 3, 5});
-  CHECK(one.link.lost == 2);  // nothing that old at the first round
-  CHECK(one.link.late == 4);
-  const Record two = two_agents(2, 2, {0.0, 1.0, 1}, {});
-  CHECK(two.estimate == Bulk<double>{0, 8, 2, 6, 3.75, 4.25});
-  CHECK(two.link.late == 6);
+TEST_CASE("a late message is lost, by however many rounds it is late") {
+  const Record one = two_agents(1, 3, {0.0, 1.0, 1, {}, {}}, {});
+  CHECK(one.estimate == Bulk<double>{0, 8, 0, 8, 0, 8, 0, 8});
+  CHECK(one.link.late == 6);
+  CHECK(one.link.lost == 0);
+  const Record ten = two_agents(2, 2, {0.0, 1.0, 10, {}, {}}, {});
+  CHECK(ten.estimate == Bulk<double>{0, 8, 0, 8, 0, 8});
+  CHECK(ten.link.late == 8);
+}
+
+TEST_CASE("scheduled and recorded faults lose what they say, and nothing else") {
+  const Record cut =
+      two_agents(1, 3, {0.0, 0.0, 1, {{0, 1, 2, 3}}, {}}, {});  // at t = 2 agent 1 hears nothing
+  CHECK(cut.estimate == Bulk<double>{0, 8, 2, 6, 3, 6, 3.75, 5.25});
+  CHECK(cut.link.lost == 1);
+  const Record all = two_agents(1, 2, {0.0, 0.0, 1, {{-1, -1, 1, 2}}, {}}, {});
+  CHECK(all.estimate == Bulk<double>{0, 8, 0, 8, 2, 6});
+  const Record recorded = two_agents(2, 1, {0.0, 0.0, 1, {}, {{{1, 1, 1}, 0}}}, {});  // round 1, from 1 to 0
+  CHECK(recorded.estimate == Bulk<double>{0, 8, 2, 5});
+  CHECK(recorded.link.lost == 1);
+  CHECK_THROWS_WITH_AS(two_agents(1, 1, {0.0, 0.0, 1, {{0, 7, 0, 1}}, {}}, {}),
+                       doctest::Contains("link.cuts: got agent 7"), InvalidInput);
+}
+
+TEST_CASE("a liar that sends what it sent a sample ago as new is taken at its word") {
+  const Record r = two_agents(1, 2, {}, {outdated(Schedule(1, {0}), 1)});
+  CHECK(r.link.lost == 1);  // nothing that old yet
+  CHECK(r.estimate == Bulk<double>{0, 8, 2, 8, 3.5, 6});
 }
 
 TEST_CASE("only the victims of a forged message see it") {
@@ -78,14 +98,14 @@ TEST_CASE("faults at their extremes equal what they amount to") {
     const auto harmless = run({}, {forge(Schedule(1, {2, 5}), 0.0, false)});  // a lie that says the truth
     CHECK(same(perfect.estimate, harmless.estimate));
     CHECK(harmless.link.forged > 0);
-    const auto lost = run({1.0, 0.0, 1});
+    const auto lost = run({1.0, 0.0, 1, {}, {}});
     const auto silent = run({}, {silence(Schedule(1, {0, 1, 2, 3, 4, 5, 6}))});
     CHECK(same(lost.estimate, silent.estimate));
     CHECK(lost.link.sent == 0);
     CHECK(lost.link.lost == silent.link.lost);
     CHECK(lost.link.lost > 0);
-    const auto bad = run({0.3, 0.3, 2});
-    CHECK(same(bad.estimate, run({0.3, 0.3, 2}).estimate));
+    const auto bad = run({0.3, 0.3, 2, {}, {}});
+    CHECK(same(bad.estimate, run({0.3, 0.3, 2, {}, {}}).estimate));
     if (listens) CHECK(!same(bad.estimate, perfect.estimate));
   }
 }

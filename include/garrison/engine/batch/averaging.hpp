@@ -26,7 +26,7 @@ concept Averages = requires(const Local& l, const typename F::Gains& g, typename
   F::averaging(g).alpha;
   { F::template averaged<n>(s) } -> std::same_as<double*>;
   { F::template same_side_information<n>(s, s) } -> std::same_as<bool>;
-  F::template send<n>(s, 0, m);
+  F::template send<n>(s, m);
 };
 
 /// The estimates of all agents in one array. They stay there from step to step, and go to the agents' states
@@ -132,7 +132,7 @@ class AtOnce {
                                  estimate(k));
         alike = alike && same(begin, k);
       }
-      finite = finite && all_finite(estimate(first), (last - first) * row());
+      finite = finite && all_below(estimate(first), (last - first) * row(), kHuge);
     }
     return {finite, alike};
   }

@@ -13,7 +13,7 @@ namespace garrison {
 /// - `agreed()`: whether messages over perfect links would tell what neighbours can read directly; if so
 /// - `step(gains, local(0), t, y, wiring, workers)` is one sample without messages, `y(k)` being the
 ///   measurements of agent k; else `sense` agent by agent as ever, and then
-/// - `fuse(gains, local(0), inbox, outgoing, workers)`, the only round, from the inboxes `inbox(k)`.
+/// - `fuse(gains, local(0), inbox, workers)`, the only round, from the inboxes `inbox(k)`.
 /// Bits are those of agents on their own, for any number of threads; nothing is allocated after `start`.
 template <class F, int n>
 concept StepsTogether = n != Dynamic && requires { typename F::template Together<n>; };

@@ -33,17 +33,15 @@ void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, Stat
   }
   group.set_frozen(s.lane, steady);
   group.started = false;
-  s.t = 0;
   if (g.given)
     std::copy_n(x0.data(), nn, group.prediction(s.lane));
   else
     multiply<n>(l.A, x0.data(), group.prediction(s.lane), nn);
-  m.count = g.selection.shared(l.id);
   if constexpr (n == Dynamic) {
-    m.value.assign(static_cast<std::size_t>(m.count), 0.0);
-    m.entry.assign(static_cast<std::size_t>(m.count), 0);
+    m.value.assign(static_cast<std::size_t>(nn), 0.0);
+    m.entry.assign(static_cast<std::size_t>(nn), 0);
   }
-  m.t = -1;
+  m.count = g.selection.shared(l.id);
 }
 
 template <int n>
@@ -52,7 +50,6 @@ void PartialSharing::disagreement(const State<n>& s, const Inbox<Message<n>>& in
   std::fill_n(u, s.group->m, 0.0);
   for (std::size_t j = 0; j < inbox.size(); ++j) {
     const Message<n>& heard = inbox[j];
-    if (heard.t != s.t) continue;
     for (int k = 0; k < heard.count; ++k) {
       const auto a = heard.entry[static_cast<std::size_t>(k)];
       const double difference = heard.value[static_cast<std::size_t>(k)] - x[a];
@@ -63,12 +60,35 @@ void PartialSharing::disagreement(const State<n>& s, const Inbox<Message<n>>& in
 
 template <int n>
 void PartialSharing::fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
-                          Message<n>& m) noexcept {
+                          Message<n>&) noexcept {
   double* const u = s.group->room_for_one();
   disagreement<n>(s, inbox, u);
   partial_sharing::Outcome unused;
   partial_sharing::update(common(l, g), *s.group, u, s.group->x, unused);
-  m.t = -1;  // nothing to say before the next sample
+}
+
+template <int n>
+void PartialSharing::rejoin(const Local& l, const Gains&, const Inbox<Message<n>>& inbox, std::int64_t,
+                            State<n>& s) noexcept {
+  const int nn = dimension<n>(l);
+  partial_sharing::Group<n>& group = *s.group;
+  double* const next = group.prediction(s.lane);
+  for (int a = 0; a < nn; ++a) {
+    double& z = group.at(group.z, a, s.lane);
+    if (!(std::abs(z) < kHuge)) z = 0.0;
+    const double heard = median_of(inbox.size(), [&](std::size_t j) {
+      for (int k = 0; k < inbox[j].count; ++k)
+        if (inbox[j].entry[static_cast<std::size_t>(k)] == a)
+          return inbox[j].value[static_cast<std::size_t>(k)];
+      return kNaN;  // not shared at this sample
+    });
+    if (!std::isnan(heard)) z = heard;
+  }
+  for (int i = 0; i < nn; ++i) {
+    next[i] = 0.0;
+    for (int k = 0; k < nn; ++k)
+      next[i] += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * group.at(group.z, k, s.lane);
+  }
 }
 
 template <int n>
@@ -87,7 +107,7 @@ Report PartialSharing::report(const Local& l, const Gains&, const State<n>& s) n
     largest = std::max(largest, std::abs(e));
     used += std::isnan(group.at(group.y, r, s.lane)) ? 0 : 1;
   }
-  report.verdict = used == 0 ? Verdict::silent : Verdict::cleared;
+  report.verdict = used == 0 ? Verdict::silent : Verdict::not_tested;
   if (used > 0) report.statistic = largest;
   return report;
 }

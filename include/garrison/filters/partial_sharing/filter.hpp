@@ -13,9 +13,9 @@
 // alone. A z_i(t) is computed with z_i(t), so that `sense` only has to send it. Numbers are kept in groups of
 // agents side by side (group.hpp); an agent on its own is a group of one.
 //
-// Where we leave the print (our notes): C_i has no inverse of P_i, so singular covariances and agents without
-// sensors are ordinary; entries j did not share, or that are missing, too old or beyond kHuge, count as
-// agreeing. There is no screening: one liar moves the estimate without limit, in proportion to its lie. No
+// Where we leave the print: C_i has no inverse of P_i, so singular covariances and agents without
+// sensors are ordinary; entries j did not share, or that are missing or beyond kHuge, count as agreeing.
+// There is no screening and no test: one liar moves the estimate without limit, in proportion to its lie. No
 // bound is reported.
 #pragma once
 
@@ -61,6 +61,13 @@ struct GARRISON_EXPORT PartialSharing {
   /// The limit of an agent's recursion: gamma times the filtered covariance, and the gain of innovations.
   struct Steady {
     std::vector<double> P, G, K;
+
+    template <class V>
+    void visit(V& v) {
+      v("P", P);
+      v("G", G);
+      v("K", K);
+    }
   };
   struct Gains {
     double gamma = 0.0;
@@ -71,25 +78,68 @@ struct GARRISON_EXPORT PartialSharing {
     Matrix P0;
     bool given = false;  ///< the start is xhat(0) with P0, not an estimate one sample earlier
     bool freeze = true;
+
+    template <class V>
+    void visit(V& v) {
+      v("gamma", gamma);
+      v("selection", selection);
+      v("W", W);
+      v("steady", steady);
+      v("Q", Q);
+      v("P0", P0);
+      v("given", given);
+      v("freeze", freeze);
+    }
   };
+  /// What agent `id` needs of the gains; the entries that others share are few and stay.
+  static Gains part(const Gains& all, int id, std::span<const int>) {
+    const auto i = static_cast<std::size_t>(id);
+    Gains g{all.gamma, all.selection, {}, {}, all.Q, all.P0, all.given, all.freeze};
+    g.W.resize(all.W.size());
+    g.W[i] = all.W[i];
+    g.steady.resize(all.steady.size());
+    if (!g.steady.empty()) g.steady[i] = all.steady[i];
+    return g;
+  }
 
   template <int n>
   struct State {
     std::shared_ptr<partial_sharing::Group<n>> group;  // with the agent's numbers in lane `lane`
     int lane = 0;
-    std::int64_t t = 0;
     AgentSet nobody;
+
+    template <class V>
+    void visit(V& v) {
+      partial_sharing::Group<n>& g = *group;
+      const auto all = [&](const char* name, double* array, int count) {
+        for (int k = 0; k < count; ++k) v(name, g.at(array, k, lane));
+      };
+      all("innovations", g.y, g.q);
+      all("estimate", g.z, g.m);
+      all("P", g.P, partial_sharing::packed(g.m));
+      all("G", g.G, partial_sharing::packed(g.m));
+      all("K", g.K, g.q * g.m);
+      v("prediction", std::span<double>(g.prediction(lane), static_cast<std::size_t>(g.m)));
+      bool frozen = g.is_frozen(lane);
+      v("frozen", frozen);
+      g.set_frozen(lane, frozen);
+      v("started", g.started);
+    }
   };
 
-  /// On the wire: the shared entries. Which ones they are follows from the sender and the time.
+  /// The shared entries. Which ones they are follows from the sender and the time (`shape`), never from the
+  /// wire.
   template <int n>
   struct Message {
     std::conditional_t<n == Dynamic, std::vector<double>, std::array<double, n == Dynamic ? 1 : n>> value{};
     std::conditional_t<n == Dynamic, std::vector<int>, std::array<int, n == Dynamic ? 1 : n>> entry{};
     int count = 0;
-    std::int64_t t = -1;  // sample it speaks of; -1 = nothing yet
-    std::span<double> values() { return {value.data(), static_cast<std::size_t>(count)}; }
     std::span<const int> entries() const { return {entry.data(), static_cast<std::size_t>(count)}; }
+
+    template <class V>
+    void visit(V& v) {
+      v.numbers("shared", std::span<double>(value.data(), static_cast<std::size_t>(count)));
+    }
   };
 
   /// Detectability, sharing, and the three stability tests side by side; MSE with and without sharing.
@@ -106,23 +156,31 @@ struct GARRISON_EXPORT PartialSharing {
   template <int n>
   static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
                     Message<n>& m) noexcept {
-    const int nn = dimension<n>(l);
-    s.t = t;
     for (int r = 0; r < l.outputs; ++r) s.group->at(s.group->y, r, s.lane) = y[r];
     const double* const x = s.group->prediction(s.lane);
+    shape<n>(l, g, l.id, t, m);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(m.count); ++k) m.value[k] = x[m.entry[k]];
+  }
+  /// Which entries `sender` shares at sample t.
+  template <int n>
+  static void shape(const Local& l, const Gains& g, int sender, std::int64_t t, Message<n>& m) noexcept {
+    const int nn = dimension<n>(l);
     const int moved = g.selection.offset(t - 1);
-    const auto own = g.selection.entries(l.id);
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      const int a = own[k] + moved < nn ? own[k] + moved : own[k] + moved - nn;
-      m.entry[k] = a;
-      m.value[k] = x[a];
+    const auto shared = g.selection.entries(sender);
+    m.count = static_cast<int>(shared.size());
+    for (std::size_t k = 0; k < shared.size(); ++k) {
+      const int a = shared[k] + moved;
+      m.entry[k] = a < nn ? a : a - nn;
     }
-    m.t = t;
   }
 
   template <int n>
   static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
                    Message<n>& m) noexcept;
+  /// Entrywise median of the predictions that neighbours shared; entries that nobody shared stay.
+  template <int n>
+  static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t t,
+                     State<n>& s) noexcept;
 
   template <int n>
   static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept;

@@ -29,9 +29,15 @@ class GARRISON_EXPORT Selection {
   /// tau mod m
   int shift() const { return shift_; }
   /// Entries of agent i at k = 0, sorted; k samples later entry a has become (a + offset(k)) mod m.
-  std::span<const int> entries(int agent) const;
+  std::span<const int> entries(int agent) const {
+    const auto i = static_cast<std::size_t>(agent);
+    return std::span(entries_).subspan(first_[i], first_[i + 1] - first_[i]);
+  }
   int shared(int agent) const { return static_cast<int>(entries(agent).size()); }
-  int offset(std::int64_t k) const;
+  int offset(std::int64_t k) const {
+    const auto rest = static_cast<int>(((k % period_) + period_) % period_);
+    return rest * shift_ % states_;
+  }
 
   /// m / gcd(m, tau mod m); 1 when tau mod m = 0.
   int period() const { return period_; }
@@ -46,6 +52,15 @@ class GARRISON_EXPORT Selection {
   /// E{s s'} when every agent draws its own uniform subset, N m x N m: the exact second moment over random
   /// starts.
   Matrix moments_uniform() const;
+
+  template <class V>
+  void visit(V& v) {
+    v("entries", entries_);
+    v("first", first_);
+    v.range("states", states_, 1, 65535);
+    v.range("shift", shift_, 0, 65535);
+    v.range("period", period_, 1, 65535);
+  }
 
  private:
   std::vector<int> entries_;

@@ -71,8 +71,7 @@ class PartialSharing::Together {
 
   /// The same from inboxes, after every agent has sensed.
   template <class Inboxes, class Workers>
-  void fuse(const Gains& g, const Local& any, const Inboxes& inbox, Message<n>* out,
-            Workers& workers) noexcept {
+  void fuse(const Gains& g, const Local& any, const Inboxes& inbox, Workers& workers) noexcept {
     const partial_sharing::Common shared = common(any, g);
     each(workers, [&](std::size_t begin, std::size_t end, Outcome* outcome) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -81,7 +80,6 @@ class PartialSharing::Together {
         for (std::size_t lane = 0; lane < static_cast<std::size_t>(group.agents); ++lane) {
           const std::size_t k = i * Group::kLanes + lane;
           disagreement<n>(states_[k], inbox(k), u + lane * n);
-          out[k].t = -1;  // nothing to say before the next sample
         }
         partial_sharing::update(shared, group, u, next(i), *outcome);
       }

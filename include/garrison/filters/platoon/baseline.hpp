@@ -98,10 +98,23 @@ struct GARRISON_EXPORT PlatoonBaseline {
   struct Gains {
     Kind kind = Kind::pwm;
     platoon::Shared shared;
+
+    template <class V>
+    void visit(V& v) {
+      v.choice("kind", kind, 3);
+      v("shared", shared);
+    }
   };
   struct Driver : platoon::VehicleState {
     double heard[2][2] = {};  // y_jj(t-1) of the vehicles ahead and behind
     bool known[2] = {false, false};
+
+    template <class V>
+    void visit(V& v) {
+      platoon::VehicleState::visit(v);
+      v("heard", heard);
+      v("known", known);
+    }
   };
   template <int n>
   using State = Driver;
@@ -127,13 +140,19 @@ struct GARRISON_EXPORT PlatoonBaseline {
   }
   template <int n>
   static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
-                   Message<n>& m) noexcept {
-    fuse_one(l, g, s, inbox, m);
+                   Message<n>&) noexcept {
+    fuse_one(l, g, s, inbox);
+  }
+  /// Where the measurements of the sample see the vehicle; nothing else is remembered for long.
+  template <int n>
+  static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t t,
+                     State<n>& s) noexcept {
+    platoon::rejoin(l, g.shared, s, inbox, t);
   }
   template <int n>
   static Report report(const Local&, const Gains&, const State<n>& s) noexcept {
     Report r;
-    r.verdict = s.has_y ? Verdict::cleared : Verdict::silent;
+    r.verdict = s.has_y ? Verdict::not_tested : Verdict::silent;
     return r;
   }
   template <int n>
@@ -166,8 +185,8 @@ struct GARRISON_EXPORT PlatoonBaseline {
  private:
   static void sense_one(const Local& l, const Gains& g, Driver& s, const double* y, std::int64_t t,
                         platoon::VehicleMessage& m) noexcept;
-  static void fuse_one(const Local& l, const Gains& g, Driver& s, const Inbox<platoon::VehicleMessage>& inbox,
-                       platoon::VehicleMessage& m) noexcept;
+  static void fuse_one(const Local& l, const Gains& g, Driver& s,
+                       const Inbox<platoon::VehicleMessage>& inbox) noexcept;
 };
 
 }  // namespace garrison

@@ -89,10 +89,15 @@ inline double borrowed_bound(const Setting& s, double alpha, double alpha_j, int
          (s.eps * s.varpi + s.mu * distance + norm_A(s) * alpha_j) / s.varpi;
 }
 
+/// (19) of a vehicle behind a gap, which takes that prediction as it is.
+inline double anew_bound(const Setting& s, double alpha_j, int distance) noexcept {
+  return s.eps + s.mu * distance + norm_A(s) * alpha_j;
+}
+
 /// A vehicle that nothing arrived for: the prediction alone.
 inline double predicted_bound(const Setting& s, double alpha) noexcept { return norm_A(s) * alpha + s.eps; }
 
-/// Error of the componentwise median of the y_{i|j} (our notes, S3): while at most half of them less one lie,
+/// Error of the componentwise median of the y_{i|j} (S3): while at most half of them less one lie,
 /// every component lies between honest ones, which are within (L+1) mu.
 inline double median_bound(const Setting& s) noexcept { return std::sqrt(2.0) * mubar(s); }
 

@@ -56,6 +56,12 @@ class Suspicions {
     bool contradiction = false;  ///< no cover exists: more are attacked than assumed
   };
   /// `attacked`, `free`: what is known already. `budget` >= 0: most attacked sensors of the window.
+  template <class V>
+  void visit(V& v) {
+    v.range("size", size_, 0, 2 * kMostRange + 1);
+    v("touched", touched_);
+    v("edges", edges_);
+  }
   Verdicts conclude(std::uint64_t attacked, std::uint64_t free, int budget) const noexcept;
 
  private:

@@ -11,11 +11,14 @@
 //   steer        u_i(t)                                                                       [Algorithm 3]
 // At t = 0 estimates are exchanged and u_i(0) follows; nothing is measured.
 //
-// Where we leave the print (our notes on the paper): the bound of vehicles that hear 2L others is the valid
-// one (printed (17) is false), (28) compares with xbar_i(t), runs in (29) are maximal. Missing measurements
-// and late or lost messages have gain 0 and the bound counts without them; sets in late messages are used,
-// because they only grow. A vehicle whose data contradict the assumptions (more than b attackers, a sensor
-// both attacked and free) says so in the signal `trouble` and reports no bound from then on.
+// Where we leave the print: the bound of vehicles that hear 2L others is the valid
+// one (the published (17) is false), (28) compares with xbar_i(t), runs in (29) are maximal. Missing
+// measurements and lost messages have gain 0 and the bound counts without them. A vehicle that has just
+// (re)started takes the median of what all sensors in range say of it (S3), or its best source, and has a
+// bound again from then on. A vehicle that lies in its messages is outside all of this: it can have anybody
+// isolated by forging `attacked`, and its prediction steers its neighbours; drivers drop bounds when that is
+// simulated. A vehicle whose data contradict the assumptions (more than b attackers, a sensor both attacked
+// and free) says so in the signal `trouble` and reports no bound from then on.
 #pragma once
 
 #include <memory>
@@ -214,8 +217,26 @@ struct GARRISON_EXPORT Platoon {
   }
   template <int n>
   static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
-                   Message<n>& m) noexcept {
-    platoon::fuse(l, g, s, inbox, m);
+                   Message<n>&) noexcept {
+    platoon::fuse(l, g, s, inbox);
+  }
+  template <int n>
+  static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t t,
+                     State<n>& s) noexcept {
+    platoon::rejoin(l, g, s, inbox, t);
+  }
+  /// No bound, no test and no steering until the next sample in which enough is heard (observe).
+  template <int n>
+  static void uncover(const Gains&, State<n>& s) noexcept {
+    s.alpha = kNaN;
+    s.u = 0.0;
+  }
+  /// What vehicle `id` needs of the gains: the rest of the priors is dropped.
+  static Gains part(const Gains& all, int id, std::span<const int>) {
+    Gains g = all;
+    g.priors.assign(all.priors.size(), {});
+    if (!g.priors.empty()) g.priors[static_cast<std::size_t>(id)] = all.priors[static_cast<std::size_t>(id)];
+    return g;
   }
   template <int n>
   static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept {

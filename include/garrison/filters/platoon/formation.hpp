@@ -14,6 +14,12 @@ namespace garrison::platoon {
 struct Motion {
   double s;
   double v;
+
+  template <class V>
+  void visit(V& visitor) {
+    visitor("s", s);
+    visitor("v", v);
+  }
 };
 
 /// Reference x_0(t), spacing and gains of Algorithm 3, which all vehicles know.
@@ -23,6 +29,15 @@ struct Formation {
   double spacing = kNaN;          ///< x_i^*(t) = x_0(t) - (i spacing, 0), i = 0..N-1
   double gs = kNaN;               ///< g_s > 0
   double gv = kNaN;               ///< g_v > T g_s
+
+  template <class V>
+  void visit(V& v) {
+    v("reference", reference);
+    v("period", period);
+    v("spacing", spacing);
+    v("gs", gs);
+    v("gv", gv);
+  }
 
   Motion reference_at(std::int64_t t) const noexcept {
     const auto known = static_cast<std::int64_t>(reference.size());

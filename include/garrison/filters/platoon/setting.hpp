@@ -10,6 +10,9 @@
 
 namespace garrison::platoon {
 
+/// Sets of a window of 2 L + 1 vehicles are kept in the bits of one word.
+inline constexpr int kMostRange = 31;
+
 /// What Assumptions 1 and 2 and the observer's tuning say. Units: m, m/s, s.
 struct Setting {
   int vehicles = 0;      ///< N >= 2 L + 1, so that somebody hears 2 L others
@@ -22,10 +25,21 @@ struct Setting {
   double varpi = 2.0;    ///< 1/varpi is the gain of vehicles outside V_1; in (1, ||A||/(||A||-1))
   double beta = kNaN;    ///< static threshold, or beta_{i,0} of (25), > 0
   bool adaptive = true;  ///< (25); false: beta_i(t) = beta
-};
 
-/// Sets of a window of 2 L + 1 vehicles are kept in the bits of one word.
-inline constexpr int kMostRange = 31;
+  template <class V>
+  void visit(V& v) {
+    v.range("vehicles", vehicles, 1, 65535);
+    v.range("range", range, 1, kMostRange);
+    v("period", period);
+    v.range("attacked", attacked, 0, 65535);
+    v("eps", eps);
+    v("mu", mu);
+    v("q", q);
+    v("varpi", varpi);
+    v("beta", beta);
+    v("adaptive", adaptive);
+  }
+};
 
 /// ||A|| of A = (1 T; 0 1): T/2 + sqrt(1 + T^2/4), > 1.
 inline double norm_A(double period) noexcept { return period / 2.0 + std::sqrt(1.0 + period * period / 4.0); }

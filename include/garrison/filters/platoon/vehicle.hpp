@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "garrison/core/filter.hpp"
+#include "garrison/core/label_set.hpp"
 #include "garrison/filters/platoon/detector.hpp"
 #include "garrison/filters/platoon/formation.hpp"
-#include "garrison/filters/platoon/label_set.hpp"
 #include "garrison/filters/platoon/setting.hpp"
 
 namespace garrison::platoon {
 
 enum class BoundKind : std::uint8_t { safe, tight, printed };
 
-/// Which variants run; the defaults are the paper with our notes' corrections.
+/// Which variants run; the defaults are the paper with its errors mended.
 struct Options {
   bool detector = true;
   BoundKind bound = BoundKind::safe;
@@ -27,11 +27,30 @@ struct Options {
   bool neighbours = false;      ///< S6: (28) for every neighbour
   bool median = false;          ///< S3: the median where its bound is smaller
   bool accuse_missing = false;  ///< a missing (NaN) absolute measurement counts as proof
+
+  template <class V>
+  void visit(V& v) {
+    v("detector", detector);
+    v.choice("bound", bound, 3);
+    v("tie_by_bound", tie_by_bound);
+    v("cover", cover);
+    v("pairs", pairs);
+    v("neighbours", neighbours);
+    v("median", median);
+    v("accuse_missing", accuse_missing);
+  }
 };
 
 /// Sets that a vehicle is told before the start.
 struct Prior {
   std::vector<int> attacked, suspected, free;
+
+  template <class V>
+  void visit(V& v) {
+    v("attacked", attacked);
+    v("suspected", suspected);
+    v("free", free);
+  }
 };
 
 /// Shared by all vehicles.
@@ -42,6 +61,16 @@ struct Shared {
   std::vector<Prior> priors;  ///< per vehicle, or empty
   int room = 0;               ///< most members of an attacked or suspected set
   int room_free = 0;          ///< most listed labels of a free set
+
+  template <class V>
+  void visit(V& v) {
+    v("setting", setting);
+    v("options", options);
+    v("formation", formation);
+    v("priors", priors);
+    v.range("room", room, 0, LabelSet::kMost);
+    v.range("room_free", room_free, 0, 65535);
+  }
 };
 
 /// Why a vehicle no longer vouches: the data contradict Assumptions 1 and 2. Bits.
@@ -58,12 +87,19 @@ enum Trouble : unsigned {
 /// The three sets of Algorithm 2. With Options::cover, `suspected` holds pairs: e stands for (e, e+1).
 struct Sets {
   LabelSet attacked, suspected, free;
+
+  template <class V>
+  void visit(V& v) {
+    v("attacked", attacked);
+    v("suspected", suspected);
+    v("free", free);
+  }
 };
 
 struct VehicleState {
   Vec<2> x = Vec<2>::Zero();           ///< xhat_i(t)
   Vec<2> prediction = Vec<2>::Zero();  ///< xbar_i(t)
-  double alpha = kNaN;                 ///< alpha_i(t)
+  double alpha = kNaN;                 ///< alpha_i(t); NaN: a gap lies behind this estimate
   double beta = kNaN;                  ///< beta_i(t); NaN outside V_1
   double u = 0.0;                      ///< u_i(t) of Algorithm 3
   double applied = kNaN;               ///< recorded input since t; NaN = u
@@ -83,27 +119,70 @@ struct VehicleState {
   Sets sets;
   std::unique_ptr<double[]> gains;         ///< k_{i,m} (14), m = i-L..i+L; V_1 only
   std::unique_ptr<Suspicions> suspicions;  ///< Options::pairs only
+
+  template <class V>
+  void visit(V& v) {
+    v("estimate", x);
+    v("prediction", prediction);
+    v("alpha", alpha);
+    v("beta", beta);
+    v("u", u);
+    v("applied", applied);
+    v("y", y);
+    v("link", link);
+    v("innovation", innovation);
+    v("level", level);
+    v("gap", gap);
+    v("t", t);
+    v.range("source", source, -1, 65535);
+    v("trouble", trouble);
+    v("has_y", has_y);
+    v("has_link", has_link);
+    v("impossible", impossible);
+    v("changed", changed);
+    v.choice("verdict", verdict, kVerdicts);
+    v("sets", sets);
+    if (gains != nullptr)
+      for (int k = 0; k < window; ++k) v("gains", gains[static_cast<std::size_t>(k)]);
+    if (suspicions != nullptr) v("suspicions", *suspicions);
+  }
+  int window = 0;  ///< 2 L + 1, the size of gains
 };
 
 struct VehicleMessage {
-  int sender = 0;
-  std::int64_t t = -1;  ///< sample it was sent in: an old message is recognised
   bool has_y = false;
   bool has_link = false;
   bool doubt = false;      ///< the sender's data contradict the assumptions
-  double numbers[7] = {};  ///< y_ii, y_{i-1,i}, xbar_i(t), alpha_i(t-1)
+  double numbers[6] = {};  ///< y_ii, y_{i-1,i}, xbar_i(t)
+  double alpha = kNaN;     ///< alpha_i(t-1); NaN: nothing is known of xbar_i(t)
   Sets sets;               ///< of t-1
-  std::span<double> values() { return numbers; }
+
+  template <class V>
+  void visit(V& v) {
+    v.numbers("absolute", std::span<double>(numbers, 2));
+    v.numbers("relative", std::span<double>(numbers + 2, 2));
+    v.numbers("prediction", std::span<double>(numbers + 4, 2));
+    v.optional("bound", alpha);
+    v.flag("has_absolute", has_y);
+    v.flag("has_relative", has_link);
+    v.flag("doubt", doubt);
+    v.labels("attacked", sets.attacked);
+    v.labels("suspected", sets.suspected);
+    v.labels("free", sets.free);
+  }
+  bool covered() const { return !std::isnan(alpha); }
   const double* y() const { return numbers; }
   const double* link() const { return numbers + 2; }
   const double* prediction() const { return numbers + 4; }
-  double alpha() const { return numbers[6]; }
 };
 
 void start(const Local& local, const Shared& shared, const Vec<2>& x0, VehicleState& s, VehicleMessage& m);
 void sense(const Local& local, const Shared& shared, VehicleState& s, const double* y, std::int64_t t,
            VehicleMessage& m) noexcept;
-void fuse(const Local& local, const Shared& shared, VehicleState& s, const Inbox<VehicleMessage>& inbox,
-          VehicleMessage& m) noexcept;
+void fuse(const Local& local, const Shared& shared, VehicleState& s,
+          const Inbox<VehicleMessage>& inbox) noexcept;
+/// What a vehicle makes of the messages of one sample when its own past is of no use: S3 or its best source.
+void rejoin(const Local& local, const Shared& shared, VehicleState& s, const Inbox<VehicleMessage>& inbox,
+            std::int64_t t) noexcept;
 
 }  // namespace garrison::platoon

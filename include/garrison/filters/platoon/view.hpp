@@ -11,7 +11,7 @@ namespace garrison::platoon {
 
 /// One vehicle in range.
 struct Seen {
-  const VehicleMessage* message;  ///< of this very sample; null = lost, late, or the vehicle itself
+  const VehicleMessage* message;  ///< null = lost, or the vehicle itself
   bool linked;                    ///< all relative measurements between us arrived
   bool measured;                  ///< linked, and its absolute measurement arrived
   double link[2];                 ///< S(i, j): y_{i|j} = y_jj + S(i, j)
@@ -24,8 +24,7 @@ class View {
   View(int id, int vehicles, int range, const VehicleState& s, const Inbox<VehicleMessage>& inbox) noexcept
       : id_(id), vehicles_(vehicles), range_(range) {
     for (int p = 0; p < size(); ++p) at(p) = {nullptr, false, false, {0.0, 0.0}, {0.0, 0.0}};
-    for (std::size_t k = 0; k < inbox.size(); ++k)
-      if (inbox[k].t == s.t) at(inbox[k].sender - id + range).message = &inbox[k];
+    for (std::size_t k = 0; k < inbox.size(); ++k) at(inbox.sender(k) - id + range).message = &inbox[k];
     Seen& own = at(range);
     own.linked = true;
     own.measured = s.has_y;

@@ -23,6 +23,23 @@ struct AgentGains {
   double quiet_level = 0.0;      ///< a whitened residual of the prediction below this does not saturate
   std::vector<double> reach;     ///< run-time bound: what of the error of each agent in `heard` comes in
   double rounding = 0.0;         ///< run-time bound: rounding of x0 per unit of the information vectors
+
+  template <class V>
+  void visit(V& v) {
+    v("heard", heard);
+    v("J", J);
+    v("F", F);
+    v("step", step);
+    v("box", box);
+    v("blocks", blocks);
+    v("Q", Q);
+    v("M", M);
+    v("whitener", whitener);
+    v("deviation_bound", deviation_bound);
+    v("quiet_level", quiet_level);
+    v("reach", reach);
+    v("rounding", rounding);
+  }
 };
 
 /// What design leaves for the run.
@@ -35,6 +52,18 @@ struct Gains {
   double initial_error = kNaN;
   double process_bound = 0.0;
   int most_outputs = 0;  ///< largest q_i, for messages that carry measurements
+
+  template <class V>
+  void visit(V& v) {
+    v("agents", agents);
+    v.choice("penalty", penalty, 4);
+    v("price", price);
+    v("ipopt", ipopt);
+    v("bounded", bounded);
+    v("initial_error", initial_error);
+    v("process_bound", process_bound);
+    v.range("most_outputs", most_outputs, 0, 65535);
+  }
 };
 
 /// Room and results of one agent's steps; sized once.

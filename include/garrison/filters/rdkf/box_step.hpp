@@ -21,6 +21,15 @@ struct GARRISON_EXPORT BoxFactors {
     const auto q = static_cast<std::size_t>(M.rows());
     return q * q + 8 * q;
   }
+
+  template <class V>
+  void visit(V& v) {
+    v("R", R);
+    v("M", M);
+    v("W", W);
+    v("H", H);
+    v("proximal", proximal);
+  }
 };
 
 GARRISON_EXPORT BoxFactors box_factors(const MatrixRef& whitener, const MatrixRef& C, const MatrixRef& Q);

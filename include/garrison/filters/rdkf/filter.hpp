@@ -24,12 +24,17 @@ namespace garrison {
 /// b = Sv^-1/2 y, M = Sv^-1/2 C, penalty lambda |r| in the paper. Whatever is measured moves the estimate by
 /// at most half of (10) from x0. Steady-state covariances from (5) in the appendix' reading (our notes, 1).
 ///
-/// A neighbour that is missing or late counts as holding this agent's own previous estimate. A measurement
+/// A neighbour that is missing counts as holding this agent's own previous estimate. A measurement
 /// with an entry that is not finite (or beyond kHuge) counts as none: the estimate is x0.
 ///
 /// With `initial_error` and process_bound known, agents also carry a bound on their error, from their
 /// neighbours' bounds and from how far their own measurement moved them: it holds under every attack on
-/// measurements, but grows without end where nothing decays.
+/// measurements, but grows without end where nothing decays. After a restart there is none, here and at all
+/// who hear of it, until a certificate of another kind takes over.
+///
+/// The pull of a *measurement* is limited, that of a message is not: one agent that lies in its messages
+/// moves its neighbours without limit, in proportion to its lie, and a forged `bound` makes theirs false:
+/// drivers drop all bounds when such an attack is simulated.
 struct GARRISON_EXPORT Rdkf {
   static constexpr std::string_view name = "rdkf";
   static constexpr std::string_view title = "Resilient distributed Kalman filter";
@@ -95,24 +100,41 @@ struct GARRISON_EXPORT Rdkf {
   struct State {
     Vec<n> x;  // xhat_i(k)
     Vec<n> z;  // own information vector
-    std::int64_t t = 0;
     double bound = kNaN;
     int saturated = 0;  // steps in a row
     bool measured = false;
     rdkf::Workspace work;
+
+    template <class V>
+    void visit(V& v) {
+      v("estimate", x);
+      v("z", z);
+      v("bound", bound);
+      v.range("saturated", saturated, 0, INT32_MAX);
+      v("measured", measured);
+      v("deviation", work.deviation);
+      v("mu", work.step.mu);
+      v.range("iterations", work.step.iterations, 0, INT32_MAX);
+    }
   };
   template <int n>
   struct Message {
-    int sender = 0;
-    std::int64_t t = 0;  // sample it was sent in: an old message is recognised
     double bound = kNaN;
     bool measured = false;  // the measurement in `extended` is one
     Vec<n> z;
     Vector extended;  // penalty group: z, then y filled up with zeros
-    std::span<double> values() {
-      if (extended.size() != 0) return {extended.data(), static_cast<std::size_t>(extended.size())};
-      return {z.data(), static_cast<std::size_t>(z.size())};
+
+    template <class V>
+    void visit(V& v) {
+      const auto states = static_cast<std::size_t>(z.size());
+      v.numbers("information", std::span<double>(information(), states));
+      if (extended.size() != 0)
+        v.numbers("measurement", std::span<double>(extended.data() + states,
+                                                   static_cast<std::size_t>(extended.size()) - states));
+      v.optional("bound", bound);
+      v.flag("measured", measured);
     }
+    double* information() { return extended.size() != 0 ? extended.data() : z.data(); }
     const double* information() const { return extended.size() != 0 ? extended.data() : z.data(); }
   };
 
@@ -124,6 +146,16 @@ struct GARRISON_EXPORT Rdkf {
   /// What a user should know of a run: most agents saturated for long although the plant is unstable.
   static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
   static int rounds(const Gains&) { return 1; }
+  /// What agent `id` needs of the gains: its own, and J of those it hears (to stand in for what they miss to
+  /// send).
+  static Gains part(const Gains& all, int id, std::span<const int> neighbours) {
+    Gains g = all;
+    g.agents.assign(all.agents.size(), {});
+    for (const int j : neighbours)
+      g.agents[static_cast<std::size_t>(j)].J = all.agents[static_cast<std::size_t>(j)].J;
+    g.agents[static_cast<std::size_t>(id)] = all.agents[static_cast<std::size_t>(id)];
+    return g;
+  }
 
   template <int n>
   static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
@@ -132,17 +164,14 @@ struct GARRISON_EXPORT Rdkf {
     fresh.bound = g.bounded ? g.initial_error : kNaN;
     fresh.work.resize(g, g.agents[static_cast<std::size_t>(l.id)], l.states);
     m.extended = Vector::Zero(g.penalty == rdkf::Penalty::group ? l.states + g.most_outputs : 0);
-    m.sender = l.id;
-    m.t = 0;
     m.measured = false;
     s = std::move(fresh);
   }
 
   template <int n>
-  static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
+  static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t,
                     Message<n>& m) noexcept {
     const rdkf::AgentGains& a = g.agents[static_cast<std::size_t>(l.id)];
-    s.t = t;
     rdkf::multiply(a.J, s.x.data(), s.work.product);
     for (int k = 0; k < dimension<n>(l); ++k) s.z[k] = s.work.product[k];
     s.measured = l.outputs > 0;
@@ -169,8 +198,8 @@ struct GARRISON_EXPORT Rdkf {
       double error = s.bound;
       bool measured = s.measured;
       if (id != l.id) {
-        while (next < inbox.size() && inbox[next].sender < id) ++next;
-        if (next < inbox.size() && inbox[next].sender == id && inbox[next].t == s.t) {
+        while (next < inbox.size() && inbox.sender(next) < id) ++next;
+        if (next < inbox.size() && inbox.sender(next) == id) {
           const Message<n>& heard = inbox[next];
           z = heard.information();
           error = heard.bound;
@@ -195,8 +224,38 @@ struct GARRISON_EXPORT Rdkf {
     rdkf::advance(g, a, some, w);
     for (int k = 0; k < nn; ++k) s.x[k] = w.x[k];
     if (g.bounded) s.bound = (bound + w.deviation) * (1.0 + 1e-12) + a.rounding * size;
+    if (!(s.bound < kHuge)) s.bound = kNaN;  // it says nothing any more
     s.saturated = w.step.mu > 0.0 && some ? s.saturated + 1 : 0;
     send(l, g, s, nullptr, m);
+  }
+
+  /// The fused prediction x0 with the entrywise median of the neighbours' information vectors in place of its
+  /// own, and of those that are missing.
+  template <int n>
+  static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t,
+                     State<n>& s) noexcept {
+    const int nn = dimension<n>(l);
+    const rdkf::AgentGains& a = g.agents[static_cast<std::size_t>(l.id)];
+    rdkf::Workspace& w = s.work;
+    if (inbox.size() > 0) {
+      median_into<n>(inbox.size(), [&](std::size_t k) { return inbox[k].information(); }, s.z);
+      const auto missing = static_cast<double>(a.heard.size() - inbox.size());
+      for (int k = 0; k < nn; ++k) {
+        w.sum[k] = missing * s.z[k];
+        for (std::size_t j = 0; j < inbox.size(); ++j) w.sum[k] += inbox[j].information()[k];
+      }
+      s.measured = false;
+      rdkf::advance(g, a, false, w);
+      for (int k = 0; k < nn; ++k) s.x[k] = w.x[k];
+    }
+    if (!usable<n>(s.x)) s.x.setZero();
+    s.saturated = 0;
+    uncover<n>(g, s);
+  }
+  /// Nobody knows how far a state behind a gap is off.
+  template <int n>
+  static void uncover(const Gains&, State<n>& s) noexcept {
+    s.bound = kNaN;
   }
 
   template <int n>
@@ -205,9 +264,10 @@ struct GARRISON_EXPORT Rdkf {
     r.bound = std::isfinite(s.bound) ? s.bound : kNaN;
     r.statistic = s.work.deviation;
     r.threshold = g.agents[static_cast<std::size_t>(l.id)].deviation_bound;
-    r.verdict = s.t == 0 || !s.measured || g.price.lambda == 0.0 ? Verdict::silent
-                : s.work.step.mu > 0.0                           ? Verdict::suspected
-                                                                 : Verdict::cleared;
+    r.verdict = !s.measured || g.price.lambda == 0.0 ? Verdict::silent
+                : s.work.step.mu > 0.0               ? Verdict::suspected
+                : std::isfinite(g.price.lambda)      ? Verdict::cleared
+                                                     : Verdict::not_tested;
     return r;
   }
   template <int n>
@@ -254,7 +314,6 @@ struct GARRISON_EXPORT Rdkf {
   template <int n>
   static void send(const Local& l, const Gains& g, const State<n>& s, const double* y,
                    Message<n>& m) noexcept {
-    m.t = s.t;
     m.z = s.z;
     m.bound = s.bound;
     m.measured = s.measured && y != nullptr;

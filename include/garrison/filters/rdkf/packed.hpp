@@ -31,6 +31,13 @@ struct Packed {
         values(static_cast<std::size_t>(height) * static_cast<std::size_t>(columns), 0.0) {
     for (int c = 0; c < columns; ++c) std::copy_n(m.col(c).eval().data(), rows, values.data() + c * height);
   }
+  template <class V>
+  void visit(V& v) {
+    v.range("rows", rows, 0, 65535);
+    v.range("columns", columns, 0, 65535);
+    v.range("height", height, 0, 65535 + kGroup);
+    v("values", values);
+  }
   Matrix dense() const { return Eigen::Map<const Matrix>(values.data(), height, columns).topRows(rows); }
 };
 

@@ -33,6 +33,14 @@ struct GARRISON_EXPORT StepFactors {
   int states() const { return K.columns; }
   /// Doubles of room that a step needs.
   std::size_t room() const { return static_cast<std::size_t>(4 * padded(outputs()) + padded(states())); }
+
+  template <class V>
+  void visit(V& v) {
+    v("R", R);
+    v("K", K);
+    v("W", W);
+    v("d", d);
+  }
 };
 
 /// @param whitener Sv^-1/2, q x q; @param C q x n; @param Q n x n, symmetric positive definite
@@ -43,7 +51,13 @@ GARRISON_EXPORT StepFactors step_factors(const MatrixRef& whitener, const Matrix
 /// The other choices of one step.
 struct Price {
   double lambda = 1.0;     ///< >= 0
-  double smoothing = 0.0;  ///< eps >= 0: lambda sqrt(|r|^2 + eps^2) instead of lambda |r| (notes 3.3)
+  double smoothing = 0.0;  ///< eps >= 0: lambda sqrt(|r|^2 + eps^2) instead of lambda |r|
+
+  template <class V>
+  void visit(V& v) {
+    v("lambda", lambda);
+    v("smoothing", smoothing);
+  }
 };
 
 /// How a step ended.

@@ -11,11 +11,12 @@
 // Letters: beta saturation level, L rounds, alpha step, s most sensors attacked, I_i set of proved sensors,
 // d_i its size, rhobar_i the bound on the mean error (14), p(t) the bound on the disagreement (10).
 //
-// Where we leave the print (our notes on the paper): the test has a rounding guard; "= s" in line 6 reads
-// ">= s"; a bound is reported only by an agent that still tests, because (16) is false for the others; an
-// agent that missed a message or got an old one, or heard from one that did, reports no bound. Bounds cover
-// attacked sensors, not agents that lie in their messages: drivers drop them when such an attack is
-// simulated.
+// Where we leave the print: the test has a rounding guard; "= s" in line 6 reads ">= s"; a bound is reported
+// only by an agent that still tests, because (16) is false for the others; an agent that missed a message, or
+// heard from one that did, reports no bound, tests nothing, and its set is not united with others.
+// Bounds and proofs cover attacked sensors, not agents that lie in their messages: one liar that forges
+// `proved` has anybody isolated, one that clears `intact` switches all tests off; drivers say so when such an
+// attack is simulated, and drop the bounds.
 #pragma once
 
 #include <algorithm>
@@ -73,6 +74,23 @@ struct GARRISON_EXPORT Saturation {
     double p0 = kNaN;     ///< (8)
     double beta = kInfinity;
     saturation::Setting setting;
+
+    template <class V>
+    void visit(V& v) {
+      v("alpha", alpha);
+      v("omega", omega);
+      v.range("rounds", rounds, 1, 1000);
+      v("bounded", bounded);
+      v("detector", detector);
+      v("sharp_index", sharp_index);
+      v("adaptive", adaptive);
+      v("accuse_missing", accuse_missing);
+      v("varpi", varpi);
+      v("q0", q0);
+      v("p0", p0);
+      v("beta", beta);
+      v("setting", setting);
+    }
   };
 
   template <int n>
@@ -82,23 +100,41 @@ struct GARRISON_EXPORT Saturation {
     double level = kNaN;       // in force at t: phi_i of the detector, or the adaptive beta
     double rho = kNaN;         // rho or rhobar_i at t-1
     double p = kNaN;           // p at t-1
-    std::int64_t t = 0;
-    int d = 0;           // |I_i(t-1)|
-    bool intact = true;  // no message is missing or old behind this estimate
-    Verdict verdict = Verdict::cleared;
+    int d = 0;                 // |I_i(t-1)|
+    bool started = false;      // rho and p have moved on from the start
+    bool intact = true;        // no message is missing behind this estimate, and the start was covered
+    Verdict verdict = Verdict::not_tested;
     AgentSet proved;                       // I_i
     std::unique_ptr<double[]> prediction;  // room for A xhat_i(t-1) where n is not known when compiling
     std::unique_ptr<double[]> previous;    // the estimate one round ago; Chebyshev only
+
+    template <class V>
+    void visit(V& v) {
+      v("estimate", x);
+      v("innovation", innovation);
+      v("level", level);
+      v("rho", rho);
+      v("p", p);
+      v.range("d", d, 0, INT32_MAX);
+      v("started", started);
+      v("intact", intact);
+      v.choice("verdict", verdict, kVerdicts);
+      v("proved", proved);
+    }
   };
 
   template <int n>
   struct Message {
     Vec<n> x;
-    std::int64_t t = 0;  // sample and round it was sent in: an old message is recognised
-    int round = 0;
     bool intact = true;
     AgentSet proved;
-    std::span<double> values() { return {x.data(), static_cast<std::size_t>(x.size())}; }
+
+    template <class V>
+    void visit(V& v) {
+      v.numbers("estimate", x);
+      v.flag("intact", intact);
+      v.set("proved", proved);
+    }
   };
 
   /// Step and weights of the rounds, for drivers that average the whole network at once.
@@ -143,15 +179,15 @@ struct GARRISON_EXPORT Saturation {
     double* const prediction = n == Dynamic ? s.prediction.get() : on_stack;
     multiply<n>(l.A, s.x.data(), prediction, nn);
     update<n>(l, g, s, y, t, prediction, s.x.data());
-    send(s, 0, m);
+    send(s, m);
   }
 
   /// `sense` from A xhat_i(t-1) on and without its message, for drivers that average the whole network at
   /// once: they keep the estimates themselves, and may be compiled for wider registers (kernel/isa.hpp).
   template <int n, int most = 2>
   GARRISON_INLINE static void update(const Local& l, const Gains& g, State<n>& s, const double* y,
-                                     std::int64_t t, const double* prediction, double* estimate) noexcept {
-    advance_bounds(g, s, t);
+                                     std::int64_t, const double* prediction, double* estimate) noexcept {
+    advance_bounds(g, s);
     const int nn = dimension<n>(l);
     copy<n, most>(prediction, estimate, nn);
     const bool proved = g.detector && s.proved.contains(l.id);
@@ -176,7 +212,8 @@ struct GARRISON_EXPORT Saturation {
       } else if (informed) {
         injected = h;  // (b) all attackers are known, no test
         ++used;
-      } else if (g.detector && exceeds(std::abs(h), s.level, std::abs(y[r]), std::abs(expected_y))) {
+      } else if (g.detector && s.intact &&
+                 exceeds(std::abs(h), s.level, std::abs(y[r]), std::abs(expected_y))) {
         accused = true;  // (c) proof (15)
       } else {
         injected = std::clamp(h, -beta, beta);  // (d) = k h with k of (4), without 0/0
@@ -190,10 +227,12 @@ struct GARRISON_EXPORT Saturation {
       copy<n, most>(prediction, estimate, nn);
       s.proved.insert(l.id);
     }
-    s.verdict = proved || accused ? Verdict::attacked
-                : used == 0       ? Verdict::silent
-                : limited > 0     ? Verdict::suspected
-                                  : Verdict::cleared;
+    s.verdict = proved || accused                            ? Verdict::attacked
+                : used == 0                                  ? Verdict::silent
+                : limited > 0                                ? Verdict::suspected
+                : informed                                   ? Verdict::cleared
+                : (g.detector ? s.intact : beta < kInfinity) ? Verdict::cleared
+                                                             : Verdict::not_tested;
   }
 
   template <int n>
@@ -203,19 +242,35 @@ struct GARRISON_EXPORT Saturation {
     const double omega = g.omega.empty() ? 1.0 : g.omega[static_cast<std::size_t>(round)];
     average_round<n>(nn, g.alpha, omega, s.x.data(), s.previous.get(), inbox.size(),
                      [&](std::size_t k) { return inbox[k].x.data(); });
-    // Estimates and sets travel in one message: the proof of "no false accusation" rests on it.
-    if (inbox.size() < static_cast<std::size_t>(l.degree)) s.intact = false;
+    // Estimates and sets travel in one message: the proof of "no false accusation" rests on it. A set of an
+    // agent that a gap lies behind proves nothing.
+    if (!inbox.complete()) s.intact = false;
     for (std::size_t k = 0; k < inbox.size(); ++k) {
-      s.intact = s.intact && inbox[k].intact && inbox[k].t == s.t && inbox[k].round == round;
-      if (g.detector) s.proved.unite(inbox[k].proved);
+      s.intact = s.intact && inbox[k].intact;
+      if (g.detector && inbox[k].intact) s.proved.unite(inbox[k].proved);
     }
-    send(s, round + 1, m);
+    send(s, m);
+  }
+
+  /// Entrywise median of what the neighbours sent: less than half of them lie, so no liar moves it beyond the
+  /// honest ones.
+  template <int n>
+  static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t,
+                     State<n>& s) noexcept {
+    if (s.previous != nullptr)
+      std::fill_n(s.previous.get(), dimension<n>(l), 0.0);  // it may be what overflowed
+    median_into<n>(inbox.size(), [&](std::size_t k) { return inbox[k].x.data(); }, s.x);
+    uncover<n>(g, s);
+  }
+  template <int n>
+  static void uncover(const Gains&, State<n>& s) noexcept {
+    s.intact = false;
   }
 
   /// The rounds would change nothing but the average if both agents carry the same side information.
   template <int n>
   static bool same_side_information(const State<n>& a, const State<n>& b) noexcept {
-    return a.intact && b.intact && a.proved == b.proved;
+    return a.intact == b.intact && a.proved == b.proved;
   }
 
   /// Where a driver that averages at once reads and writes the estimate.
@@ -279,23 +334,21 @@ struct GARRISON_EXPORT Saturation {
 
   /// Moves rho and p to t-1 and sets the level in force at t; data-free without the detector.
   template <int n>
-  static void advance_bounds(const Gains& g, State<n>& s, std::int64_t t) noexcept {
+  static void advance_bounds(const Gains& g, State<n>& s) noexcept {
     const double rho = rho_now(g, s);
     s.p = p_now(g, s);
     s.rho = rho;
-    s.t = t;
+    s.started = true;
     if (g.adaptive) s.level = saturation::adaptive_threshold(g.setting, s.rho, s.p);
     if (!g.detector) return;
     s.d = s.proved.size();
     s.level = saturation::detection_threshold(g.setting, s.rho, s.p);
   }
 
-  /// Writes the message that this agent sends before the given round.
+  /// Writes the message that this agent sends before its next round.
   template <int n>
-  static void send(const State<n>& s, int round, Message<n>& m) noexcept {
+  static void send(const State<n>& s, Message<n>& m) noexcept {
     m.x = s.x;
-    m.t = s.t;
-    m.round = round;
     m.intact = s.intact;
     m.proved = s.proved;
   }
@@ -322,7 +375,7 @@ struct GARRISON_EXPORT Saturation {
   /// rho(t) of (7), rhobar_i(t) of (14) or rho_t of the adaptive threshold, from the values at t-1.
   template <int n>
   static double rho_now(const Gains& g, const State<n>& s) noexcept {
-    if (!g.bounded || s.t == 0) return s.rho;
+    if (!g.bounded || !s.started) return s.rho;
     if (g.adaptive) return saturation::adaptive_next(g.setting, g.varpi, s.rho, s.p).rho;
     if (!g.detector)
       return saturation::rho_bar_next(g.setting, g.q0, s.rho, g.p0, 0);  // (7): p0 instead of p(t-1)
@@ -331,7 +384,7 @@ struct GARRISON_EXPORT Saturation {
   /// p(t) of (10), or of the adaptive threshold.
   template <int n>
   static double p_now(const Gains& g, const State<n>& s) noexcept {
-    if (!g.bounded || s.t == 0) return s.p;
+    if (!g.bounded || !s.started) return s.p;
     return saturation::disagreement_next(g.setting, s.p, beta_now(g, s));
   }
 };

@@ -26,6 +26,20 @@ struct Setting {
   /// q0 with sqrt(N-s)/N a p0 in place of (N-s)/N a p0 (p(t) bounds the stacked vector: Cauchy-Schwarz) and
   /// without the b_w that (24) counts twice (our notes). Sound and smaller; false = as printed in (8).
   bool sharp = false;
+
+  template <class V>
+  void visit(V& v) {
+    v("agents", agents);
+    v("a", a);
+    v("lambda0", lambda0);
+    v("contraction", contraction);
+    v("attacked", attacked);
+    v("beta", beta);
+    v("eta0", eta0);
+    v("b_w", b_w);
+    v("b_v", b_v);
+    v("sharp", sharp);
+  }
 };
 
 /// Refuses N, lambda0, s out of range. @throws InvalidInput

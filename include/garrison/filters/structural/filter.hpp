@@ -27,9 +27,15 @@ namespace garrison {
 /// than asked for, never more. The network says who may hear whom; W and U may use fewer of its links.
 ///
 /// A missing estimate gives its weight to the agent's own; a missing measurement counts as predicted. The
-/// test rests for `settle` samples after the start and after a missing message or measurement, because the
-/// error is not stationary then (threshold NaN). With `isolate` an agent leaves its own measurement out, and
-/// withholds it, while its alarm lasts; this can make the error unstable where the sensor is indispensable.
+/// test rests for `settle` samples after the start and after a missing message or measurement, here or at any
+/// agent that this one hears of, because the error is not stationary then (threshold NaN, verdict "not
+/// tested"; messages carry how long their sender still rests). With `isolate` an agent leaves its own
+/// measurement out, and withholds it, while its alarm lasts; this can make the error unstable where the
+/// sensor is indispensable.
+///
+/// One agent that lies in its messages moves its neighbours' estimates in proportion to its lie and its
+/// weight, and can keep their tests at rest by claiming to rest itself; it accuses nobody else, as every
+/// agent judges itself.
 struct GARRISON_EXPORT Structural {
   static constexpr std::string_view name = "structural";
   static constexpr std::string_view title = "Single-time-scale estimator with exact residual tests";
@@ -59,6 +65,13 @@ struct GARRISON_EXPORT Structural {
     int id;
     double weight;  ///< W_ij
     int first;      ///< of K_i c_j in `columns`; -1: y_j is not used
+
+    template <class V>
+    void visit(V& v) {
+      v.range("id", id, 0, INT32_MAX);
+      v("weight", weight);
+      v.range("first", first, -1, INT32_MAX);
+    }
   };
   struct Gains {
     std::vector<int> offsets;     ///< first Heard of each agent, N + 1
@@ -80,7 +93,31 @@ struct GARRISON_EXPORT Structural {
     bool accuse_missing = false;
     std::vector<char> has_sensor;
     bool sensing(int id) const { return has_sensor[static_cast<std::size_t>(id)] != 0; }
+
+    template <class V>
+    void visit(V& v) {
+      v("offsets", offsets);
+      v("heard", heard);
+      v("columns", columns);
+      v("rows", rows);
+      v("std", std);
+      v("innovation_std", innovation_std);
+      v("precision", precision);
+      v("level", level);
+      v("sample_level", sample_level);
+      v("rho", rho);
+      v.range("window", window, 1, 100000);
+      v.range("alarm_after", alarm_after, 1, INT32_MAX);
+      v.range("clear_after", clear_after, 1, INT32_MAX);
+      v.range("settle", settle, 0, kMostRest);
+      v("innovation", innovation);
+      v("isolate", isolate);
+      v("accuse_missing", accuse_missing);
+      v("has_sensor", has_sensor);
+    }
   };
+  /// Longest rest that a message can tell of.
+  static constexpr int kMostRest = 65535;
 
   template <int n>
   struct State {
@@ -99,14 +136,42 @@ struct GARRISON_EXPORT Structural {
     bool alarm = false;
     std::vector<double> last;  // window of residuals, a ring
     AgentSet accused;
+
+    template <class V>
+    void visit(V& v) {
+      const int window = std::max<int>(1, static_cast<int>(last.size()));
+      v("estimate", x);
+      v("prior", prior);
+      v("y", y);
+      v("residual", residual);
+      v("innovation", innovation);
+      v("statistic", statistic);
+      v("threshold", threshold);
+      v.range("rest", rest, 0, kMostRest);
+      v.range("above", above, 0, INT32_MAX);
+      v.range("below", below, 0, INT32_MAX);
+      v.range("filled", filled, 0, window);
+      v.range("oldest", oldest, 0, window - 1);
+      v("alarm", alarm);
+      v("last", last);
+      v("accused", accused);
+    }
   };
   template <int n>
   struct Message {
     static constexpr int size = n == Dynamic ? Dynamic : n + 1;
-    int sender = 0;
     bool measured = false;  ///< the last number is y; otherwise there is none
+    int rest = 0;           ///< samples before the sender's next test
     Vec<size> numbers;      ///< estimate, then y
-    std::span<double> values() { return {numbers.data(), static_cast<std::size_t>(numbers.size())}; }
+
+    template <class V>
+    void visit(V& v) {
+      const auto states = static_cast<std::size_t>(numbers.size()) - 1;
+      v.numbers("estimate", std::span<double>(numbers.data(), states));
+      v.numbers("measurement", std::span<double>(numbers.data() + states, 1));
+      v.flag("measured", measured);
+      v.count("rest", rest, kMostRest);
+    }
   };
 
   /// @throws InvalidInput when parameters, model and network do not fit, or given gains make the error
@@ -118,6 +183,8 @@ struct GARRISON_EXPORT Structural {
   /// The gain matrices in params.gain.
   static structural::GainMatrices gains_of(const Params& params, const structural::Setting& setting);
   static int rounds(const Gains&) { return 1; }
+  /// What agent `id` needs of the gains: its own row, and the sensors of those it hears.
+  static Gains part(const Gains& all, int id, std::span<const int> neighbours);
 
   template <int n>
   static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
@@ -127,8 +194,8 @@ struct GARRISON_EXPORT Structural {
     if (g.window > 1) fresh.last.assign(static_cast<std::size_t>(g.window), 0.0);
     fresh.accused.resize(l.agents);
     s = std::move(fresh);
-    m.sender = l.id;
     m.measured = false;
+    m.rest = g.settle;
     m.numbers.setZero(dimension<n>(l) + 1);
     m.numbers.head(dimension<n>(l)) = x0;
   }
@@ -141,6 +208,7 @@ struct GARRISON_EXPORT Structural {
     for (int k = 0; k < nn; ++k) m.numbers[k] = s.x[k];
     m.measured = !std::isnan(s.y) && !(g.isolate && s.alarm);
     m.numbers[nn] = m.measured ? s.y : 0.0;
+    m.rest = s.rest;
   }
 
   template <int n>
@@ -155,12 +223,13 @@ struct GARRISON_EXPORT Structural {
     for (int k = 0; k < nn; ++k) m.numbers[k] = 0.0;
     std::size_t at = 0;
     for (const Heard* j = heard + 1; j != end; ++j) {
-      const bool here = at < inbox.size() && inbox[at].sender == j->id;
+      const bool here = at < inbox.size() && inbox.sender(at) == j->id;
       if (!here) {
         own += j->weight;
         complete = complete && j->weight == 0.0 && (j->first < 0 || !g.sensing(j->id));
         continue;
       }
+      s.rest = std::max(s.rest, inbox[at].rest);  // what is off there is off here from now on
       const auto& letter = inbox[at++].numbers;
       for (int k = 0; k < nn; ++k) m.numbers[k] += j->weight * letter[k];
     }
@@ -179,7 +248,7 @@ struct GARRISON_EXPORT Structural {
     complete = complete && (used || !has_sensor);
     at = 0;
     for (const Heard* j = heard + 1; j != end; ++j) {
-      if (at >= inbox.size() || inbox[at].sender != j->id) continue;
+      if (at >= inbox.size() || inbox.sender(at) != j->id) continue;
       const auto& letter = inbox[at++];
       if (j->first < 0) continue;
       if (letter.measured)
@@ -192,6 +261,28 @@ struct GARRISON_EXPORT Structural {
     for (int k = 0; k < nn; ++k) m.numbers[k] = s.x[k];
   }
 
+  /// A times the entrywise median of what the neighbours estimated a sample ago.
+  template <int n>
+  static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t,
+                     State<n>& s) noexcept {
+    const int nn = dimension<n>(l);
+    if (inbox.size() > 0) {
+      median_into<n>(inbox.size(), [&](std::size_t k) { return inbox[k].numbers.data(); }, s.prior);
+      for (int i = 0; i < nn; ++i) {
+        s.x[i] = 0.0;
+        for (int k = 0; k < nn; ++k) s.x[i] += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.prior[k];
+      }
+    }
+    if (!usable<n>(s.x)) s.x.setZero();
+    s.prior = s.x;
+    uncover<n>(g, s);
+  }
+  template <int n>
+  static void uncover(const Gains& g, State<n>& s) noexcept {
+    s.rest = std::max(s.rest, g.settle);
+    s.filled = s.oldest = s.above = 0;
+  }
+
   template <int n>
   static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept {
     Report r;
@@ -202,6 +293,8 @@ struct GARRISON_EXPORT Structural {
       r.verdict = Verdict::attacked;
     else if (l.outputs == 0 || (missing && !g.accuse_missing))
       r.verdict = Verdict::silent;
+    else if (std::isnan(s.threshold) && !missing)
+      r.verdict = Verdict::not_tested;
     else
       r.verdict = s.above > 0 ? Verdict::suspected : Verdict::cleared;
     return r;

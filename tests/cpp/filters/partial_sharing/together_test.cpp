@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "../../agents_by_hand.hpp"
 #include "garrison/engine/any_filter.hpp"
 #include "garrison/engine/mailroom.hpp"
 #include "garrison/engine/workers.hpp"
@@ -93,28 +94,16 @@ Seen by_engine(const Problem& p, Runner& runner, const Matrix& x0, Link* link) {
 }
 
 Seen by_hand(const Problem& p, const Prepared& prepared, const Matrix& x0) {
-  std::vector<std::unique_ptr<AnyAgent>> agents;
-  for (int i = 0; i < p.model.agents(); ++i) {
-    agents.push_back(prepared.agent(i));
-    agents.back()->reset(x0.col(i));
-  }
+  test::AgentsByHand agents(prepared, p.network);
+  for (int i = 0; i < p.model.agents(); ++i) agents[i].reset(x0.col(i));
   Seen seen;
   for (Eigen::Index t = 0; t < p.y.rows(); ++t) {
-    const Vector sample = p.y.row(t);
-    std::vector<std::shared_ptr<AnyMessage>> sent;
-    for (const auto& agent : agents)
-      sent.push_back(agent->sense({sample.data() + p.model.offset(agent->id()),
-                                   static_cast<std::size_t>(p.model.outputs(agent->id()))}));
-    for (const auto& agent : agents) {
-      std::vector<std::shared_ptr<AnyMessage>> inbox;
-      for (const int j : p.network.neighbours(agent->id()))
-        inbox.push_back(sent[static_cast<std::size_t>(j)]);
-      agent->fuse(inbox);
-      const Vector x = agent->estimate();
-      const Report r = agent->report();
-      seen.estimate.insert(seen.estimate.end(), x.data(), x.data() + x.size());
-      seen.statistic.push_back(r.statistic);
-      seen.verdict.push_back(static_cast<std::uint8_t>(r.verdict));
+    agents.step(t + 1,
+                [&](int i) { return Vector(p.y.row(t).segment(p.model.offset(i), p.model.outputs(i))); });
+    agents.append_estimates(seen.estimate);
+    for (const auto& agent : agents.all()) {
+      seen.statistic.push_back(agent->report().statistic);
+      seen.verdict.push_back(static_cast<std::uint8_t>(agent->report().verdict));
     }
   }
   return seen;
@@ -199,7 +188,7 @@ TEST_CASE("groups of like agents read one copy of sensors and gains") {
     }
 }
 
-TEST_CASE("predictions that are not finite go by message, and harm only those who have them") {
+TEST_CASE("predictions that are of no use go by message, and harm only those who have them") {
   for (const int n : {4, 8}) {
     Problem p(n, 19, {2}, 5);
     p.model = Model(
@@ -213,8 +202,8 @@ TEST_CASE("predictions that are not finite go by message, and harm only those wh
     const auto prepared = make_filter("partial_sharing", {{"gain", 0.1}, {"gains", std::string("varying")}})
                               ->prepare(p.model, p.network);
     Matrix x0 = Matrix::Zero(n, 19);
-    x0(0, 3) = 1.7e308;
-    x0(n - 1, 7) = -1.7e308;
+    x0(0, 3) = 9e149;
+    x0(n - 1, 7) = -9e149;
     check_same(by_engine(p, *prepared->runner(1), x0, nullptr), by_hand(p, *prepared, x0));
   }
 }

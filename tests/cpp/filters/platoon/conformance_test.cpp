@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "../../agents_by_hand.hpp"
 #include "garrison/attacks/registry.hpp"
 #include "random_platoon.hpp"
 
@@ -15,24 +16,6 @@ bool same(const Bulk<double>& a, const Bulk<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-std::vector<std::shared_ptr<const AnyFilter>> filters(const ParamMap& params) {
-  ParamMap strong = params;
-  for (const char* name : {"pairs", "neighbours", "median"}) strong[name] = true;
-  strong["count"] = std::string("cover");
-  strong["bound"] = std::string("tight");
-  ParamMap base;
-  for (const char* name :
-       {"reference", "gs", "gv", "spacing", "process_noise", "measurement_noise", "attacked"})
-    base[name] = params.at(name);
-  std::vector<std::shared_ptr<const AnyFilter>> all{make_filter("platoon", params),
-                                                    make_filter("platoon", strong)};
-  for (const char* kind : {"pwm", "pbe", "ptd"}) {
-    base["kind"] = std::string(kind);
-    all.push_back(make_filter("platoon_baseline", base));
-  }
-  return all;
-}
-
 }  // namespace
 
 TEST_CASE("engine, replay and agents driven by hand give the same bits, on any number of threads") {
@@ -41,7 +24,7 @@ TEST_CASE("engine, replay and agents driven by hand give the same bits, on any n
     const auto p = test::random_platoon(rng);
     const int N = p.setting.vehicles;
     const auto start = test::random_start(rng, p.setting);
-    for (const auto& filter : filters(p.params)) {
+    for (const auto& filter : test::every_platoon_filter(p.params)) {
       CAPTURE(filter->name());
       RunOptions o;
       o.trials = 3;
@@ -67,30 +50,20 @@ TEST_CASE("engine, replay and agents driven by hand give the same bits, on any n
       CHECK(same(one.error, replayed.error));
       // By hand, the first trial.
       const auto prepared = filter->prepare(p.model, p.network);
-      std::vector<std::unique_ptr<AnyAgent>> agents;
-      for (int i = 0; i < N; ++i) {
-        agents.push_back(prepared->agent(i));
-        agents.back()->reset(start.estimate.col(i));
-      }
+      test::AgentsByHand agents(*prepared, p.network);
+      for (int i = 0; i < N; ++i) agents[i].reset(start.estimate.col(i));
       const auto M = static_cast<std::size_t>(p.model.total_outputs());
+      Bulk<double> estimates;
       for (std::size_t t = 0; t <= 20; ++t) {
-        std::vector<std::shared_ptr<AnyMessage>> sent;
-        for (int i = 0; i < N; ++i) {
+        agents.step(static_cast<std::int64_t>(t), [&](int i) {
           const double* y = one.measurements.data() + t * M + p.model.offset(i);
-          sent.push_back(
-              agents[static_cast<std::size_t>(i)]->sense({y, static_cast<std::size_t>(p.model.outputs(i))}));
-        }
-        for (int i = 0; i < N; ++i) {
-          std::vector<std::shared_ptr<AnyMessage>> inbox;
-          for (const int j : p.network.neighbours(i)) inbox.push_back(sent[static_cast<std::size_t>(j)]);
-          agents[static_cast<std::size_t>(i)]->fuse(inbox);
-          const Vector x = agents[static_cast<std::size_t>(i)]->estimate();
-          const double* wanted =
-              one.estimate.data() + (t * static_cast<std::size_t>(N) + static_cast<std::size_t>(i)) * 2;
-          CHECK(x(0) == wanted[0]);
-          CHECK(x(1) == wanted[1]);
-        }
+          return Vector(Eigen::Map<const Vector>(y, p.model.outputs(i)));
+        });
+        agents.append_estimates(estimates);
       }
+      const Bulk<double> first(one.estimate.begin(),
+                               one.estimate.begin() + static_cast<std::ptrdiff_t>(estimates.size()));
+      CHECK(same(estimates, first));
     }
   }
 }
@@ -117,10 +90,10 @@ TEST_CASE("lost, late and forged messages never spread what is not finite") {
   for (int run = 0; run < 10; ++run) {
     const auto p = test::random_platoon(rng);
     const auto start = test::random_start(rng, p.setting);
-    for (const auto& filter : filters(p.params)) {
+    for (const auto& filter : test::every_platoon_filter(p.params)) {
       RunOptions o;
       o.start = start.estimate;
-      o.link = {0.2, 0.2, 2};
+      o.link = {0.2, 0.2, 2, {}, {}};
       o.message_attacks = {forge(Schedule(4, {1}), kNaN, true), equivocate(Schedule(6, {0}), 2.0),
                            silence(Schedule(10, {2}))};
       o.attacks = {constant(Schedule(3, {0}), 1e300)};

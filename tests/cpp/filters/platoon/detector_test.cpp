@@ -7,7 +7,7 @@
 #include <set>
 
 #include "../../random_system.hpp"
-#include "garrison/filters/platoon/label_set.hpp"
+#include "garrison/core/label_set.hpp"
 
 using namespace garrison;
 using namespace garrison::platoon;

@@ -70,7 +70,7 @@ void search(int runs, std::uint64_t seed, const ParamMap& more, bool faulty_link
     const auto start = test::random_start(rng, p.setting);
     RunOptions o = options(start, seed * 10000 + static_cast<std::uint64_t>(run));
     o.attacks = test::random_attack(rng, p.setting, victims);
-    if (faulty_links) o.link = {0.15, 0.15, 1};
+    if (faulty_links) o.link = {0.15, 0.15, 1, {}, {}};
     PlantOptions plant{35, start.x0, 0.0, laws[run % 4], {}};
     const Record r = simulate(p.model, p.network, *make_filter("platoon", params), plant, o);
     const Faults f = count_faults(r, p.setting, victims);

@@ -54,6 +54,25 @@ inline Platoon random_platoon(Rng& rng) {
   }
 }
 
+/// Filters that together take every path of the families of vehicles.
+inline std::vector<std::shared_ptr<const AnyFilter>> every_platoon_filter(const ParamMap& params) {
+  ParamMap strong = params;
+  for (const char* name : {"pairs", "neighbours", "median"}) strong[name] = true;
+  strong["count"] = std::string("cover");
+  strong["bound"] = std::string("tight");
+  ParamMap base;
+  for (const char* name :
+       {"reference", "gs", "gv", "spacing", "process_noise", "measurement_noise", "attacked"})
+    base[name] = params.at(name);
+  std::vector<std::shared_ptr<const AnyFilter>> all{make_filter("platoon", params),
+                                                    make_filter("platoon", strong)};
+  for (const char* kind : {"pwm", "pbe", "ptd"}) {
+    base["kind"] = std::string(kind);
+    all.push_back(make_filter("platoon_baseline", base));
+  }
+  return all;
+}
+
 /// 0..b different sensors.
 inline std::vector<int> random_victims(Rng& rng, const platoon::Setting& s) {
   std::vector<int> victims;

@@ -154,7 +154,7 @@ TEST_CASE("run-time bounds hold under every attack, with noise, lost and late me
     RunOptions o;
     o.start = normal_matrix(rng, n, N);
     o.start = (o.start.array().rowwise() / o.start.colwise().norm().array()).matrix();
-    if (instance % 2 == 1) o.link = {0.2, 0.2, 1};
+    if (instance % 2 == 1) o.link = {0.2, 0.2, 1, {}, {}};
     const Record r = replay(model, network, *filter, y, truth, o);
     CAPTURE(instance);
     for (std::size_t k = 0; k < r.error.size(); ++k) {

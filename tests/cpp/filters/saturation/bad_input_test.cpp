@@ -97,21 +97,6 @@ TEST_CASE("drivers refuse what does not fit") {
                        doctest::Contains("link.drop: got 2"), InvalidInput);
 }
 
-TEST_CASE("an agent driven by hand refuses a wrong order of calls and strange messages") {
-  const auto prepared = make_filter("saturation", {{"threshold", 1.0}, {"rounds", std::int64_t{1}}})
-                            ->prepare(kModel, Network::path(3));
-  const auto agent = prepared->agent(0);
-  const double y = 1.0;
-  CHECK_THROWS_WITH_AS(agent->fuse({}), doctest::Contains("sense to be called first"), InvalidInput);
-  CHECK_THROWS_WITH_AS(agent->sense({&y, 0}), doctest::Contains("y: got 0 numbers"), InvalidInput);
-  agent->sense({&y, 1});
-  CHECK_THROWS_WITH_AS(agent->sense({&y, 1}), doctest::Contains("fuse to be called first"), InvalidInput);
-  const auto stranger = prepared->agent(2);
-  const std::vector<std::shared_ptr<AnyMessage>> inbox{stranger->sense({&y, 1})};
-  CHECK_THROWS_WITH_AS(agent->fuse(inbox), doctest::Contains("agent 2"), InvalidInput);
-  CHECK_THROWS_AS(prepared->agent(3), InvalidInput);
-}
-
 TEST_CASE("a check refuses what design refuses, and says which assumption of the bounds is missing") {
   const Network net = Network::path(3);
   const auto too_many =

@@ -1,11 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drivers: simulate, replay, single agents.
+// Drivers: simulate, replay.
 #include "bindings.hpp"
 #include "garrison/drivers/simulate.hpp"
 
 using namespace garrison;
 
 namespace {
+
+/// (sender, receiver, start, stop) each; None for all agents, or no end.
+std::vector<Cut> cuts_of(const py::handle& given) {
+  using Row = std::tuple<std::optional<int>, std::optional<int>, std::int64_t, std::optional<std::int64_t>>;
+  std::vector<Cut> cuts;
+  try {
+    for (const auto& [sender, receiver, start, stop] : given.cast<std::vector<Row>>())
+      cuts.push_back({sender.value_or(-1), receiver.value_or(-1), start, stop.value_or(INT64_MAX)});
+  } catch (const py::cast_error&) {
+    refuse("link.cuts", py::repr(given).cast<std::string>(), "a list of (sender, receiver, start, stop)",
+           "None stands for all agents, or for no end");
+  }
+  return cuts;
+}
+/// (sample, round, sender, receiver) each.
+std::vector<Lost> lost_of(const py::handle& given) {
+  using Row = std::tuple<std::int64_t, int, int, int>;
+  std::vector<Lost> lost;
+  try {
+    for (const auto& [sample, round, sender, receiver] : given.cast<std::vector<Row>>())
+      lost.push_back({{sender, sample, round}, receiver});
+  } catch (const py::cast_error&) {
+    refuse("link.lost", py::repr(given).cast<std::string>(), "a list of (sample, round, sender, receiver)");
+  }
+  return lost;
+}
 
 RunOptions run_options(int trials, std::uint64_t seed, int threads, const std::optional<Matrix>& start,
                        const std::vector<AnyAttack>& attacks, const py::dict& link,
@@ -19,7 +45,7 @@ RunOptions run_options(int trials, std::uint64_t seed, int threads, const std::o
     if (attack.measurement) o.attacks.push_back(attack.measurement);
     if (attack.message) o.message_attacks.push_back(attack.message);
   }
-  const std::vector<std::string> known{"drop", "delay", "delay_rounds"};
+  const std::vector<std::string> known{"drop", "delay", "delay_rounds", "cuts", "lost"};
   for (const auto& [key, value] : link) {
     const auto name = key.cast<std::string>();
     if (name == "drop")
@@ -28,6 +54,10 @@ RunOptions run_options(int trials, std::uint64_t seed, int threads, const std::o
       o.link.delay = value.cast<double>();
     else if (name == "delay_rounds")
       o.link.delay_rounds = value.cast<int>();
+    else if (name == "cuts")
+      o.link.cuts = cuts_of(value);
+    else if (name == "lost")
+      o.link.lost = lost_of(value);
     else
       refuse_unknown("link", name, known);
   }
@@ -96,10 +126,10 @@ py::dict from_record(Record&& r) {
     details.append(py::make_tuple(entry.trial, entry.time, entry.agent,
                                   r.detail_names[static_cast<std::size_t>(entry.name)], entry.values));
   d["details"] = details;
-  d["counters"] = py::dict(py::arg("sent") = r.link.sent, py::arg("lost") = r.link.lost,
-                           py::arg("late") = r.link.late, py::arg("forged") = r.link.forged,
-                           py::arg("refused") = r.link.refused, py::arg("missing") = r.missing,
-                           py::arg("nonfinite") = r.nonfinite, py::arg("overflows") = r.overflows);
+  d["counters"] = py::dict(
+      py::arg("sent") = r.link.sent, py::arg("lost") = r.link.lost, py::arg("late") = r.link.late,
+      py::arg("forged") = r.link.forged, py::arg("refused") = r.link.refused, py::arg("missing") = r.missing,
+      py::arg("nonfinite") = r.nonfinite, py::arg("overflows") = r.overflows, py::arg("resets") = r.resets);
   d["bytes_per_step"] = r.bytes_per_step;
   return d;
 }
@@ -131,97 +161,43 @@ Log log_of(const Model& model, const AnyFilter& filter, const Array& y, const st
           static_cast<int>(steps)};
 }
 
-/// What sense and fuse return in Python.
-struct Letter {
-  std::shared_ptr<AnyMessage> message;
-};
-
 }  // namespace
 
-void bind_runtime(py::module_& m) {
+void bind_drivers(py::module_& m) {
   m.def(
       "simulate",
-      [](const Model& model, const Network& network, const FilterHandle& filter, int steps, const Vector& x0,
-         double start_error, const std::string& noise, const Matrix& disturbances, int trials,
-         std::uint64_t seed, int threads, const std::optional<Matrix>& start,
-         const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
-         const py::object& progress) {
+      [](const std::shared_ptr<Prepared>& prepared, int steps, const Vector& x0, double start_error,
+         const std::string& noise, const Matrix& disturbances, int trials, std::uint64_t seed, int threads,
+         const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
+         const std::vector<std::string>& keep, const py::object& progress) {
         const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
         Record record;
         {
           const py::gil_scoped_release no_gil;
-          record = simulate(model, network, *filter.filter, {steps, x0, start_error, noise, disturbances},
-                            options);
+          record = simulate(*prepared, {steps, x0, start_error, noise, disturbances}, options);
         }
         return from_record(std::move(record));
       },
-      py::arg("model"), py::arg("network"), py::arg("filter"), py::kw_only(), py::arg("steps"), py::arg("x0"),
-      py::arg("start_error"), py::arg("noise"), py::arg("disturbances"), py::arg("trials"), py::arg("seed"),
-      py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"),
-      py::arg("progress"), "Arrays of a simulated run; use garrison.simulate.");
+      py::arg("design"), py::kw_only(), py::arg("steps"), py::arg("x0"), py::arg("start_error"),
+      py::arg("noise"), py::arg("disturbances"), py::arg("trials"), py::arg("seed"), py::arg("threads"),
+      py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"), py::arg("progress"),
+      "Arrays of a simulated run; use garrison.simulate.");
   m.def(
       "replay",
-      [](const Model& model, const Network& network, const FilterHandle& filter, const Array& measurements,
+      [](const std::shared_ptr<Prepared>& prepared, const Array& measurements,
          const std::optional<Array>& truth, int trials, std::uint64_t seed, int threads,
          const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
          const std::vector<std::string>& keep, const py::object& progress) {
         const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
-        const Log log = log_of(model, *filter.filter, measurements, truth);
+        const Log log = log_of(prepared->model(), prepared->filter(), measurements, truth);
         Record record;
         {
           const py::gil_scoped_release no_gil;
-          record = replay(model, network, *filter.filter, log, options);
+          record = replay(*prepared, log, options);
         }
         return from_record(std::move(record));
       },
-      py::arg("model"), py::arg("network"), py::arg("filter"), py::kw_only(), py::arg("measurements"),
-      py::arg("truth"), py::arg("trials"), py::arg("seed"), py::arg("threads"), py::arg("start"),
-      py::arg("attacks"), py::arg("link"), py::arg("keep"), py::arg("progress"),
-      "Arrays of a replayed run; use garrison.replay.");
-
-  py::class_<Letter>(m, "Message", "A message between agents of the same filter.")
-      .def_property_readonly("sender", [](const Letter& l) { return l.message->sender(); })
-      .def_property_readonly(
-          "values",
-          [](const Letter& l) {
-            auto numbers = l.message->values();
-            const auto size = static_cast<py::ssize_t>(numbers.size());
-            return owned(std::move(numbers), {size});
-          },
-          "Its numbers (a copy).");
-
-  py::class_<AnyAgent>(
-      m, "Agent",
-      "One agent on its own: `sense` once per sample, then `fuse` once per round, with the same bits as\n"
-      "inside simulate and replay.")
-      .def(py::init([](const FilterHandle& filter, const Model& model, const Network& network, int id) {
-             return filter.filter->prepare(model, network)->agent(id);
-           }),
-           py::arg("filter"), py::arg("model"), py::arg("network"), py::arg("id"))
-      .def_property_readonly("id", &AnyAgent::id)
-      .def_property_readonly("rounds", &AnyAgent::rounds, "Rounds per sample.")
-      .def("reset", &AnyAgent::reset, py::arg("x0"), "Back to time 0 with the initial estimate x0, (n,).")
-      .def(
-          "sense", [](AnyAgent& a, const std::vector<double>& y) { return Letter{a.sense(y)}; }, py::arg("y"),
-          "One number per row of C_i, nan = missing. Returns the first message of this sample.")
-      .def(
-          "fuse",
-          [](AnyAgent& a, const std::vector<Letter>& inbox) {
-            std::vector<std::shared_ptr<AnyMessage>> all;
-            for (const Letter& l : inbox) all.push_back(l.message);
-            return Letter{a.fuse(all)};
-          },
-          py::arg("inbox"),
-          "Messages of the neighbours in any order; leave missing ones out. Returns the next message.")
-      .def_property_readonly("estimate", &AnyAgent::estimate, "(n,)")
-      .def_property_readonly("accused", &AnyAgent::accused, "Agents that this one believes to be attacked.")
-      .def_property_readonly("control", &AnyAgent::control,
-                             "What it does to its own plant until the next sample; nan where it has none.")
-      .def_property_readonly("dropped", &AnyAgent::dropped,
-                             "Messages dropped because a number was not finite.")
-      .def_property_readonly("bound", [](const AnyAgent& a) { return a.report().bound; })
-      .def_property_readonly("statistic", [](const AnyAgent& a) { return a.report().statistic; })
-      .def_property_readonly("threshold", [](const AnyAgent& a) { return a.report().threshold; })
-      .def_property_readonly("verdict",
-                             [](const AnyAgent& a) { return static_cast<int>(a.report().verdict); });
+      py::arg("design"), py::kw_only(), py::arg("measurements"), py::arg("truth"), py::arg("trials"),
+      py::arg("seed"), py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"),
+      py::arg("keep"), py::arg("progress"), "Arrays of a replayed run; use garrison.replay.");
 }

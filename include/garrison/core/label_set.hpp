@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets of sensors as vehicles send them: few members, or all but a few.
+// Sets of ids as messages carry them where networks are large: few members, or all but a few.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <span>
 
-namespace garrison::platoon {
+namespace garrison {
 
 /// A finite set of ids, or the complement of one, as a sorted list in memory that is sized once. Its size
 /// does not depend on the number of vehicles: N vehicles hold three such sets each, which would be N^2 bits.
@@ -42,12 +42,20 @@ class LabelSet {
     data_[1] = 0;
     data_[2] = 0;
   }
+  int capacity() const { return data_ == nullptr ? 0 : data_[0]; }
+  /// Starts to fill the set from elsewhere: so many ids follow with `place`, in ascending order.
+  void start(int listed, bool complement) {
+    if (data_ == nullptr) return;
+    data_[1] = listed;
+    data_[2] = complement ? 1 : 0;
+  }
+  void place(int k, int id) { begin()[k] = id; }
   /// Everything is a member except the listed ids.
-  bool complement() const { return data_[2] != 0; }
+  bool complement() const { return data_ != nullptr && data_[2] != 0; }
   /// The members, or those that are not, in ascending order.
-  std::span<const int> listed() const { return {data_.get() + kHead, static_cast<std::size_t>(data_[1])}; }
+  std::span<const int> listed() const { return {begin(), static_cast<std::size_t>(count())}; }
   /// Number of members; of a complement: the number of ids that are not members.
-  int count() const { return data_[1]; }
+  int count() const { return data_ == nullptr ? 0 : data_[1]; }
   bool contains(int id) const { return std::binary_search(begin(), end(), id) != complement(); }
 
   bool insert(int id) {
@@ -105,7 +113,7 @@ class LabelSet {
   }
 
   bool operator==(const LabelSet& other) const {
-    return data_[1] == other.data_[1] && data_[2] == other.data_[2] &&
+    return count() == other.count() && complement() == other.complement() &&
            std::equal(begin(), end(), other.begin());
   }
 
@@ -118,10 +126,10 @@ class LabelSet {
     data_[1] = static_cast<int>(std::copy_if(begin(), end(), begin(), wanted) - begin());
   }
   static constexpr std::size_t kHead = 3;  // capacity, number listed, complement
-  int* begin() const { return data_.get() + kHead; }
-  int* end() const { return begin() + data_[1]; }
+  int* begin() const { return data_ == nullptr ? nullptr : data_.get() + kHead; }
+  int* end() const { return begin() + count(); }
 
   std::unique_ptr<int[]> data_;
 };
 
-}  // namespace garrison::platoon
+}  // namespace garrison

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of messages between honest agents: the one interface that stands for a network.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "garrison/core/envelope.hpp"
+#include "garrison/core/network.hpp"
+
+namespace garrison {
+
+/// Late messages are lost to their receiver, as on a node: a driver delivers only what is of the present
+/// sample and round. They are counted apart.
+enum class Fate : std::uint8_t { delivered, lost, late };
+
+class GARRISON_EXPORT Channel {
+ public:
+  virtual ~Channel() = default;
+  virtual Fate fate(const Envelope& message, int receiver) const = 0;
+};
+
+/// Messages from `sender` to `receiver` (-1: from all, to all) are lost at samples start <= t < stop.
+struct Cut {
+  int sender = -1;
+  int receiver = -1;
+  std::int64_t start = 0;
+  std::int64_t stop = INT64_MAX;
+};
+/// One message that did not arrive.
+struct Lost {
+  Envelope message;
+  int receiver = 0;
+};
+
+/// Every message meets its fate independently; drop and delay are probabilities in [0, 1]. The result depends
+/// on the message, its receiver, seed and trial only.
+GARRISON_EXPORT std::unique_ptr<Channel> seeded_faults(double drop, double delay, std::uint64_t seed,
+                                                       std::uint32_t trial);
+/// Scheduled faults. @throws InvalidInput when an agent does not exist or a cut ends before it starts
+GARRISON_EXPORT std::unique_ptr<Channel> scheduled_faults(const Network& network, std::vector<Cut> cuts);
+/// Recorded faults: just these are lost. @throws InvalidInput when an agent does not exist
+GARRISON_EXPORT std::unique_ptr<Channel> recorded_faults(const Network& network, std::vector<Lost> lost);
+
+}  // namespace garrison

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// A message's body, from the list of its fields (core/fields.hpp): canonical, so that equal messages are
+// equal bytes, and total, so that any bytes are either a message or refused by name.
+//
+//   numbers, optional  binary64, little-endian; NaN only in an optional, and only 0x7ff8000000000000
+//   flag               one byte, 0 or 1
+//   count              u16, 0..most
+//   set                ceil(N/8) bytes, bits beyond N zero; nothing where the family keeps no such set
+//   labels             u16 2 * listed + complement, then u16 ids, strictly ascending, < N
+//
+// Sender, sample and round are not in it: they are the driver's (core/envelope.hpp).
+#pragma once
+
+#include <cmath>
+#include <span>
+
+#include "garrison/core/envelope.hpp"
+#include "garrison/core/fields.hpp"
+#include "garrison/wire/bytes.hpp"
+
+namespace garrison::wire {
+
+/// Counts the bytes of a body: of what its sets hold now, and the most they may hold.
+class Size : public NumbersOf<Size> {
+ public:
+  explicit Size(int agents) : agents_(agents) {}
+  std::size_t now() const { return now_; }
+  std::size_t most() const { return most_; }
+
+  using NumbersOf<Size>::numbers;
+  void numbers(std::string_view, std::span<double> values) { add(8 * values.size()); }
+  void optional(std::string_view, double&) { add(8); }
+  void flag(std::string_view, bool&) { add(1); }
+  void count(std::string_view, int&, int) { add(2); }
+  void set(std::string_view, AgentSet& set) {
+    add(set.empty() ? 0 : (static_cast<std::size_t>(agents_) + 7) / 8);
+  }
+  void labels(std::string_view, LabelSet& set) {
+    now_ += 2 + 2 * static_cast<std::size_t>(set.count());
+    most_ += 2 + 2 * static_cast<std::size_t>(set.capacity());
+  }
+
+ private:
+  void add(std::size_t bytes) {
+    now_ += bytes;
+    most_ += bytes;
+  }
+  int agents_;
+  std::size_t now_ = 0;
+  std::size_t most_ = 0;
+};
+
+/// Writes fields one behind the other; there must be room (Size::most).
+class Encoder : public NumbersOf<Encoder> {
+ public:
+  Encoder(std::byte* out, int agents) : begin_(out), at_(out), agents_(agents) {}
+  std::size_t written() const { return static_cast<std::size_t>(at_ - begin_); }
+
+  using NumbersOf<Encoder>::numbers;
+  void numbers(std::string_view, std::span<double> values) {
+    for (const double v : values) put_double(v);
+  }
+  void optional(std::string_view, double& value) {
+    if (std::isnan(value))
+      put(kAbsent);
+    else
+      put_double(value);
+  }
+  void flag(std::string_view, bool& value) { put<std::uint8_t>(value ? 1 : 0); }
+  void count(std::string_view, int& value, int) { put(static_cast<std::uint16_t>(value)); }
+  void set(std::string_view, AgentSet& set) {
+    if (set.empty()) return;
+    for (int first = 0; first < agents_; first += 8) put(set.byte(first / 8));
+  }
+  void labels(std::string_view, LabelSet& set) {
+    put(static_cast<std::uint16_t>(2 * set.count() + (set.complement() ? 1 : 0)));
+    for (const int id : set.listed()) put(static_cast<std::uint16_t>(id));
+  }
+
+ private:
+  template <class Unsigned>
+  void put(Unsigned value) {
+    store(at_, value);
+    at_ += sizeof(Unsigned);
+  }
+  void put_double(double value) {
+    store_double(at_, value);
+    at_ += 8;
+  }
+  std::byte* begin_;
+  std::byte* at_;
+  int agents_;
+};
+
+/// Reads fields into a message whose vectors and sets have their sizes already. After the first refusal
+/// nothing more is read, and what was read is not to be used.
+class Decoder : public NumbersOf<Decoder> {
+ public:
+  Decoder(std::span<const std::byte> body, int agents)
+      : at_(body.data()), end_(body.data() + body.size()), agents_(agents) {}
+  /// Once all fields are visited: whether the body was a message, to its last byte.
+  Refusal end() const {
+    if (refusal_ != Refusal::none) return refusal_;
+    return at_ == end_ ? Refusal::none : Refusal::size;
+  }
+
+  using NumbersOf<Decoder>::numbers;
+  void numbers(std::string_view, std::span<double> values) {
+    if (!has(8 * values.size())) return;
+    for (double& v : values) {
+      v = load_double(at_);
+      at_ += 8;
+      if (!(std::abs(v) < kHuge)) return refuse_as(Refusal::number);
+    }
+  }
+  void optional(std::string_view, double& value) {
+    if (!has(8)) return;
+    const auto bits = load<std::uint64_t>(at_);
+    at_ += 8;
+    value = bits == kAbsent ? kNaN : std::bit_cast<double>(bits);
+    if (bits != kAbsent && !(std::abs(value) < kHuge)) refuse_as(Refusal::number);
+  }
+  void flag(std::string_view, bool& value) {
+    if (!has(1)) return;
+    const auto byte = std::to_integer<std::uint8_t>(*at_++);
+    if (byte > 1) return refuse_as(Refusal::flag);
+    value = byte == 1;
+  }
+  void count(std::string_view, int& value, int most) {
+    if (!has(2)) return;
+    value = take16();
+    if (value > most) refuse_as(Refusal::flag);
+  }
+  void set(std::string_view, AgentSet& set) {
+    if (set.empty()) return;
+    const int bytes = (agents_ + 7) / 8;
+    if (!has(static_cast<std::size_t>(bytes))) return;
+    set.clear();
+    for (int k = 0; k < bytes; ++k) set.set_byte(k, std::to_integer<std::uint8_t>(*at_++));
+    const int beyond = 8 * bytes - agents_;
+    if (beyond > 0 && (set.byte(bytes - 1) >> (8 - beyond)) != 0) refuse_as(Refusal::set);
+  }
+  void labels(std::string_view, LabelSet& set) {
+    if (!has(2)) return;
+    const int head = take16();
+    const int listed = head / 2;
+    if (listed > set.capacity() || (set.capacity() == 0 && head != 0)) return refuse_as(Refusal::set);
+    if (!has(2 * static_cast<std::size_t>(listed))) return;
+    set.start(listed, (head & 1) != 0);
+    int last = -1;
+    for (int k = 0; k < listed; ++k) {
+      const int id = take16();
+      if (id <= last || id >= agents_) return refuse_as(Refusal::set);
+      set.place(k, id);
+      last = id;
+    }
+  }
+
+ private:
+  int take16() {
+    const int value = load<std::uint16_t>(at_);
+    at_ += 2;
+    return value;
+  }
+  bool has(std::size_t bytes) {
+    if (refusal_ != Refusal::none) return false;
+    if (static_cast<std::size_t>(end_ - at_) >= bytes) return true;
+    refuse_as(Refusal::size);
+    return false;
+  }
+  void refuse_as(Refusal why) { refusal_ = why; }
+
+  const std::byte* at_;
+  const std::byte* end_;
+  int agents_;
+  Refusal refusal_ = Refusal::none;
+};
+
+/// Bytes of a body as the message is now.
+template <class Message>
+std::size_t size(const Message& message, int agents) {
+  Size size(agents);
+  const_cast<Message&>(message).visit(size);  // only read
+  return size.now();
+}
+/// The most bytes that a body of this family may have.
+template <class Message>
+std::size_t most_bytes(const Message& message, int agents) {
+  Size size(agents);
+  const_cast<Message&>(message).visit(size);
+  return size.most();
+}
+/// Writes the body; returns its size. `out` has room for most_bytes.
+template <class Message>
+std::size_t encode(const Message& message, int agents, std::byte* out) noexcept {
+  Encoder encoder(out, agents);
+  const_cast<Message&>(message).visit(encoder);
+  return encoder.written();
+}
+/// Reads a body into a message of the right shape. On refusal the message is not to be used.
+template <class Message>
+Refusal decode(std::span<const std::byte> body, int agents, Message& message) noexcept {
+  Decoder decoder(body, agents);
+  message.visit(decoder);
+  return decoder.end();
+}
+
+}  // namespace garrison::wire

@@ -1,0 +1,180 @@
+"""Agents driven by hand: time, messages, restarts, snapshots, and what they refuse."""
+
+import copy
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import garrison as gr
+import numpy as np
+import pytest
+
+AGENTS = 5
+FILTERS = [
+    gr.filters.Saturation(threshold=0.5, rounds=12, attacked=1, initial_error=3.0, detector=True),
+    gr.filters.ScalarGain(rounds=2),
+    gr.filters.Lfre(),
+    gr.filters.Rdkf(weight=0.5),
+    gr.filters.Rdkf(weight=0.5, penalty="group"),
+    gr.filters.Dkf(),
+    gr.filters.Structural(),
+    gr.filters.PartialSharing(gain=0.1, shared=1),
+]
+
+
+def problem() -> tuple[gr.Model, gr.Network]:
+    turn = 0.1
+    rotation = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    rows = [[[np.cos(1.3 * i), np.sin(1.3 * i)]] for i in range(AGENTS)]
+    model = gr.Model(
+        rotation,
+        rows,
+        process_bound=0.02,
+        measurement_bound=0.05,
+        process_covariance=1e-4 * np.eye(2),
+        measurement_covariance=[np.eye(1) * 1e-3] * AGENTS,
+    )
+    return model, gr.Network.ring(AGENTS)
+
+
+def step(agents: list[gr.Agent], net: gr.Network, t: int, y: np.ndarray) -> None:
+    sent = [agent.sense(t, [y[i]]) for i, agent in enumerate(agents)]
+    for _ in range(agents[0].rounds):
+        sent = [agent.fuse([sent[j] for j in agent.neighbours if sent[j] is not None]) for agent in agents]
+
+
+@pytest.mark.parametrize("filt", FILTERS, ids=lambda f: f.name)
+def test_a_network_of_agents_is_the_replay_bit_for_bit_and_survives_a_new_process(
+    filt: gr.Filter, tmp_path: Path
+) -> None:
+    model, net = problem()
+    y = np.random.default_rng(1).normal(size=(40, AGENTS))
+    run = gr.replay(filt, model, net, measurements=y)
+    agents = [gr.Agent(model, net, filt, i) for i in range(AGENTS)]
+    for t in range(1, 21):
+        step(agents, net, t, y[t - 1])
+    for agent in agents:
+        (tmp_path / f"{agent.id}.pickle").write_bytes(pickle.dumps(agent))
+    program = (
+        "import pickle, sys, numpy as np\n"
+        "from pathlib import Path\n"
+        "agents = [pickle.loads(Path(sys.argv[1], f'{i}.pickle').read_bytes()) for i in range(5)]\n"
+        "y = np.random.default_rng(1).normal(size=(40, 5))\n"
+        "for t in range(21, 41):\n"
+        "    sent = [a.sense(t, [y[t - 1][i]]) for i, a in enumerate(agents)]\n"
+        "    for _ in range(agents[0].rounds):\n"
+        "        sent = [a.fuse([sent[j] for j in a.neighbours]) for a in agents]\n"
+        "sys.stdout.buffer.write(np.array([a.estimate for a in agents]).tobytes())\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program, str(tmp_path)], capture_output=True, check=True)
+    assert run.estimate is not None
+    assert done.stdout == run.estimate[0, -1].tobytes()
+    assert all(copy.deepcopy(a) == a for a in agents)
+    assert agents[0] != agents[1]
+
+
+def test_an_agent_that_starts_late_says_nothing_before_it_has_heard_the_others() -> None:
+    model, net = problem()
+    filt = FILTERS[0]
+    y = np.random.default_rng(2).normal(size=(30, AGENTS)) * 0.02
+    agents = [gr.Agent(model, net, filt, i) for i in range(AGENTS)]
+    for t in range(1, 21):
+        step(agents, net, t, y[t - 1])
+    agents[2] = gr.Agent(model, net, filt, 2)
+    agents[2].reset([7.0, 7.0], t=20)
+    assert agents[2].sample == 20
+    assert agents[2].sense(21, [y[20, 2]]) is None
+    assert np.isnan(agents[2].bound)
+    agents[2] = gr.Agent(model, net, filt, 2)
+    agents[2].reset([7.0, 7.0], t=20)
+    step(agents, net, 21, y[20])
+    assert np.linalg.norm(agents[2].estimate) < 1.0
+    joined = gr.Agent(model, net, filt, 2)
+    joined.join(22, [m for m in (agents[j].sense(22, [0.0]) for j in (1, 3)) if m is not None])
+    assert joined.sample == 22
+    assert np.linalg.norm(joined.estimate) < 1.0
+
+
+def test_messages_have_fields_can_be_kept_and_be_lied_in() -> None:
+    model, net = problem()
+    message = gr.Agent(model, net, FILTERS[0], 1).sense(1, [1e9])
+    assert message is not None
+    assert (message.sender, message.sample, message.round) == (1, 1, 0)
+    assert list(message.fields) == ["estimate", "intact", "proved"]
+    assert message.fields["intact"] is True
+    assert message.fields["proved"] == [1]
+    again = gr.Message.from_bytes(message.to_bytes())
+    assert again == message
+    assert hash(again) == hash(message)
+    assert pickle.loads(pickle.dumps(message)) == message
+    assert eval(repr(message), {"garrison": gr}) == message
+    lie = message.replace(proved=[0, 3], intact=False, estimate=[1.0, 2.0])
+    assert lie != message
+    assert lie.fields["proved"] == [0, 3]
+    assert len(lie.body) == len(message.body) == 2 * 8 + 1 + 1
+    with pytest.raises(gr.InvalidInput, match="prooved"):
+        message.replace(prooved=[1])
+    with pytest.raises(gr.InvalidInput, match="agent 9"):
+        message.replace(proved=[9])
+    with pytest.raises(gr.InvalidInput, match="2 numbers"):
+        message.replace(estimate=[1.0])
+
+
+def test_what_an_agent_cannot_use_is_refused_by_name_or_counted() -> None:
+    model, net = problem()
+    filt = FILTERS[0]
+    agent = gr.Agent(model, net, filt, 0)
+    with pytest.raises(gr.InvalidInput, match="sense to be called first"):
+        agent.fuse([])
+    old = gr.Agent(model, net, filt, 1).sense(1, [0.0])
+    agent.sense(1, [0.0])
+    with pytest.raises(gr.InvalidInput, match="fuse to be called first"):
+        agent.sense(2, [0.0])
+    for _ in range(agent.rounds):
+        agent.fuse([])
+    agent.sense(2, [0.0])
+    agent.fuse([old])
+    assert agent.dropped == 1  # a message of the previous sample is late: it is lost
+    stranger = gr.Agent(model, net, filt, 2).sense(1, [0.0])
+    with pytest.raises(gr.InvalidInput, match="agent 2"):
+        agent.fuse([stranger])
+    other = gr.Agent(model, net, gr.filters.Dkf(), 1).sense(2, [0.0])
+    with pytest.raises(gr.InvalidInput, match="a message of rdkf"):
+        agent.fuse([other])
+    wide = gr.Model(np.eye(9), [np.eye(9)[:1]] * AGENTS, process_bound=0.1, measurement_bound=0.1)
+    nine = gr.Agent(wide, net, gr.filters.Saturation(threshold=1.0), 1).sense(2, [0.0])
+    with pytest.raises(gr.InvalidInput, match="other fields"):
+        agent.fuse([nine])
+    many = gr.Agent(
+        gr.Model(model.A, [[[1.0, 0.0]]] * 130, process_bound=0.02, measurement_bound=0.05),
+        gr.Network.ring(130),
+        filt,
+        1,
+    ).sense(2, [0.0])
+    with pytest.raises(gr.InvalidInput, match="other fields"):
+        agent.fuse([many])
+    for junk in (b"", b"abc", bytes(300), old.to_bytes()[:-1] if old is not None else b""):
+        with pytest.raises(gr.InvalidInput):
+            gr.Message.from_bytes(junk)
+        with pytest.raises(gr.InvalidInput):
+            agent.load(junk)
+    with pytest.raises(gr.InvalidInput, match="a sample after"):
+        gr.Agent(model, net, filt, 0).sense(0, [0.0])
+
+
+def test_designs_travel_as_bytes_whole_or_in_parts() -> None:
+    model, net = problem()
+    for filt in FILTERS:
+        design = gr._core.Design(model, net, filt)
+        data = design.to_bytes()
+        again = gr._core.Design.from_bytes(data)
+        assert again.to_bytes() == data
+        summary = gr._core.design_summary(data)
+        assert summary["filter"] == design.filter_name
+        assert summary["agents"] == AGENTS
+        assert gr.Agent.from_part(design.part(3)) == design.agent(3)
+        with pytest.raises(gr.InvalidInput, match="damaged"):
+            gr._core.Design.from_bytes(data[:-1] + bytes([data[-1] ^ 1]))
+        with pytest.raises(gr.InvalidInput):
+            gr._core.Design.from_bytes(b"nonsense")
