@@ -30,6 +30,7 @@ TwoNumbers::TwoNumbers(const MatrixRef& A, const MatrixRef& C, int s, double rho
       refuse("C", "row " + std::to_string(j) + " of length " + text(row_length_(j)),
              "rows of length 1, or 0");
   norm_CA_ = (C * A).rowwise().norm();
+  bv_ = bv;
   theta_.resize(N);
   const double count = static_cast<double>(N);
   single_ = std::sqrt((count - 1.0) / count);
@@ -60,8 +61,7 @@ double TwoNumbers::step(double gamma) {
   detail::require_least("gamma", gamma, 0.0);
   const Constants& k = constants_;
   // Adaptive level: level + H0 - b = 2 H0, and nobody honest is clipped.
-  for (Eigen::Index j = 0; j < theta_.size(); ++j)
-    theta_(j) = row_length_(j) == 0.0 ? 0.0 : 2.0 * (norm_CA_(j) * bound() + row_length_(j) * bw_);
+  for (Eigen::Index j = 0; j < theta_.size(); ++j) theta_(j) = row_length_(j) == 0.0 ? 0.0 : 2.0 * honest(j);
   const std::span<double> theta(theta_.data(), static_cast<std::size_t>(theta_.size()));
   const double attack = detail::top(theta, s_);
   theta_ = theta_.cwiseAbs2();

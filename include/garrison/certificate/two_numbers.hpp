@@ -25,6 +25,10 @@ class GARRISON_EXPORT TwoNumbers {
   /// One step with ||J - 11'/N|| <= gamma; returns the bound on every ||e_i||. Does not allocate. O(N log N).
   /// gamma >= 0. @throws InvalidInput
   double step(double gamma);
+  /// Adaptive level of the coming step: no honest innovation of this sensor is larger. 0 without a sensor.
+  double level(Eigen::Index sensor) const {
+    return row_length_(sensor) == 0.0 ? 0.0 : honest(sensor) + bv_(sensor);
+  }
   double rho() const { return rho_; }
   double p() const { return p_; }
   /// rho + sqrt((N-1)/N) p.
@@ -32,10 +36,13 @@ class GARRISON_EXPORT TwoNumbers {
   const Constants& constants() const { return constants_; }
 
  private:
+  /// H0: bound on an honest innovation less the sensor's own noise.
+  double honest(Eigen::Index sensor) const { return norm_CA_(sensor) * bound() + row_length_(sensor) * bw_; }
+
   Constants constants_{};
   int s_;
   double rho_, p_, bw_, single_;
-  Vector norm_CA_, row_length_;
+  Vector norm_CA_, row_length_, bv_;
   Vector theta_;  // room
 };
 
