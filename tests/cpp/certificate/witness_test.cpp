@@ -350,8 +350,9 @@ TEST_CASE("witnesses tell too few rows from a refutation, and refuse what has no
   const Levels levels = gaussian_levels(1e-6, 3, 1);
   CHECK(leverage_ball(rows, {3, levels, false, nullptr, {}}).region.radius == kInfinity);
   CHECK(witness_subsets(rows, {3, levels, false, nullptr, {}}).region.radius == kInfinity);
-  CHECK(leverage_ball(given_rows(y, Matrix::Zero(3, 1), R, Vector(), {}).rows, {0, levels, false, nullptr, {}})
-            .region.radius == kInfinity);
+  CHECK(
+      leverage_ball(given_rows(y, Matrix::Zero(3, 1), R, Vector(), {}).rows, {0, levels, false, nullptr, {}})
+          .region.radius == kInfinity);
   const std::vector<int> two{0, 1};
   CHECK(leverage_ball(rows, {1, levels, false, nullptr, two}).region.refuted());
   CHECK(witness_subsets(rows, {1, levels, false, nullptr, two}).region.refuted());
