@@ -352,6 +352,7 @@ void bind_messages(py::module_& m) {
            py::arg("A"), py::arg("C"), py::arg("s"), py::arg("rho"), py::arg("p"), py::arg("bw"),
            py::arg("bv"))
       .def("step", &TwoNumbers::step, py::arg("gamma"), "One step; returns the bound. Raises InvalidInput.")
+      .def_property_readonly("levels", &TwoNumbers::levels, "(N,): adaptive levels of the coming step")
       .def_property_readonly("rho", &TwoNumbers::rho)
       .def_property_readonly("p", &TwoNumbers::p)
       .def_property_readonly("bound", &TwoNumbers::bound)

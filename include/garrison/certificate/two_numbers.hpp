@@ -29,6 +29,10 @@ class GARRISON_EXPORT TwoNumbers {
   double level(Eigen::Index sensor) const {
     return row_length_(sensor) == 0.0 ? 0.0 : honest(sensor) + bv_(sensor);
   }
+  /// The same of all sensors, N numbers.
+  Vector levels() const {
+    return Vector::NullaryExpr(row_length_.size(), [this](Eigen::Index j) { return level(j); });
+  }
   double rho() const { return rho_; }
   double p() const { return p_; }
   /// rho + sqrt((N-1)/N) p.
