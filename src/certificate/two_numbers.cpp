@@ -69,6 +69,7 @@ double TwoNumbers::step(double gamma) {
   const double rho = rho_;
   rho_ = k.c * rho + k.cw * bw_ + k.tau * p_ + k.v1 + attack / static_cast<double>(theta_.size());
   p_ = gamma == 0.0 ? 0.0 : gamma * (k.kA * rho + k.kw * bw_ + k.m * p_ + k.v2 + attack2);
+  if (!std::isfinite(rho_) || !std::isfinite(p_)) rho_ = p_ = kInfinity;
   return bound();
 }
 

@@ -3,6 +3,8 @@
 // resort.
 #pragma once
 
+#include <cmath>
+
 #include "garrison/core/error.hpp"
 #include "garrison/core/types.hpp"
 
@@ -35,13 +37,16 @@ class GARRISON_EXPORT TwoNumbers {
   }
   double rho() const { return rho_; }
   double p() const { return p_; }
-  /// rho + sqrt((N-1)/N) p.
-  double bound() const { return rho_ + single_ * p_; }
+  /// rho + sqrt((N-1)/N) p; infinite once the recursion overflowed.
+  double bound() const { return std::isinf(rho_) ? kInfinity : rho_ + single_ * p_; }
   const Constants& constants() const { return constants_; }
 
  private:
   /// H0: bound on an honest innovation less the sensor's own noise.
-  double honest(Eigen::Index sensor) const { return norm_CA_(sensor) * bound() + row_length_(sensor) * bw_; }
+  double honest(Eigen::Index sensor) const {
+    const double predicted = norm_CA_(sensor) == 0.0 ? 0.0 : norm_CA_(sensor) * bound();
+    return predicted + row_length_(sensor) * bw_;
+  }
 
   Constants constants_{};
   int s_;
