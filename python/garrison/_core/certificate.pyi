@@ -311,6 +311,11 @@ class TwoNumbers:
     @property
     def constants(self) -> dict: ...
     @property
+    def levels(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,): adaptive levels of the coming step
+        """
+    @property
     def p(self) -> float: ...
     @property
     def rho(self) -> float: ...
