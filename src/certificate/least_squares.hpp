@@ -22,11 +22,8 @@ class LeastSquares {
     for (int j = 0; j < rows.size(); ++j) {
       if (!uses(j)) continue;
       const double weight = 1.0 / rows.variance(j);
-      for (Eigen::Index k = 0; k < G_.cols(); ++k) {
-        const double wc = weight * rows.c(j)(k);
-        G_.col(k).noalias() += wc * rows.c(j);
-        g_(k) += wc * rows.y(j);
-      }
+      g_ += weight * rows.y(j) * rows.c(j);
+      for (Eigen::Index k = 0; k < G_.cols(); ++k) G_.col(k) += weight * rows.c(j)(k) * rows.c(j);
     }
     eigen_.compute(G_);
     const auto& values = eigen_.eigenvalues();

@@ -10,139 +10,193 @@
 namespace garrison::certificate {
 namespace {
 
-/// A set that may be the honest one: its least-squares state, and how far the true one may be.
-struct Candidate {
-  Vector x;
-  double radius;
-  Vector box;
+enum class Part : char { absent, left_out, in, proved };
+
+double choices(int of, int take) {
+  double count = 1.0;
+  for (int k = 1; k <= take; ++k) count *= static_cast<double>(of - take + k) / k;
+  return std::round(count);
+}
+
+}  // namespace
+
+struct SubsetsWorkspace::Room {
+  Room(int states, int sources, int capacity, int limit)
+      : fit(states),
+        part(static_cast<std::size_t>(sources)),
+        cleared(static_cast<std::size_t>(sources)),
+        x(states, limit),
+        box(states, limit),
+        radius(limit),
+        c(states) {
+    at_hand.reserve(static_cast<std::size_t>(sources));
+    witness.region.center.resize(states);
+    witness.region.box.resize(states);
+    witness.kept.reserve(static_cast<std::size_t>(capacity));
+    witness.proved.reserve(static_cast<std::size_t>(sources));
+  }
+
+  detail::LeastSquares fit;
+  std::vector<Part> part;     // of each source in the set that is being tried
+  std::vector<char> cleared;  // per source: in some consistent set
+  std::vector<int> at_hand;   // sources with a row that are not proved
+  int left = 0;
+  // Consistent sets, one per column: their least-squares state, and how far the true one may be.
+  Matrix x, box;
+  Vector radius;
+  Eigen::Index consistent = 0;
+  Vector c;
+  Witness witness;
+
+  void begin(const Rows& rows, const Assumption& a);
+  bool uses(const Rows& rows, int j) const {
+    return part[static_cast<std::size_t>(rows.source(j))] == Part::in;
+  }
+  bool leave_out(const Rows& rows, const Levels& levels, double z3, std::size_t first, int more);
+  bool judge(const Rows& rows, const Levels& levels, double z3);
+  std::pair<Eigen::Index, double> furthest(const Vector& from) const;
+  void enclose();
+  void close(const Rows& rows);
 };
 
-class Search {
- public:
-  Search(const Rows& rows, const Assumption& a, double z3)
-      : rows_(rows),
-        a_(a),
-        z3_(z3),
-        fit_(rows.states()),
-        in_(static_cast<std::size_t>(rows.sources()), 0),
-        cleared_(in_.size(), 0) {
-    for (const int source : a.proved) in_[static_cast<std::size_t>(source)] = -1;
-    for (int source = 0; source < rows.sources(); ++source)
-      if (rows.has(source) && in_[static_cast<std::size_t>(source)] == 0) at_hand_.push_back(source);
-    left_ = a.s - static_cast<int>(a.proved.size());
-    for (const int source : at_hand_) in_[static_cast<std::size_t>(source)] = 1;
+void SubsetsWorkspace::Room::begin(const Rows& rows, const Assumption& a) {
+  std::fill(part.begin(), part.end(), Part::absent);
+  std::fill(cleared.begin(), cleared.end(), 0);
+  for (const int source : a.proved) part[static_cast<std::size_t>(source)] = Part::proved;
+  at_hand.clear();
+  for (int source = 0; source < rows.sources(); ++source) {
+    if (!rows.has(source) || part[static_cast<std::size_t>(source)] == Part::proved) continue;
+    part[static_cast<std::size_t>(source)] = Part::in;
+    at_hand.push_back(source);
   }
+  left = a.s - static_cast<int>(a.proved.size());
+  consistent = 0;
+  witness.region.radius = kInfinity;
+  witness.kept.clear();
+  witness.proved.clear();
+}
 
-  int at_hand() const { return static_cast<int>(at_hand_.size()); }
-  int left() const { return left_; }
+/// Tries all sets, those left out in lexicographic order. False when the rows of some set, consistent or not,
+/// do not determine the state.
+bool SubsetsWorkspace::Room::leave_out(const Rows& rows, const Levels& levels, double z3, std::size_t first,
+                                       int more) {
+  if (more == 0) return judge(rows, levels, z3);
+  for (std::size_t k = first; k + static_cast<std::size_t>(more) <= at_hand.size(); ++k) {
+    Part& of = part[static_cast<std::size_t>(at_hand[k])];
+    of = Part::left_out;
+    const bool answered = leave_out(rows, levels, z3, k + 1, more - 1);
+    of = Part::in;
+    if (!answered) return false;
+  }
+  return true;
+}
 
-  /// Tries all sets of at_hand - left sources, those left out in lexicographic order. False when the rows of
-  /// some set, consistent or not, do not determine the state.
-  bool all() { return leave_out(0, left_); }
+bool SubsetsWorkspace::Room::judge(const Rows& rows, const Levels& levels, double z3) {
+  if (!fit.solve(rows, [&](int j) { return uses(rows, j); })) return false;
+  double sum = 0.0;
+  for (int j = 0; j < rows.size(); ++j) {
+    if (!uses(rows, j)) continue;
+    const double sigma = std::sqrt(rows.variance(j));
+    const double residual = std::abs(rows.y(j) - rows.c(j).dot(fit.state()));
+    const double room = levels.z1 * sigma + levels.z2 * std::sqrt(fit.spread2(rows, j));
+    if (!(residual <= room + 1e-12 * (room + std::abs(rows.y(j))))) return true;
+    sum += (residual / sigma) * (residual / sigma);
+  }
+  if (!std::isnan(z3) && !(sum <= z3 * z3 * (1.0 + 1e-12))) return true;
+  x.col(consistent) = fit.state();
+  radius(consistent) = levels.z2 / std::sqrt(fit.least());
+  for (Eigen::Index k = 0; k < box.rows(); ++k) box(k, consistent) = levels.z2 * std::sqrt(fit.variance(k));
+  ++consistent;
+  for (const int source : at_hand)
+    if (part[static_cast<std::size_t>(source)] == Part::in) cleared[static_cast<std::size_t>(source)] = 1;
+  return true;
+}
 
-  const std::vector<Candidate>& consistent() const { return consistent_; }
-  Witness witness() const;
+/// The consistent set whose ball reaches furthest from a point, and how far.
+std::pair<Eigen::Index, double> SubsetsWorkspace::Room::furthest(const Vector& from) const {
+  std::pair<Eigen::Index, double> far{0, -1.0};
+  for (Eigen::Index k = 0; k < consistent; ++k) {
+    const double reach = (x.col(k) - from).norm() + radius(k);
+    if (reach > far.second) far = {k, reach};
+  }
+  return far;
+}
 
- private:
-  bool leave_out(std::size_t first, int more) {
-    if (more == 0) return judge();
-    for (std::size_t k = first; k + static_cast<std::size_t>(more) <= at_hand_.size(); ++k) {
-      char& in = in_[static_cast<std::size_t>(at_hand_[k])];
-      in = 0;
-      const bool answered = leave_out(k + 1, more - 1);
-      in = 1;
-      if (!answered) return false;
+/// A small ball around all consistent sets: from the middle of their box, steps towards the furthest (Badoiu
+/// and Clarkson) as long as they help.
+void SubsetsWorkspace::Room::enclose() {
+  Region& region = witness.region;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    double low = kInfinity;
+    double high = -kInfinity;
+    for (Eigen::Index k = 0; k < consistent; ++k) {
+      low = std::min(low, x(i, k) - radius(k));
+      high = std::max(high, x(i, k) + radius(k));
     }
-    return true;
+    region.center(i) = 0.5 * (low + high);
   }
-
-  bool uses(int j) const { return in_[static_cast<std::size_t>(rows_.source(j))] == 1; }
-
-  bool judge() {
-    if (!fit_.solve(rows_, [&](int j) { return uses(j); })) return false;
-    double sum = 0.0;
-    for (int j = 0; j < rows_.size(); ++j) {
-      if (!uses(j)) continue;
-      const double sigma = std::sqrt(rows_.variance(j));
-      const double residual = std::abs(rows_.y(j) - rows_.c(j).dot(fit_.state()));
-      const double room = a_.levels.z1 * sigma + a_.levels.z2 * std::sqrt(fit_.spread2(rows_, j));
-      if (!(residual <= room + 1e-12 * (room + std::abs(rows_.y(j))))) return true;
-      sum += (residual / sigma) * (residual / sigma);
-    }
-    if (!std::isnan(z3_) && !(sum <= z3_ * z3_ * (1.0 + 1e-12))) return true;
-    Candidate one{fit_.state(), a_.levels.z2 / std::sqrt(fit_.least()), Vector(rows_.states())};
-    for (Eigen::Index k = 0; k < one.box.size(); ++k) one.box(k) = a_.levels.z2 * std::sqrt(fit_.variance(k));
-    consistent_.push_back(std::move(one));
-    for (const int source : at_hand_)
-      cleared_[static_cast<std::size_t>(source)] |= in_[static_cast<std::size_t>(source)];
-    return true;
-  }
-
-  /// The candidate whose ball reaches furthest from c, and how far.
-  std::pair<const Candidate*, double> furthest(const Vector& c) const {
-    std::pair<const Candidate*, double> far{nullptr, -1.0};
-    for (const Candidate& one : consistent_) {
-      const double reach = (one.x - c).norm() + one.radius;
-      if (reach > far.second) far = {&one, reach};
-    }
-    return far;
-  }
-
-  Region enclosing() const;
-
-  const Rows& rows_;
-  const Assumption& a_;
-  double z3_;
-  detail::LeastSquares fit_;
-  std::vector<char> in_;       // per source: 1 in the set, 0 left out or absent, -1 proved before
-  std::vector<char> cleared_;  // per source: in some consistent set
-  std::vector<int> at_hand_;   // sources with a row that are not proved
-  int left_;
-  std::vector<Candidate> consistent_;
-};
-
-/// A small ball around all candidates: from the middle of their box, steps towards the furthest (Badoiu and
-/// Clarkson) as long as they help.
-Region Search::enclosing() const {
-  const auto n = static_cast<Eigen::Index>(rows_.states());
-  Vector low = Vector::Constant(n, kInfinity);
-  Vector high = -low;
-  for (const Candidate& one : consistent_) {
-    low = low.cwiseMin((one.x.array() - one.radius).matrix());
-    high = high.cwiseMax((one.x.array() + one.radius).matrix());
-  }
-  Region region{0.5 * (low + high), 0.0, Vector::Zero(n)};
   auto far = furthest(region.center);
   for (int t = 1; t < 30; ++t) {
-    const Vector c = region.center + (far.first->x - region.center) / (t + 2);
+    c = region.center + (x.col(far.first) - region.center) / (t + 2);
     const auto next = furthest(c);
     if (next.second >= far.second) break;
     region.center = c;
     far = next;
   }
   region.radius = far.second;
-  for (const Candidate& one : consistent_)
-    region.box = region.box.cwiseMax((one.x - region.center).cwiseAbs() + one.box);
-  return region;
+  region.box.setZero();
+  for (Eigen::Index k = 0; k < consistent; ++k)
+    region.box = region.box.cwiseMax((x.col(k) - region.center).cwiseAbs() + box.col(k));
 }
 
-Witness Search::witness() const {
-  Witness w;
-  w.region = enclosing();
-  w.proved.assign(a_.proved.begin(), a_.proved.end());
-  for (const int source : at_hand_)
-    if (cleared_[static_cast<std::size_t>(source)] == 0) w.proved.push_back(source);
-  std::sort(w.proved.begin(), w.proved.end());
-  return w;
+/// Reports the proved sources, those known before among them, and the rows of the others.
+void SubsetsWorkspace::Room::close(const Rows& rows) {
+  if (!witness.region.refuted())
+    for (int source = 0; source < rows.sources(); ++source) {
+      const Part of = part[static_cast<std::size_t>(source)];
+      const bool shown = of == Part::in && consistent > 0 && cleared[static_cast<std::size_t>(source)] == 0 &&
+                         witness.region.answered();
+      if (of == Part::proved || shown) witness.proved.push_back(source);
+    }
+  for (int j = 0; j < rows.size(); ++j)
+    witness.kept.push_back(
+        static_cast<char>(!std::binary_search(witness.proved.begin(), witness.proved.end(), rows.source(j))));
 }
 
-double choices(int of, int take) {
-  double count = 1.0;
-  for (int k = 1; k <= take; ++k) count *= static_cast<double>(of - take + k) / k;
-  return count;
+SubsetsWorkspace::SubsetsWorkspace(int states, int sources, int capacity, int limit) {
+  const Rows checks_the_sizes(states, sources, capacity);
+  detail::require_least("limit", limit, 1);
+  detail::require_room("limit", 2.0 * states * static_cast<double>(limit));
+  room_ = std::make_unique<Room>(states, sources, capacity, limit);
+}
+SubsetsWorkspace::~SubsetsWorkspace() = default;
+SubsetsWorkspace::SubsetsWorkspace(SubsetsWorkspace&&) noexcept = default;
+SubsetsWorkspace& SubsetsWorkspace::operator=(SubsetsWorkspace&&) noexcept = default;
+
+double subsets_to_try(const Rows& rows, const Assumption& a) noexcept {
+  int at_hand = rows.present();
+  for (const int source : a.proved) at_hand -= rows.has(source) ? 1 : 0;
+  const int left = a.s - static_cast<int>(a.proved.size());
+  return left < 0 || at_hand <= left ? 0.0 : choices(at_hand, left);
 }
 
-}  // namespace
+const Witness& witness_subsets(const Rows& rows, const Assumption& a, double z3,
+                               SubsetsWorkspace& workspace) noexcept {
+  SubsetsWorkspace::Room& room = *workspace.room_;
+  room.begin(rows, a);
+  const double sets = subsets_to_try(rows, a);
+  if (room.left < 0) {
+    room.witness.region.radius = kNaN;
+  } else if (sets >= 1.0 && sets <= static_cast<double>(room.radius.size()) &&
+             room.leave_out(rows, a.levels, z3, 0, room.left)) {
+    if (room.consistent == 0)
+      room.witness.region.radius = kNaN;
+    else
+      room.enclose();
+  }
+  room.close(rows);
+  return room.witness;
+}
 
 Witness witness_subsets(const Rows& rows, const Assumption& a, double z3, int limit) {
   require(a, rows);
@@ -150,28 +204,13 @@ Witness witness_subsets(const Rows& rows, const Assumption& a, double z3, int li
   if (!std::isnan(z3)) detail::require_least("z3", z3, 0.0);
   if (a.bounded) refuse("bounded", "true", "Gaussian levels", "use interval() or leverage_ball()");
   if (a.prior != nullptr) refuse("prior", "a region", "none", "only leverage_ball() uses one");
-  Search search(rows, a, z3);
-  Witness w;
-  if (search.left() < 0) {
-    w.region.radius = kNaN;
-  } else if (search.at_hand() > search.left()) {
-    const double sets = choices(search.at_hand(), search.left());
-    if (sets > limit)
-      refuse("sets", text(std::round(sets)), "at most limit = " + std::to_string(limit),
-             "use leverage_ball(), or raise the limit");
-    if (search.all()) {
-      if (search.consistent().empty())
-        w.region.radius = kNaN;
-      else
-        w = search.witness();
-    }
-  }
-  w.kept.resize(static_cast<std::size_t>(rows.size()));
-  if (w.proved.empty() && !w.region.refuted()) w.proved.assign(a.proved.begin(), a.proved.end());
-  for (int j = 0; j < rows.size(); ++j)
-    w.kept[static_cast<std::size_t>(j)] =
-        static_cast<char>(std::find(w.proved.begin(), w.proved.end(), rows.source(j)) == w.proved.end());
-  return w;
+  const double sets = subsets_to_try(rows, a);
+  if (!(sets <= limit))
+    refuse("sets", text(sets), "at most limit = " + std::to_string(limit),
+           "use leverage_ball(), or raise the limit");
+  SubsetsWorkspace workspace(rows.states(), rows.sources(), rows.capacity(),
+                             std::max(1, static_cast<int>(sets)));
+  return witness_subsets(rows, a, z3, workspace);
 }
 
 }  // namespace garrison::certificate

@@ -370,3 +370,32 @@ TEST_CASE("witnesses tell too few rows from a refutation, and refuse what has no
   CHECK_THROWS_AS(Rows(0, 1, 1), InvalidInput);
   CHECK_THROWS_AS(LeverageWorkspace(1, 0, 1), InvalidInput);
 }
+
+TEST_CASE("nearly parallel rows far from the origin: rounding does not lose the truth") {
+  test::Rng rng(kSeed + 5);
+  double largest = 0.0;
+  int answered = 0;
+  for (int k = 0; k < 3000; ++k) {
+    CAPTURE(k);
+    Sample d = draw(rng, 2, 8, 0, false);
+    const Vector main = test::unit_vector(rng, 2);
+    const double angle = std::pow(10.0, test::uniform(rng, -5.0, -1.0));
+    const Vector toward = test::unit_vector(rng, 2);
+    for (Eigen::Index j = 0; j < d.y.size(); ++j) {
+      d.C.row(j) = (main + angle * test::unit_vector(rng, 2)).transpose();
+      d.R(j) = 1.0;
+    }
+    d.x *= 1e6;
+    d.width.setConstant(1e-2);
+    d.y = d.C * d.x;
+    for (Eigen::Index j = 0; j < d.y.size(); ++j) d.y(j) += d.C.row(j).dot(toward) < 0.0 ? -1e-2 : 1e-2;
+    const Witness w = leverage_ball(d.rows().rows, {0, {}, true, nullptr, {}});
+    REQUIRE_FALSE(w.region.refuted());
+    if (!w.region.answered()) continue;
+    ++answered;
+    CHECK((d.x - w.region.center).norm() <= w.region.radius);
+    largest = std::max(largest, (d.x - w.region.center).norm() / w.region.radius);
+  }
+  CHECK(answered > 2500);
+  std::cout << "W2, nearly parallel rows: largest error/bound " << largest << '\n';
+}

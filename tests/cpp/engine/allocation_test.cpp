@@ -9,10 +9,10 @@
 
 #include "../random_system.hpp"
 #include "garrison/certificate/interval.hpp"
-#include "garrison/certificate/leverage_ball.hpp"
 #include "garrison/certificate/order_rule.hpp"
 #include "garrison/certificate/propagate.hpp"
 #include "garrison/certificate/relay.hpp"
+#include "garrison/certificate/subsets.hpp"
 #include "garrison/engine/any_filter.hpp"
 #include "garrison/filters/lfre.hpp"
 #include "garrison/filters/partial_sharing/filter.hpp"
@@ -261,6 +261,7 @@ TEST_CASE("the witness and the relays of a sample do not allocate") {
       const int sources = 3 * n + 4;
       Rows rows(n, sources, 2 * sources);
       LeverageWorkspace room(n, sources, 2 * sources);
+      SubsetsWorkspace sets(n, sources, 2 * sources, 100);
       const Matrix A = Matrix::Identity(n, n);
       const Propagation propagation = Propagation::bounded(A, 3, 0.1);
       Region aged{Vector::Zero(n), kInfinity, {}};
@@ -280,6 +281,7 @@ TEST_CASE("the witness and the relays of a sample do not allocate") {
         }
         const Witness& w = leverage_ball(rows, {2, {5.0, 5.0}, bounded, &prior, proved}, room);
         answered += w.region.answered() ? 1 : 0;
+        witness_subsets(rows, {2, {5.0, 5.0}, false, nullptr, proved}, kNaN, sets);
         propagation.age(w.region, 2, aged);
         RelayedBound bound;
         bound.add(0.5, bound_around(w.region, prior.center), 1.0);
