@@ -14,9 +14,9 @@ namespace garrison::certificate {
 struct LeverageWorkspace::Room {
   Room(int states, int sources, int capacity)
       : fit(states),
-        residual(capacity),
         reach(capacity),
         out(static_cast<std::size_t>(sources)),
+        hit(out.size()),
         leverage(static_cast<std::size_t>(sources)),
         influence(static_cast<std::size_t>(sources)),
         noise(static_cast<std::size_t>(sources)),
@@ -28,9 +28,9 @@ struct LeverageWorkspace::Room {
   }
 
   detail::LeastSquares fit;
-  Vector residual;        // |y_j - C_j c|
   Vector reach;           // of the own ball: bound on |C_j (x - c)|
   std::vector<char> out;  // sources that are proved
+  std::vector<char> hit;  // sources that a pass refutes
   int count_out = 0;
   bool own = false;                                // an own ball exists
   std::vector<double> leverage, influence, noise;  // sums over the kept rows of a source
@@ -69,23 +69,23 @@ bool LeverageWorkspace::Room::refute(const Rows& rows, const Assumption& a) {
     return std::abs(rows.y(j) - Cc) > width + room + 1e-12 * (width + std::abs(rows.y(j)) + std::abs(Cc));
   };
   // All rows are judged before any source leaves: `keeps` must not change within a pass.
-  std::fill(influence.begin(), influence.end(), 0.0);
+  std::fill(hit.begin(), hit.end(), 0);
   for (int j = 0; j < rows.size(); ++j) {
     if (!keeps(rows, j)) continue;
     bool bad = own && outside(j, rows.c(j).dot(fit.state()), reach(j));
     if (a.prior != nullptr && a.prior->answered())
       bad = bad || outside(j, rows.c(j).dot(a.prior->center), rows.c(j).norm() * a.prior->radius);
-    if (bad) influence[static_cast<std::size_t>(rows.source(j))] = 1.0;
+    if (bad) hit[static_cast<std::size_t>(rows.source(j))] = 1;
   }
   for (std::size_t k = 0; k < out.size(); ++k) {
-    if (influence[k] == 0.0) continue;
+    if (hit[k] == 0) continue;
     out[k] = 1;
     ++count_out;
   }
   return count_out > before;
 }
 
-/// Steps 3 and 4 up to the leverages: false when the kept rows do not determine the state.
+/// Steps 2 and 3, the sums per source: false when the kept rows do not determine the state.
 bool LeverageWorkspace::Room::fit_rows(const Rows& rows, const Assumption& a) {
   own = false;
   if (!fit.solve(rows, [&](int j) { return keeps(rows, j); })) return false;
@@ -98,15 +98,15 @@ bool LeverageWorkspace::Room::fit_rows(const Rows& rows, const Assumption& a) {
     const double spread2 = fit.spread2(rows, j);
     const double infl = std::sqrt(spread2) / rows.variance(j);
     reach(j) = std::sqrt(spread2);
-    residual(j) = std::abs(rows.y(j) - rows.c(j).dot(fit.state()));
+    const double residual = std::abs(rows.y(j) - rows.c(j).dot(fit.state()));
     leverage[source] += spread2 / rows.variance(j);
-    influence[source] += infl * residual(j);
+    influence[source] += infl * residual;
     if (a.bounded) noise[source] += infl * rows.width(j);
   }
   return true;
 }
 
-/// bG: bound on ||G^1/2 (x - c)||.
+/// bG of step 3: bound on ||G^1/2 (x - c)||.
 double LeverageWorkspace::Room::in_frame(const Rows& rows, const Assumption& a, int left, double mu) {
   const double attack = top(influence, left);
   if (!a.bounded) return attack / mu + a.levels.z2 / std::sqrt(mu);

@@ -71,16 +71,37 @@ double quantile(double delta, double start, const Halves& halves) {
   }
 }
 
-/// Largest |sum_K V/R| / sqrt(sum_K 1/R) over all K with at most `missing` of the sensors from `first` on
-/// left out; a, b: sums over what is kept so far of V/R and 1/R.
-double largest_statistic(const Vector& a, const Vector& b, double sum_a, double sum_b, Eigen::Index first,
-                         int missing) {
-  double most = std::abs(sum_a) / std::sqrt(sum_b);
-  if (missing == 0) return most;
-  for (Eigen::Index j = first; j < a.size(); ++j)
-    most = std::max(most, largest_statistic(a, b, sum_a - a(j), sum_b - b(j), j + 1, missing - 1));
-  return most;
-}
+/// Largest |sum_K V/R| / sqrt(sum_K 1/R) over all sets with at most `missing` sensors left out.
+class LargestStatistic {
+ public:
+  LargestStatistic(const Vector& v, const Vector& inverse)
+      : a_(v.cwiseProduct(inverse)), b_(inverse), rest_a_(v.size() + 1), rest_b_(v.size() + 1) {
+    rest_a_(v.size()) = 0.0;
+    rest_b_(v.size()) = 0.0;
+    for (Eigen::Index j = v.size(); j-- > 0;) {
+      rest_a_(j) = rest_a_(j + 1) + a_(j);
+      rest_b_(j) = rest_b_(j + 1) + b_(j);
+    }
+  }
+
+  double over(int missing) const { return walk(0, 0.0, 0.0, missing); }
+
+ private:
+  /// a, b: sums over what is kept before `first`. Sums are built up, never subtracted.
+  double walk(Eigen::Index first, double a, double b, int missing) const {
+    double most = std::abs(a + rest_a_(first)) / std::sqrt(b + rest_b_(first));
+    if (missing == 0) return most;
+    for (Eigen::Index j = first; j < a_.size(); ++j) {
+      if (b + rest_b_(j + 1) > 0.0) most = std::max(most, walk(j + 1, a, b, missing - 1));
+      a += a_(j);
+      b += b_(j);
+    }
+    return most;
+  }
+
+  Vector a_, b_;
+  Vector rest_a_, rest_b_;  // sums over the sensors from j on
+};
 
 double order_statistic(std::vector<double> values, std::size_t rank) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank - 1);
@@ -155,8 +176,7 @@ Levels calibrated_levels(const MatrixRef& V, const VectorRef& R, int s, double d
   for (std::size_t t = 0; t < T; ++t) {
     const auto v = V.row(static_cast<Eigen::Index>(t)).transpose();
     single[t] = (v.array().abs() / R.array().sqrt()).maxCoeff();
-    const Vector a = v.cwiseProduct(inverse);
-    joint[t] = largest_statistic(a, inverse, a.sum(), inverse.sum(), 0, s);
+    joint[t] = LargestStatistic(v, inverse).over(s);
   }
   const auto k = static_cast<std::size_t>(rank);
   return {order_statistic(std::move(single), k), order_statistic(std::move(joint), k)};

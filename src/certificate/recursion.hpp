@@ -20,8 +20,7 @@ class Recursion {
   /// `noise_d`, `noise_eta`: row m: contribution of bounded noise over m lags (zero in the Gaussian case).
   Recursion(const Kernels& kernels, const TableOptions& options, Gains noise_d, Gains noise_eta);
 
-  /// Innovations of step t from eta(t-1): H0 without and H with the sensor's own noise b (README, steps 1 and
-  /// 2).
+  /// Of one step: H0 bounds an honest innovation less the sensor's own noise, which is at most b.
   Inputs inputs(const Vector& H0, const Vector& b) const;
 
   /// d and eta of a step: `m` lags, `at(k)` the inputs k steps ago, `before` = d(t - m).

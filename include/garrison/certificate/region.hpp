@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the state is: what every certificate gives and every relay passes on.
+// Where the state is: what every witness gives and every relay passes on. Definitions and proofs of all
+// certificates: docs/certificates.md.
 #pragma once
 
 #include <cmath>

@@ -14,7 +14,7 @@ namespace garrison::certificate {
 /// ||J(t) - 11'/N|| <= gamma(t). Bounded noise, adaptive level.
 class GARRISON_EXPORT TwoNumbers {
  public:
-  /// The constants of the recursion, in the note's letters.
+  /// The constants of the recursion, in the letters of docs/certificates.md.
   struct Constants {
     double c, cw, tau, kA, kw, m, v1, v2;
   };

@@ -1,4 +1,4 @@
-"""Cases of the run-time certificates: every kind is told by a field that only it has (section 1 of their README)."""
+"""Cases of the run-time certificates: every kind is told by a field that only it has."""
 
 from collections.abc import Callable
 from typing import Any
