@@ -26,6 +26,7 @@ void bind_structure(py::module_& m);
 void bind_structural(py::module_& m);
 void bind_partial_sharing(py::module_& m);
 void bind_platoon(py::module_& m);
+void bind_certificate(py::module_& m);
 
 /// A filter as Python holds it; every family has a class of its own derived from this one.
 struct FilterHandle {

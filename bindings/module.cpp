@@ -17,4 +17,5 @@ PYBIND11_MODULE(_core, m) {
   bind_structural(m);
   bind_partial_sharing(m);
   bind_platoon(m);
+  bind_certificate(m);
 }

@@ -13,6 +13,7 @@ from . import structure
 from . import structural
 from . import partial_sharing
 from . import platoon
+from . import certificate
 
 __all__: list[str] = [
     "Agent",
@@ -38,6 +39,7 @@ __all__: list[str] = [
     "SubsetBound",
     "attack_infos",
     "central_kalman",
+    "certificate",
     "chebyshev_contraction",
     "check",
     "filter_infos",

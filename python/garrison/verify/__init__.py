@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from garrison._core import IoError
-from garrison.verify import partial_sharing, platoon, rdkf, saturation, structural
+from garrison.verify import certificates, partial_sharing, platoon, rdkf, saturation, structural
 from garrison.verify.bad import judge
 from garrison.verify.compare import FieldResult, compare
 
@@ -21,6 +21,7 @@ FAMILIES = {
     "he_platoon": platoon,
     "moradi_brcdf": partial_sharing,
     "doost_structural": structural,
+    "certificates": certificates,
 }
 
 

@@ -9,6 +9,11 @@
 
 #include "../every_filter.hpp"
 #include "../random_system.hpp"
+#include "garrison/certificate/interval.hpp"
+#include "garrison/certificate/order_rule.hpp"
+#include "garrison/certificate/propagate.hpp"
+#include "garrison/certificate/relay.hpp"
+#include "garrison/certificate/subsets.hpp"
 #include "garrison/engine/any_filter.hpp"
 #include "garrison/filters/platoon/world.hpp"
 
@@ -215,5 +220,49 @@ TEST_CASE("eight trials side by side do not allocate either") {
     for (int t = 0; t < 20; ++t) lanes->step(y.data());
     armed = false;
     CHECK(count == 0);
+  }
+}
+
+TEST_CASE("the witness and the relays of a sample do not allocate") {
+  using namespace garrison::certificate;
+  for (const int n : {1, 2, 5, 8, 12}) {
+    for (const bool bounded : {false, true}) {
+      CAPTURE(n);
+      test::Rng rng(static_cast<std::uint64_t>(n));
+      const int sources = 3 * n + 4;
+      Rows rows(n, sources, 2 * sources);
+      LeverageWorkspace room(n, sources, 2 * sources);
+      SubsetsWorkspace sets(n, sources, 2 * sources, 100);
+      const Matrix A = Matrix::Identity(n, n);
+      const Propagation propagation = Propagation::bounded(A, 3, 0.1);
+      Region aged{Vector::Zero(n), kInfinity, {}};
+      Region prior{Vector::Zero(n), kInfinity, {}};
+      const Matrix C = test::normal_matrix(rng, n, 2 * sources);
+      std::vector<double> values(static_cast<std::size_t>(sources), 1.0);
+      std::vector<double> ends(2 * values.size());
+      const std::vector<int> proved{1};
+      int answered = 0;
+      count = 0;
+      armed = true;
+      for (int t = 0; t < 20; ++t) {
+        rows.clear();
+        for (int j = 0; j < 2 * sources; ++j) {
+          const double* c = C.col(j).data();
+          rows.add(j / 2, {c, static_cast<std::size_t>(n)}, j < 4 ? 1e3 * t : j == 7 ? kNaN : 0.1, 1.0, 0.5);
+        }
+        const Witness& w = leverage_ball(rows, {2, {5.0, 5.0}, bounded, &prior, proved}, room);
+        answered += w.region.answered() ? 1 : 0;
+        witness_subsets(rows, {2, {5.0, 5.0}, false, nullptr, proved}, kNaN, sets);
+        propagation.age(w.region, 2, aged);
+        RelayedBound bound;
+        bound.add(0.5, bound_around(w.region, prior.center), 1.0);
+        for (double& value : values) value = bound.value() + t;
+        order_rule(values, 2);
+        interval(values, values, 2, ends);
+      }
+      armed = false;
+      CHECK(count == 0);
+      CHECK(answered == 20);
+    }
   }
 }

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+// Certificates: where the state is, whatever at most s sensors say.
+#include "bindings.hpp"
+#include "garrison/certificate/gaussian_table.hpp"
+#include "garrison/certificate/informed.hpp"
+#include "garrison/certificate/order_rule.hpp"
+#include "garrison/certificate/propagate.hpp"
+#include "garrison/certificate/recovery.hpp"
+#include "garrison/certificate/relay.hpp"
+#include "garrison/certificate/scan.hpp"
+#include "garrison/certificate/subsets.hpp"
+#include "garrison/certificate/two_numbers.hpp"
+
+using namespace garrison;
+using namespace garrison::certificate;
+
+namespace {
+
+using Pair = std::pair<double, double>;
+using Ids = std::vector<int>;
+
+Pair from_levels(const Levels& l) { return {l.z1, l.z2}; }
+Pair from_interval(const Interval& i) { return {i.lo, i.hi}; }
+
+std::optional<Vector> center_of(const Region& r) {
+  return r.answered() ? std::optional(r.center) : std::nullopt;
+}
+std::optional<Vector> box_of(const Region& r) {
+  return r.answered() && r.box.size() > 0 ? std::optional(r.box) : std::nullopt;
+}
+
+double checked_bound_around(const Region& r, const VectorRef& estimate) {
+  if (r.answered() && (estimate.size() != r.center.size() || !estimate.allFinite()))
+    refuse("estimate", std::to_string(estimate.size()) + " numbers",
+           std::to_string(r.center.size()) + " finite numbers");
+  return bound_around(r, estimate);
+}
+
+void bind_quantiles(py::module_& m) {
+  m.def("two_sided", &two_sided, py::arg("delta"), "z with P(|N(0,1)| > z) = delta; delta in (0, 1).");
+  m.def("chi", &chi, py::arg("delta"), py::arg("degrees"),
+        "c with P(chi-square > c^2) = delta; delta in (0, 1), degrees >= 1.");
+  m.def("sub_gaussian_two_sided", &sub_gaussian_two_sided, py::arg("delta"),
+        "sqrt(2 ln(2/delta)): two_sided for noise with a sub-Gaussian proxy variance.");
+  m.def("sub_gaussian_chi", &sub_gaussian_chi, py::arg("delta"), py::arg("degrees"),
+        "sqrt(n + 2 sqrt(n u) + 2 u), u = ln(1/delta) (Hsu, Kakade, Zhang 2012): chi for such noise.");
+  m.def(
+      "gaussian_levels",
+      [](double delta, int rows, int states) { return from_levels(gaussian_levels(delta, rows, states)); },
+      py::arg("delta"), py::arg("rows"), py::arg("states"),
+      "(z1, z2) of the witnesses that fail together with probability <= delta, half for each.");
+  m.def(
+      "sub_gaussian_levels",
+      [](double delta, int rows, int states) {
+        return from_levels(sub_gaussian_levels(delta, rows, states));
+      },
+      py::arg("delta"), py::arg("rows"), py::arg("states"), "The same for sub-Gaussian noise.");
+  m.def(
+      "calibrated_levels",
+      [](const MatrixRef& V, const VectorRef& R, int s, double delta) {
+        return from_levels(calibrated_levels(V, R, s, delta));
+      },
+      py::arg("V"), py::arg("R"), py::arg("s"), py::arg("delta"),
+      "Distribution-free (z1, z2) for one state from clean residuals V (T, N), times C = +-1; R (N,) "
+      "variances.\n"
+      "Exact for exchangeable samples; delta >= 2/(T+1). Raises InvalidInput, also beyond 2e8 sums.");
+}
+
+void bind_regions(py::module_& m) {
+  py::class_<Region>(m, "Region",
+                     "||x - center|| <= radius, and |x_k - center_k| <= box_k where there is a box.\n"
+                     "radius inf: the rows at hand cannot answer; nan: the data refute the assumption.")
+      .def(py::init([](const Vector& center, double radius) {
+             if (center.size() < 1 || !center.allFinite())
+               refuse("center", std::to_string(center.size()) + " numbers", "at least one, all finite");
+             if (radius < 0.0) refuse("radius", text(radius), "a number >= 0, infinity or NaN");
+             return Region{center, radius, {}};
+           }),
+           py::arg("center"), py::arg("radius"))
+      .def_property_readonly("center", &center_of, "(n,), None without an answer")
+      .def_readonly("radius", &Region::radius)
+      .def_property_readonly("box", &box_of, "(n,), None where there is none")
+      .def_property_readonly("answered", &Region::answered, "radius is finite")
+      .def_property_readonly("refuted", &Region::refuted, "radius is nan: more than s are attacked")
+      .def("bound_around", &checked_bound_around, py::arg("estimate"),
+           "Bound on ||estimate - x|| for any estimate (n,); inf without an answer, nan when refuted.");
+  py::class_<Witness>(m, "Witness", "Answer of leverage_ball and witness_subsets.")
+      .def_readonly("region", &Witness::region)
+      .def_property_readonly(
+          "center", [](const Witness& w) { return center_of(w.region); }, "region.center")
+      .def_property_readonly(
+          "radius", [](const Witness& w) { return w.region.radius; }, "region.radius")
+      .def_property_readonly(
+          "box", [](const Witness& w) { return box_of(w.region); }, "region.box")
+      .def_property_readonly(
+          "kept", [](const Witness& w) { return std::vector<bool>(w.kept.begin(), w.kept.end()); },
+          "per row: neither of a proved source nor refuted; False for rows that are absent")
+      .def_readonly("proved", &Witness::proved, "sources shown to be attacked, with those given");
+}
+
+/// `kept` by position in what was given.
+Witness by_position(Witness w, const GivenRows& given, Eigen::Index rows) {
+  std::vector<char> kept(static_cast<std::size_t>(rows), 0);
+  for (std::size_t k = 0; k < given.position.size(); ++k)
+    kept[static_cast<std::size_t>(given.position[k])] = w.kept[k];
+  w.kept = std::move(kept);
+  return w;
+}
+
+void bind_witness(py::module_& m) {
+  m.def(
+      "leverage_ball",
+      [](const VectorRef& y, const MatrixRef& C, const VectorRef& R, int s, double z1, double z2,
+         const std::optional<Vector>& widths, const std::optional<Region>& prior, const Ids& proved,
+         const Ids& sources) {
+        const GivenRows given = given_rows(y, C, R, widths.value_or(Vector()), sources);
+        Assumption a{s, {z1, z2}, widths.has_value(), prior ? &*prior : nullptr, proved};
+        return by_position(leverage_ball(given.rows, a), given, y.size());
+      },
+      py::arg("y"), py::arg("C"), py::arg("R"), py::arg("s"), py::arg("z1") = 0.0, py::arg("z2") = 0.0,
+      py::kw_only(), py::arg("widths") = py::none(), py::arg("prior") = py::none(), py::arg("proved") = Ids(),
+      py::arg("sources") = Ids(),
+      "W2: region of the state from one sample's rows y (m,), nan = missing; C (m, n); variances R (m,).\n"
+      "At most s of all sources lie. z1, z2: gaussian_levels(); widths (m,): bounded noise |v| <= width "
+      "instead.\n"
+      "prior: a Region that contains x. sources (m,): of each row, empty = its position; proved: sources "
+      "known to\n"
+      "be attacked, which then must never change. Returns a Witness; raises InvalidInput.");
+  m.def(
+      "witness_subsets",
+      [](const VectorRef& y, const MatrixRef& C, const VectorRef& R, int s, double z1, double z2,
+         std::optional<double> z3, const Ids& proved, const Ids& sources, int limit) {
+        const GivenRows given = given_rows(y, C, R, Vector(), sources);
+        if (z3 && std::isnan(*z3)) refuse("z3", "nan", "a number >= 0, or None");
+        const py::gil_scoped_release no_gil;
+        const Assumption a{s, {z1, z2}, false, nullptr, proved};
+        return by_position(witness_subsets(given.rows, a, z3.value_or(kNaN), limit), given, y.size());
+      },
+      py::arg("y"), py::arg("C"), py::arg("R"), py::arg("s"), py::arg("z1"), py::arg("z2"), py::kw_only(),
+      py::arg("z3") = py::none(), py::arg("proved") = Ids(), py::arg("sources") = Ids(),
+      py::arg("limit") = kMostSubsets,
+      "W3: the same by all sets of sources that may be the honest ones, C(sources, s) of them; sharper.\n"
+      "z3: chi(delta3, m - s - n), only where the law of the noise is known. Raises InvalidInput, also when "
+      "there\n"
+      "are more than `limit` sets.");
+  m.def(
+      "order_rule", [](const VectorRef& values, int f) { return order_rule(values, f); }, py::arg("values"),
+      py::arg("f"),
+      "The (f+1)-th smallest of upper bounds of which at most f are wrong; inf with f or fewer, nan = none.");
+  m.def(
+      "order_bound", &order_bound, py::arg("r"), py::arg("width"), py::arg("s"),
+      "W0, one state: bound on |xhat - x| from r (m,) = C (y - C xhat) and widths (m,), at most s attacked.");
+  m.def(
+      "interval",
+      [](const VectorRef& y, const VectorRef& width, int s) { return from_interval(interval(y, width, s)); },
+      py::arg("y"), py::arg("width"), py::arg("s"),
+      "W0, one state: (lo, hi) of the points in at least m - s of the intervals y +- width, y (m,) = C y, "
+      "nan =\n"
+      "missing. (nan, nan): more than s attacked; (-inf, inf): not enough rows.");
+  m.def(
+      "scan",
+      [](const VectorRef& r, const VectorRef& R, int s, double z1, double z2) {
+        return from_interval(scan(r, R, s, z1, z2));
+      },
+      py::arg("r"), py::arg("R"), py::arg("s"), py::arg("z1"), py::arg("z2"),
+      "W1, one state, Gaussian noise: (lo, hi) of x - xhat from r (m,) = C (y - C xhat); R (m,) variances.");
+}
+
+py::array_t<double> stacked(const std::vector<Gains>& gains) {
+  const auto N = gains.front().rows();
+  std::vector<double> all;
+  all.reserve(gains.size() * static_cast<std::size_t>(N * N));
+  for (const Gains& one : gains) all.insert(all.end(), one.data(), one.data() + one.size());
+  return owned(std::move(all), {static_cast<py::ssize_t>(gains.size()), N, N});
+}
+
+void bind_system(py::module_& m) {
+  py::class_<ErrorSystem>(m, "ErrorSystem", "E(t) = M E(t-1) + B_w w(t-1) + B (v(t) + a(t)), agent by agent.")
+      .def_readonly("M", &ErrorSystem::M, "(N n, N n)")
+      .def_readonly("B", &ErrorSystem::B, "(N n, N)")
+      .def_readonly("B_w", &ErrorSystem::B_w, "(N n, n)");
+  m.def(
+      "error_system",
+      [](const MatrixRef& A, const MatrixRef& C, const MatrixRef& J, const Ids& silent) {
+        return error_system(A, C, J, silent);
+      },
+      py::arg("A"), py::arg("C"), py::arg("J"), py::arg("silent") = Ids(),
+      "Lemma 1. A (n, n); C (N, n), rows of length 1 or 0; J (N, N), the averaging of one step, row sums 1;\n"
+      "silent: sensors that inject nothing. Raises InvalidInput.");
+  py::class_<Kernels>(m, "Kernels",
+                      "What k steps of the error system do: gb, ge (K, N, N), wb, we (K, N),\n"
+                      "Rb, Re (K+1, N, N).")
+      .def_property_readonly("gb", [](const Kernels& k) { return stacked(k.gb); })
+      .def_property_readonly("ge", [](const Kernels& k) { return stacked(k.ge); })
+      .def_readonly("wb", &Kernels::wb)
+      .def_readonly("we", &Kernels::we)
+      .def_property_readonly("Rb", [](const Kernels& k) { return stacked(k.Rb); })
+      .def_property_readonly("Re", [](const Kernels& k) { return stacked(k.Re); })
+      .def_property_readonly("window", &Kernels::window);
+  m.def("kernels", &kernels, py::arg("system"), py::arg("window"), py::call_guard<py::gil_scoped_release>(),
+        "Kernels of K = window lags, best so many that Rb[K].sum(1) < 1e-3. Raises InvalidInput.");
+}
+
+py::object steady_of(const Table& t) {
+  if (!t.steady) return py::none();
+  return py::dict(py::arg("d") = t.steady->d, py::arg("eta") = t.steady->eta);
+}
+
+void bind_tables(py::module_& m) {
+  py::class_<Table>(m, "Table",
+                    "Data-free bounds, row t = 0..T, column = agent; infinite where they overflow.")
+      .def_readonly("d", &Table::d, "(T+1, N): bounds on ||e_i(t)||")
+      .def_readonly("eta", &Table::eta, "(T+1, N): bounds on |C_j A e_j(t)|")
+      .def_readonly("H", &Table::H, "(T+1, N): bounds on honest innovations; row 0 is nan")
+      .def_readonly("level", &Table::level, "(T+1, N): H or beta; row 0 is nan")
+      .def_property_readonly("steady", &steady_of,
+                             "{d, eta} (N,) that hold from T on for ever; None: none known");
+  m.def(
+      "table",
+      [](const Kernels& k, int s, double start, int T, double bw, const Vector& bv,
+         std::optional<double> beta, bool fixed) {
+        const py::gil_scoped_release no_gil;
+        return table(k, {s, start, T, beta, fixed}, bw, bv);
+      },
+      py::arg("kernels"), py::kw_only(), py::arg("s"), py::arg("start"), py::arg("T"), py::arg("bw"),
+      py::arg("bv"), py::arg("beta") = py::none(), py::arg("fixed") = false,
+      "Theorem T, bounded noise ||w|| <= bw, |v_j| <= bv[j] (N,). start: bound on all ||e_i(0)||; beta: "
+      "fixed level,\n"
+      "None = adaptive; fixed: the attacked set never changes. Raises InvalidInput.");
+  py::class_<GaussianTable>(m, "GaussianTable",
+                            "Table for Gaussian noise; d and eta without the noise itself.")
+      .def_readonly("table", &GaussianTable::table)
+      .def_readonly("deviation", &GaussianTable::deviation,
+                    "(T+1, N): sqrt of the largest eigenvalue of P_ii")
+      .def("bound", &GaussianTable::bound, py::arg("t"), py::arg("delta"),
+           "(N,): fails with probability <= N T P(|N(0,1)| > z) + delta for each agent and step.");
+  m.def(
+      "gaussian_table",
+      [](const Kernels& k, int s, double start, int T, const Matrix& Q, const Vector& R, double z,
+         std::optional<double> beta, bool fixed) {
+        const py::gil_scoped_release no_gil;
+        return gaussian_table(k, {s, start, T, beta, fixed}, Q, R, z);
+      },
+      py::arg("kernels"), py::kw_only(), py::arg("s"), py::arg("start"), py::arg("T"), py::arg("Q"),
+      py::arg("R"), py::arg("z"), py::arg("beta") = py::none(), py::arg("fixed") = false,
+      "Theorem TG: w ~ N(0, Q) (n, n), v_j ~ N(0, R[j]) (N,); z: level of the event. Raises InvalidInput.");
+  m.def("lists_complete", &lists_complete, py::arg("step"), py::arg("diameter"), py::arg("rounds"),
+        "t0 of theorem I: the step from which all lists are complete.");
+  m.def(
+      "informed",
+      [](const ErrorSystem& x, const Vector& start, int steps, double bw, const Vector& bv) {
+        const py::gil_scoped_release no_gil;
+        return informed(x, start, steps, bw, bv);
+      },
+      py::arg("system"), py::arg("start"), py::arg("steps"), py::arg("bw"), py::arg("bv"),
+      "Theorem I, bounded noise: (steps, N), row k-1 bounds ||e_i(t0 + k)||. system: with the proved sensors "
+      "silent;\n"
+      "start (N,): bounds at t0. Raises InvalidInput.");
+  m.def(
+      "informed_gaussian",
+      [](const ErrorSystem& x, const Vector& start, int steps, const Matrix& Q, const Vector& R,
+         const Matrix& P0, double delta) {
+        const py::gil_scoped_release no_gil;
+        return informed(x, start, steps, Q, R, P0, delta);
+      },
+      py::arg("system"), py::arg("start"), py::arg("steps"), py::arg("Q"), py::arg("R"), py::arg("P0"),
+      py::arg("delta"),
+      "Theorem I, Gaussian noise. P0 (N n, N n): zero unless t0 was fixed in advance. Raises InvalidInput.");
+}
+
+LossState state_of(const std::pair<int, double>& s, int t) {
+  if (s.first < 0 || s.first > t) refuse("lam", std::to_string(s.first), "a time in 0.." + std::to_string(t));
+  if (!(s.second >= 0.0)) refuse("x", text(s.second), "a number >= 0");
+  return {s.first, s.second};
+}
+std::pair<int, double> from_state(const LossState& s) { return {s.lam, s.x}; }
+
+int agent_of(const Recovery& r, int agent) {
+  if (agent < 0 || agent >= r.rb().cols())
+    refuse("agent", std::to_string(agent), "0.." + std::to_string(r.rb().cols() - 1));
+  return agent;
+}
+
+void bind_messages(py::module_& m) {
+  m.def(
+      "averaged",
+      [](const VectorRef& weights, const MatrixRef& estimates, const VectorRef& bounds) {
+        return averaged(weights, estimates.transpose(), bounds);
+      },
+      py::arg("weights"), py::arg("estimates"), py::arg("bounds"),
+      "R: Region around the weighted sum of estimates (q, n) whose errors are at most bounds (q,), inf = not "
+      "known;\n"
+      "weights (q,) of any sign with sum 1. Raises InvalidInput.");
+  m.def("after_injection", &after_injection, py::arg("norm_A"), py::arg("b"), py::arg("bw"), py::arg("kappa"),
+        "R: norm_A b + bw + |kappa|, the bound after predicting and injecting a known innovation.");
+  py::class_<Propagation>(m, "Propagation", "Regions of some steps ago as regions of today, prepared once.")
+      .def_static(
+          "bounded",
+          [](const MatrixRef& A, int steps, double bw) { return Propagation::bounded(A, steps, bw); },
+          py::arg("A"), py::arg("steps"), py::arg("bw"), "||w|| <= bw, ages 0..steps. Raises InvalidInput.")
+      .def_static(
+          "gaussian",
+          [](const MatrixRef& A, int steps, const MatrixRef& Q, double delta) {
+            return Propagation::gaussian(A, steps, Q, delta);
+          },
+          py::arg("A"), py::arg("steps"), py::arg("Q"), py::arg("delta"),
+          "w ~ N(0, Q); fails with probability delta per use. Raises InvalidInput.")
+      .def(
+          "age", [](const Propagation& p, const Region& then, int age) { return p.age(then, age); },
+          py::arg("then"), py::arg("age"), "The Region of today for one that held `age` steps ago.");
+  py::class_<Recovery>(
+      m, "Recovery",
+      "L: excess over the table after lost messages. A state is (lam, x): every agent behind the\n"
+      "estimate was within x of the lossless run at time lam, and nothing was lost after; (0, 0).")
+      .def(py::init<const Kernels&, int>(), py::arg("kernels"), py::arg("s"))
+      .def_property_readonly(
+          "rb", [](const Recovery& r) { return r.rb(); }, "(K+1, N)")
+      .def_property_readonly(
+          "re", [](const Recovery& r) { return r.re(); }, "(K+1, N)")
+      .def(
+          "rebase",
+          [](const Recovery& r, const std::pair<int, double>& s, int t) {
+            return from_state(r.rebase(state_of(s, t), t));
+          },
+          py::arg("state"), py::arg("t"), "The state seen at time t: carried over every multiple of K.")
+      .def(
+          "error_excess",
+          [](const Recovery& r, int agent, const std::pair<int, double>& s, int t) {
+            return r.error_excess(agent_of(r, agent), state_of(s, t), t);
+          },
+          py::arg("agent"), py::arg("state"), py::arg("t"), "||e_i(t)|| <= d_i(t) + this.")
+      .def(
+          "level_excess",
+          [](const Recovery& r, int agent, const std::pair<int, double>& s, int t) {
+            return r.level_excess(agent_of(r, agent), state_of(s, t), t);
+          },
+          py::arg("agent"), py::arg("state"), py::arg("t"), "level_j(t+1) = nominal + this.")
+      .def(
+          "merge",
+          [](const Recovery& r, const std::pair<int, double>& p, const std::pair<int, double>& q, int t) {
+            return from_state(r.merge(state_of(p, t), state_of(q, t), t));
+          },
+          py::arg("p"), py::arg("q"), py::arg("t"), "Of two states seen at t, the one that dominates both.")
+      .def_static(
+          "lost", [](int t, double b, double d) { return from_state(Recovery::lost(t, b, d)); }, py::arg("t"),
+          py::arg("b"), py::arg("d"),
+          "After a loss in step t: b bounds ||e_i(t)||, d is the table's d_i(t).");
+  py::class_<TwoNumbers>(
+      m, "TwoNumbers",
+      "M: bound rho + sqrt((N-1)/N) p for unknown averaging with ||J - 11'/N|| <= gamma per step.")
+      .def(py::init<const MatrixRef&, const MatrixRef&, int, double, double, double, const VectorRef&>(),
+           py::arg("A"), py::arg("C"), py::arg("s"), py::arg("rho"), py::arg("p"), py::arg("bw"),
+           py::arg("bv"))
+      .def("step", &TwoNumbers::step, py::arg("gamma"), "One step; returns the bound. Raises InvalidInput.")
+      .def_property_readonly("levels", &TwoNumbers::levels, "(N,): adaptive levels of the coming step")
+      .def_property_readonly("rho", &TwoNumbers::rho)
+      .def_property_readonly("p", &TwoNumbers::p)
+      .def_property_readonly("bound", &TwoNumbers::bound)
+      .def_property_readonly("constants", [](const TwoNumbers& x) {
+        const auto& k = x.constants();
+        return py::dict(py::arg("c") = k.c, py::arg("cw") = k.cw, py::arg("tau") = k.tau,
+                        py::arg("kA") = k.kA, py::arg("kw") = k.kw, py::arg("m") = k.m, py::arg("v1") = k.v1,
+                        py::arg("v2") = k.v2);
+      });
+}
+
+}  // namespace
+
+void bind_certificate(py::module_& m) {
+  auto c = m.def_submodule(
+      "certificate", "Run-time certificates: bounds on an estimate's error whatever at most s sensors say.");
+  bind_quantiles(c);
+  bind_regions(c);
+  bind_witness(c);
+  bind_system(c);
+  bind_tables(c);
+  bind_messages(c);
+}

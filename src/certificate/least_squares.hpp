@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Weighted least squares over some rows, by the eigenvalues of G = sum C_j'C_j / R_j. Internal.
+#pragma once
+
+#include "core/solvers.hpp"
+#include "garrison/certificate/rows.hpp"
+
+namespace garrison::certificate::detail {
+
+/// Sized once; nothing allocates after that.
+class LeastSquares {
+ public:
+  explicit LeastSquares(int states)
+      : eigen_(states), G_(states, states), to_frame_(states, states), c_(states), g_(states), u_(states) {}
+
+  /// Solves over the rows j with `uses(j)`; false when they do not determine the state: lmin(G) <= 1e-10
+  /// lmax(G).
+  template <class Uses>
+  bool solve(const Rows& rows, const Uses& uses) {
+    G_.setZero();
+    g_.setZero();
+    for (int j = 0; j < rows.size(); ++j) {
+      if (!uses(j)) continue;
+      const double weight = 1.0 / rows.variance(j);
+      g_ += weight * rows.y(j) * rows.c(j);
+      for (Eigen::Index k = 0; k < G_.cols(); ++k) G_.col(k) += weight * rows.c(j)(k) * rows.c(j);
+    }
+    eigen_.compute(G_);
+    const auto& values = eigen_.eigenvalues();
+    const double least = values(0);
+    if (!(least > 1e-10 * values(values.size() - 1)) || !(least <= kHuge * kHuge)) return false;
+    // Columns of V over the root of their eigenvalue: G^-1 = T T', and G^-1/2 c is T'c up to a rotation.
+    for (Eigen::Index k = 0; k < values.size(); ++k)
+      to_frame_.col(k) = eigen_.eigenvectors().col(k) / std::sqrt(values(k));
+    u_.noalias() = to_frame_.transpose() * g_;
+    c_.noalias() = to_frame_ * u_;
+    return c_.allFinite();
+  }
+
+  const Vector& state() const { return c_; }
+  /// lmin(G).
+  double least() const { return eigen_.eigenvalues()(0); }
+  /// C_j G^-1 C_j'.
+  double spread2(const Rows& rows, int j) {
+    u_.noalias() = to_frame_.transpose() * rows.c(j);
+    return u_.squaredNorm();
+  }
+  /// (G^-1)_kk.
+  double variance(Eigen::Index k) const { return to_frame_.row(k).squaredNorm(); }
+
+ private:
+  Eigen::SelfAdjointEigenSolver<Matrix> eigen_;
+  Matrix G_, to_frame_;
+  Vector c_, g_, u_;
+};
+
+}  // namespace garrison::certificate::detail
