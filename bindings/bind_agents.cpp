@@ -241,13 +241,27 @@ void bind_agent(py::module_& m) {
       .def(
           "reset",
           [](PyAgent& a, const Vector& x0, std::optional<std::int64_t> t) {
-            a->reset(x0, t.value_or(a->start()));
+            const std::int64_t at = t.value_or(a->start());
+            switch (a->reset(x0, at)) {
+              case Refusal::none:
+                break;
+              case Refusal::size:
+                refuse("x0", std::to_string(x0.size()) + " numbers",
+                       std::to_string(a->states()) + ", one per state");
+              case Refusal::number:
+                refuse("x0", "a number that is not finite, or beyond 1e150", "finite numbers");
+              default:
+                refuse("t", std::to_string(at), "a sample from " + std::to_string(a->start()) + " on",
+                       "the estimate x0 is that of sample t");
+            }
             a.refused = 0;
           },
           py::arg("x0"), py::arg("t") = py::none(),
           "Start anew with the estimate x0, (n,), of sample t. Without t: at the beginning of a run. At any\n"
-          "other t nothing is known of how far x0 is off: there is no bound and no test until the family can\n"
-          "vouch again, and in its next sample the agent sends nothing (None) and takes an estimate from what\n"
+          "other t nothing is known of how far x0 is off: there is no bound and no test until the family "
+          "can\n"
+          "vouch again, and in its next sample the agent sends nothing (None) and takes an estimate from "
+          "what\n"
           "its neighbours send.")
       .def(
           "sense",

@@ -47,11 +47,12 @@ class GARRISON_EXPORT Agent {
   virtual std::int64_t sample() const = 0;
   virtual int round() const = 0;
 
-  /// Starts anew at sample t with the estimate x0 (n numbers). Unless t is the family's start nothing is known
-  /// of how far x0 is off: no bound and no test, and in its next sample the agent says nothing and rejoins from
-  /// what it hears, so that x0 does not spread (it stays where nothing is heard). @throws InvalidInput
-  virtual void reset(const Vector& x0, std::int64_t t) = 0;
-  void reset(const Vector& x0) { reset(x0, start()); }
+  /// Starts anew at sample t with the estimate x0 (n numbers). Unless t is the family's start nothing is
+  /// known of how far x0 is off: no bound and no test, and in its next sample the agent says nothing and
+  /// rejoins from what it hears, so that x0 does not spread (it stays where nothing is heard). Refused, with
+  /// nothing changed: size, number (not finite, or beyond kHuge), late (before the start), early.
+  virtual Refusal reset(const Vector& x0, std::int64_t t) = 0;
+  Refusal reset(const Vector& x0) { return reset(x0, start()); }
   /// Where a run starts: the sample before the first.
   virtual std::int64_t start() const = 0;
 

@@ -66,14 +66,13 @@ class AgentOf final : public Agent {
   int round() const override { return round_; }
   std::int64_t start() const override { return first_sample<F>() - 1; }
 
-  void reset(const Vector& x0, std::int64_t t) override {
-    if (x0.size() != local_.states)
-      refuse("x0", std::to_string(x0.size()) + " numbers", std::to_string(local_.states) + ", one per state");
-    if (!usable<Dynamic>(x0)) refuse("x0", "a number that is not finite, or beyond 1e150", "finite numbers");
-    if (t < start() || t > kLatest)
-      refuse("t", std::to_string(t), "a sample from " + std::to_string(start()) + " on",
-             "the estimate x0 is that of sample t");
+  Refusal reset(const Vector& x0, std::int64_t t) override {
+    if (x0.size() != local_.states) return Refusal::size;
+    if (!usable<Dynamic>(x0)) return Refusal::number;
+    if (t < start()) return Refusal::late;
+    if (t > kLatest) return Refusal::early;
     set_state(x0, t);
+    return Refusal::none;
   }
 
   Sent sense(std::int64_t t, std::span<const double> y, std::span<std::byte> out) noexcept override {
