@@ -28,7 +28,7 @@ def monte_carlo(repeats: int) -> Rows:
     W = np.eye(AGENTS) - alpha * net.laplacian()
 
     def ours(threads: int) -> gr.Run:
-        return gr.replay(filt, model, net, measurements=y, keep=["estimate"], threads=threads)
+        return gr.replay(model, net, filt, measurements=y, keep=["estimate"], threads=threads)
 
     def end_to_end(threads: int) -> gr.Run:
         """Plant, noise and attack too, and the errors."""

@@ -30,11 +30,13 @@ from garrison._core import (
     structure,
 )
 from garrison.checks import Check, check
+from garrison.drivers import central_kalman, replay, simulate
 from garrison.fitting import Fit, fit
 from garrison.lmi import lmi_gains
 from garrison.mitigation import Mitigated, replay_mitigated
+from garrison.record import Run
 from garrison.resilience import Resilience, resilience_per_byte
-from garrison.run import Run, central_kalman, replay, simulate
+from garrison.verdict import Verdict
 
 __all__ = [
     "Agent",
@@ -53,6 +55,7 @@ __all__ = [
     "Resilience",
     "Run",
     "SubsetBound",
+    "Verdict",
     "__version__",
     "attacks",
     "central_kalman",

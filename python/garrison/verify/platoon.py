@@ -121,9 +121,9 @@ def _replay(i: Inputs, **more: Any) -> gr.Run:
     """The recorded closed loop, observer alone."""
     model, net = _system(i["params"], recorded_inputs=True)
     return gr.replay(
-        _filter(i, **more),
         model,
         net,
+        _filter(i, **more),
         measurements=_measurements(i),
         truth=numbers(i["x"]) if "x" in i else None,
         start=numbers(i["xhat_init"]),

@@ -53,7 +53,7 @@ def _run(i: Inputs, filter: _core.Filter) -> gr.Run:
     y = np.asarray(array(i["y"]), dtype=float)[1:]
     truth = np.asarray(array(i["x"]), dtype=float) if "x" in i else None
     return gr.replay(
-        filter, model, net, measurements=y, truth=truth, start=start, keep=("estimate", "report", "signals")
+        model, net, filter, measurements=y, truth=truth, start=start, keep=("estimate", "report", "signals")
     )
 
 
@@ -96,7 +96,7 @@ def _facts(i: Inputs) -> dict[str, Any]:
     model, net = _system(i)
     s = i.get("s", 0)
     probe = gr.filters.Saturation(threshold=1.0, rounds=i.get("L", 1), attacked=s)
-    found = gr.check(probe, model, net)
+    found = gr.check(model, net, probe)
     return {
         "N": model.agents,
         "n": model.states,
