@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.drivers import central_kalman, replay, simulate
+from garrison.drivers import KEEP, central_kalman, replay, require_room, simulate
 from garrison.families import family_of
 from garrison.record import Run
 from garrison.scenario import Scenario
@@ -97,6 +97,8 @@ def rehearse(scenario: Scenario) -> None:
     """Let every filter run for a single sample, so that everything a run would refuse is refused now."""
     for _, filter in scenario.filters:
         if filter is not None:
+            keep = _options(scenario, filter, True)["keep"]
+            require_room(scenario.model, filter, keep, scenario.run.get("trials", 1), scenario.steps)
             _run(scenario, filter, True, None, conditions=False, rehearsal=True)
         elif scenario.measurements is not None:
             central_kalman(scenario.model, scenario.measurements[:1])
@@ -112,6 +114,14 @@ def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], Non
     return report
 
 
+def _options(scenario: Scenario, filter: _core.Filter, attacked: bool) -> dict[str, Any]:
+    """Arguments that simulate and replay share."""
+    options: dict[str, Any] = {k: scenario.run[k] for k in ("trials", "seed", "threads", "start") if k in scenario.run}
+    sets = filter.detail_names  # sets over time, for the pictures
+    options["keep"] = (*KEEP, "signals", "details") if sets else KEEP
+    return options | {"attack": scenario.attacks if attacked else [], "link": scenario.link}
+
+
 def _run(
     scenario: Scenario,
     filter: _core.Filter,
@@ -120,13 +130,9 @@ def _run(
     conditions: bool,
     rehearsal: bool = False,
 ) -> Run:
-    options: dict[str, Any] = {k: scenario.run[k] for k in ("trials", "seed", "threads", "start") if k in scenario.run}
-    options |= {"attack": scenario.attacks if attacked else [], "progress": progress, "conditions": conditions}
-    options["link"] = scenario.link
+    options = _options(scenario, filter, attacked) | {"progress": progress, "conditions": conditions}
     if rehearsal:
         options["trials"] = 1
-    if filter.detail_names:  # sets over time, for the pictures
-        options["keep"] = ("estimate", "report", "measurements", "signals", "details")
     parts = scenario.model, scenario.network, filter
     if scenario.measurements is not None:
         y, truth = scenario.measurements, scenario.truth

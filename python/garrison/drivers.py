@@ -11,13 +11,13 @@ from garrison import _core, doubts
 from garrison.numeric import matched, numbers
 from garrison.record import Run
 from garrison.sizes import require_memory
-from garrison.words import only, refusal, require_order, shown
+from garrison.words import count, only, refusal, require_order, shown
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 Attacks = _core.Attack | Iterable[_core.Attack]
 
-_KEEP = ("estimate", "report", "measurements")
+KEEP = ("estimate", "report", "measurements")
 
 
 def _start(start: Any, states: int) -> Array | None:
@@ -59,7 +59,8 @@ def _link(link: Mapping[str, float] | None) -> dict[str, float]:
     return found
 
 
-def _require_room(filter: _core.Filter, model: _core.Model, keep: list[str], trials: int, steps: int) -> None:
+def require_room(model: _core.Model, filter: _core.Filter, keep: Iterable[str], trials: int, steps: int) -> None:
+    """Refuse a run whose arrays would not fit into the memory limit, before anything is computed."""
     n, N = model.states, model.agents
     row = {
         "estimate": N * n,
@@ -68,7 +69,7 @@ def _require_room(filter: _core.Filter, model: _core.Model, keep: list[str], tri
         "signals": len(filter.signal_names) * N,
     }
     doubles = trials * (steps + 1.0) * (n + sum(row.get(name, 0) for name in keep))
-    require_memory("steps, trials", f"{steps} samples of {trials} trial(s)", doubles)
+    require_memory("steps, trials", f"{count(steps, 'sample')} in {count(trials, 'trial')}", doubles)
 
 
 def _run(
@@ -101,7 +102,7 @@ def simulate(
     start_error: float = 0.0,
     noise: str | ArrayLike = "auto",
     link: Mapping[str, float] | None = None,
-    keep: Iterable[str] = _KEEP,
+    keep: Iterable[str] = KEEP,
     threads: int = 0,
     progress: Progress | None = None,
     conditions: bool = True,
@@ -122,7 +123,7 @@ def simulate(
     require_order("simulate", model, network, filter)
     steps, trials = _whole("steps", steps, 1), _whole("trials", trials, 1)
     attacks, kept = _attacks(attack), list(keep)
-    _require_room(filter, model, kept, trials, steps)
+    require_room(model, filter, kept, trials, steps)
     data = _core.simulate(
         model,
         network,
@@ -164,7 +165,7 @@ def replay(
     trials: int | None = None,
     seed: int = 0,
     link: Mapping[str, float] | None = None,
-    keep: Iterable[str] = _KEEP,
+    keep: Iterable[str] = KEEP,
     threads: int = 0,
     progress: Progress | None = None,
     conditions: bool = True,
@@ -180,7 +181,7 @@ def replay(
     y = numbers("measurements", matched("measurements", measurements, output_names(model, network)))
     trials = (len(y) if y.ndim == 3 else 1) if trials is None else _whole("trials", trials, 1)
     attacks, kept = _attacks(attack), list(keep)
-    _require_room(filter, model, kept, trials, y.shape[-2] if y.ndim >= 2 else 0)
+    require_room(model, filter, kept, trials, y.shape[-2] if y.ndim >= 2 else 0)
     data = _core.replay(
         model,
         network,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from garrison import _core
+from garrison import _core, filters
 from garrison._core import structure
 from garrison.drivers import replay
 from garrison.numeric import numbers
@@ -79,7 +79,7 @@ def replay_mitigated(
             f"expected (samples + 1, n) and twice (samples, {len(measured)})"
         )
     system = structure.System(structure.Pattern.of(A_))
-    filter = _core.Structural(**params)
+    filter = filters.Structural(**params)
     now: list[int | None] = list(measured)
     kinds = system.classes([[] if s is None else [s] for s in now])
     begin = np.zeros((len(now), len(A_))) if start is None else np.asarray(start, dtype=float)

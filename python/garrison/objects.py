@@ -18,45 +18,27 @@ def _lists(value: Any) -> Any:
     """Arrays, also inside lists, as nested lists; None stays."""
     if isinstance(value, (list, tuple)):
         return [_lists(v) for v in value]
+    if isinstance(value, dict):
+        return {key: _lists(v) for key, v in value.items()}
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
-def _string(model: _core.Model) -> Plain | None:
-    """A model of vehicles, which has secured outputs that the constructor of Model cannot say."""
-    A = np.asarray(model.A)
-    if A.shape != (2, 2) or model.agents < 2 or model.outputs < 3 * model.agents:
-        return None
-    inputs = model.outputs > 4 * model.agents - 2
-    given: Plain = {"vehicles": model.agents, "period": float(A[0, 1]), "inputs": inputs}
-    try:
-        same = _core.platoon.model(**given)
-    except _core.Error:
-        return None
-    equal = np.array_equal(same.A, A) and all(np.array_equal(a, b) for a, b in zip(same.C, model.C, strict=True))
-    return given if equal else None
+def _arguments(thing: Any) -> Plain | None:
+    """The arguments that make an equal object, where the core keeps them for pickles."""
+    state = thing.__getstate__() if hasattr(thing, "__getstate__") else None
+    return {key: _lists(value) for key, value in state.items()} if isinstance(state, dict) else None
 
 
 def _model(model: _core.Model) -> Plain:
-    if string := _string(model):
-        return {"platoon": string}
-    out: Plain = {"A": model.A, "C": model.C, "process_bound": model.process_bound}
+    if (arguments := _arguments(model)) is not None:
+        return arguments
     bounds = np.asarray(model.measurement_bound)
-    out["measurement_bound"] = bounds if bounds.size else None
-    for name in ("process_covariance", "measurement_covariance"):
-        value = getattr(model, name, None)
-        out[name] = (
-            None if value is None or np.size(value[0] if isinstance(value, list) and value else value) == 0 else value
-        )
-    for name in ("state_names", "output_names"):
-        if getattr(model, name, None):
-            out[name] = list(getattr(model, name))
-    return {key: _lists(value) for key, value in out.items() if value is not None}
+    out: Plain = {"A": model.A, "C": model.C, "process_bound": model.process_bound}
+    return {key: _lists(value) for key, value in (out | ({"measurement_bound": bounds} if bounds.size else {})).items()}
 
 
 def model_of(plain: Plain) -> _core.Model:
     """The model that was described."""
-    if "platoon" in plain:
-        return _core.platoon.model(**plain["platoon"])
     A = np.asarray(plain["A"], dtype=float)
     C = [np.asarray(c, dtype=float).reshape(-1, len(A)) for c in plain["C"]]
     rest = {key: value for key, value in plain.items() if key not in ("A", "C")}
@@ -67,15 +49,23 @@ def model_of(plain: Plain) -> _core.Model:
 
 
 def _network(network: _core.Network) -> Plain:
-    out: Plain = {"agents": network.agents, "directed": network.directed, "edges": [list(e) for e in network.edges]}
-    names = getattr(network, "names", None)
-    return out | ({"names": [str(n) for n in names]} if names else {})
+    if (arguments := _arguments(network)) is not None:
+        return arguments
+    return {"agents": network.agents, "directed": network.directed, "edges": _lists(network.edges)}
 
 
 def network_of(plain: Plain) -> _core.Network:
     """The network that was described."""
     rest = {key: value for key, value in plain.items() if key != "edges"}
     return _core.Network([(int(a), int(b)) for a, b in plain["edges"]], **rest)
+
+
+def named(network: _core.Network, names: list[str] | None) -> _core.Network:
+    """The same network with names of its agents, where the core keeps names."""
+    if not names or not hasattr(network, "names"):
+        return network
+    plain = _network(network) | {"names": names}
+    return network_of(plain)
 
 
 def _filter(filter: _core.Filter) -> Plain:

@@ -70,7 +70,7 @@ def string_figure(run: Run, trial: int = 0) -> Figure:
         if least is not None:
             gap.plot(time, least[trial, :, k], **(_line(k, N) | {"linewidth": 0.6, "linestyle": ":"}))
     gap.axhline(world.spacing, color="#888888", linewidth=0.8, linestyle="--")
-    gap.set(title="gap to the vehicle ahead (m); dotted: certified least; dashed: wanted", xlabel="time (s)")
+    gap.set(title="gap ahead (m); dotted: certified; dashed: wanted", xlabel="time (s)")
     for k in range(N):
         error.plot(time, np.maximum(run.error[trial, :, k], 1e-6), **_line(k, N))
         error.plot(time, run.bound[trial, :, k], **(_line(k, N) | {"linewidth": 0.8, "linestyle": "--"}))

@@ -115,11 +115,16 @@ def _rows(section: Section, n: int) -> list[Any]:
         given = [[c] for c in given]
     out = []
     for k, one in enumerate(given):
-        rows = np.zeros((0, n)) if np.size(one) == 0 else numbers(f"{section.place('C')}[{k}]", one)
+        rows = np.zeros((0, n)) if _is_empty(one) else numbers(f"{section.place('C')}[{k}]", one)
         if rows.ndim > 2 or rows.ndim == 0:
             raise refusal(f"{section.place('C')}[{k}]", shown(one), f"a row of {n} numbers, or a matrix with such rows")
         out.append(np.atleast_2d(rows))
     return out
+
+
+def _is_empty(one: Any) -> bool:
+    """Nothing, as a relay without sensors has it: [] or [[]]."""
+    return isinstance(one, (list, np.ndarray)) and (len(one) == 0 or (len(one) == 1 and _is_empty(one[0])))
 
 
 def _noise(section: Section, n: int, outputs: list[int]) -> dict[str, Any]:
@@ -144,13 +149,13 @@ def _noise(section: Section, n: int, outputs: list[int]) -> dict[str, Any]:
 def _measurement_covariance(section: Section, outputs: list[int]) -> list[Any]:
     """One (m_i, m_i) matrix per agent: from a number for all, a number per agent, or matrices."""
     where, given = section.place("measurement_covariance"), section.array("measurement_covariance")
-    if np.ndim(given) == 0:
+    if not isinstance(given, (list, np.ndarray)):
         return [float(numbers(where, given)) * np.eye(m) for m in outputs]
     if len(given) != len(outputs):
         raise refusal(where, f"{len(given)} entries", f"{len(outputs)}, one per agent (or one number for all)")
     out = []
     for k, (one, m) in enumerate(zip(given, outputs, strict=True)):
-        R = np.zeros((0, 0)) if np.size(one) == 0 and m == 0 else numbers(f"{where}[{k}]", one)
+        R = np.zeros((0, 0)) if _is_empty(one) and m == 0 else numbers(f"{where}[{k}]", one)
         if R.size == 1:
             R = float(R.ravel()[0]) * np.eye(m)
         elif R.ndim == 1 and len(R) == m:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison.fitting import Fit
 from garrison.numeric import numbers
+from garrison.objects import named
 from garrison.scenario.attacks import read_attack
 from garrison.scenario.data import Recording, read_data
 from garrison.scenario.filters import CENTRAL_KALMAN, read_filters
@@ -94,14 +95,15 @@ def read_scenario(path: str | Path) -> Scenario:
 
     model, fitted, names = read_model(section("model"))
     ground = read_network(section("network"), names, model.agents)
-    names = ground.names or names or [str(i) for i in range(model.agents)]
+    known = ground.names or names
+    names = known or [str(i) for i in range(model.agents)]
     recording = read_data(section("data"), model, fitted, names) if "data" in document else None
     run = _run(section("run"), model, recording is not None)
     scenario = Scenario(
         path=path,
         title=_title(document.get("title", path.stem)),
         model=model,
-        network=ground.network,
+        network=named(ground.network, known),
         filters=read_filters(document, folder),
         attacks=[],
         link=_link(section("link")),

@@ -1,5 +1,6 @@
 """Times of the rows: dates, dates with a time, or plain seconds; any regular period."""
 
+import calendar
 import datetime as dt
 import re
 from dataclasses import dataclass
@@ -11,12 +12,15 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison.tables.cells import is_missing, number
 from garrison.tables.text import Rows
-from garrison.words import refusal
+from garrison.words import count, refusal
 
 Array = NDArray[np.float64]
 #: a date for daily (or slower) records, a date with a time (UTC where a zone was given), or seconds
 Moment: TypeAlias = dt.date | float
 _DAY = 86400.0
+_MONTH = 365.25 / 12 * _DAY
+#: part of a period by which times with a clock may be off a regular grid
+_JITTER = 0.05
 #: missing rows that are filled in, per row that is there
 _MOST_FILLED = 50
 _SLASHED = re.compile(r"(\d{1,4})[./-](\d{1,2})[./-](\d{1,4})(?:[T ]+(\d{1,2}):(\d{2})(?::(\d{2})(?:[.,]\d*)?)?)?")
@@ -125,22 +129,33 @@ def _regular(places: list[str], moments: list[Moment]) -> Clock:
             raise refusal(places[k + 1], f"{moments[k + 1]}, {what} the row before", "a later one", advice)
     if months := _months(moments):
         return months
-    step = float(np.min(steps))
-    counts = np.rint((times - times[0]) / step).astype(int)
-    off = np.abs(times - times[0] - counts * step)
-    tolerance = 1e-3 * step + 1e-9 * np.abs(times).max()
-    if (off > tolerance).any() or (np.diff(counts) < 1).any():
-        k = max(int(np.argmax(off > tolerance)), 1)
+    least = float(np.min(steps))
+    if times[-1] - times[0] > _MOST_FILLED * len(moments) * least:
+        got = f"{(times[-1] - times[0]) / least:.3g} periods of {_words(least)} with {count(len(moments), 'row')}"
+        raise refusal(places[-1], got, "fewer gaps")
+    at = np.concatenate([[0], np.cumsum(np.rint(steps / least))]).astype(int)
+    step = float((times[-1] - times[0]) / at[-1])
+    off = np.abs(times - times[0] - at * step)
+    daily = all(isinstance(m, dt.date) and not isinstance(m, dt.datetime) for m in moments)
+    # Dates are exact; clocks and printed seconds are rounded.
+    if (off > (1e-6 if daily else _JITTER) * step).any():
+        wrong = int(np.argmax(np.abs(steps / least - np.rint(steps / least)))) + 1
         raise refusal(
-            places[k],
-            f"{moments[k]} after {moments[k - 1]}",
-            f"a whole number of periods of {_words(step)} later",
+            places[wrong],
+            f"{moments[wrong]} after {moments[wrong - 1]}",
+            f"a whole number of periods of {_words(least)} later",
             "resample the records to a regular period (in UTC where clocks change)",
         )
-    if counts[-1] + 1 > _MOST_FILLED * len(moments):
-        raise refusal(places[-1], f"{counts[-1] + 1} periods of {_words(step)} with {len(moments)} rows", "fewer gaps")
-    step = float((times[-1] - times[0]) / counts[-1])
-    return Clock([_later(moments[0], int(k), step) for k in range(counts[-1] + 1)], step, counts.tolist())
+    return Clock(
+        _whole(moments, at.tolist(), [_later(moments[0], k, step) for k in range(at[-1] + 1)]), step, at.tolist()
+    )
+
+
+def _whole(moments: list[Moment], at: list[int], regular: list[Moment]) -> list[Moment]:
+    """The regular times, those that the file has as it has them."""
+    for k, moment in zip(at, moments, strict=True):
+        regular[k] = moment
+    return regular
 
 
 def _words(step: float) -> str:
@@ -159,18 +174,23 @@ def _later(first: Moment, count: int, step: float) -> Moment:
 
 
 def _months(moments: list[Moment]) -> Clock | None:
-    """Monthly (or yearly) records: always the same day of the month."""
+    """Monthly (or yearly) records: always the same day of the month, or always the last one."""
     dates = [m for m in moments if isinstance(m, dt.date) and not isinstance(m, dt.datetime)]
-    if len(dates) < len(moments) or len(moments) < 3 or len({d.day for d in dates}) > 1 or dates[0].day > 28:
+    if len(dates) < len(moments) or len(moments) < 3:
         return None
-    numbers = np.array([12 * d.year + d.month - 1 for d in dates])
-    step = int(np.diff(numbers).min())
-    if step < 1 or (np.diff(numbers) % step).any():
+    last = all(d.day == calendar.monthrange(d.year, d.month)[1] for d in dates)
+    if not last and (len({d.day for d in dates}) > 1 or dates[0].day > 28):
         return None
-    counts = (numbers - numbers[0]) // step
-    if counts[-1] + 1 > _MOST_FILLED * len(moments):
+    months = np.array([12 * d.year + d.month - 1 for d in dates])
+    step = int(np.diff(months).min())
+    if step < 1 or (np.diff(months) % step).any():
         return None
-    whole = numbers[0] + step * np.arange(counts[-1] + 1)
-    all_dates: list[Moment] = [dt.date(int(n) // 12, int(n) % 12 + 1, dates[0].day) for n in whole]
-    mean = step * 365.25 / 12 * _DAY
-    return Clock(all_dates, mean, counts.tolist())
+    at = (months - months[0]) // step
+    if at[-1] + 1 > _MOST_FILLED * len(moments):
+        return None
+    regular: list[Moment] = []
+    for number in months[0] + step * np.arange(at[-1] + 1):
+        year, month = int(number) // 12, int(number) % 12 + 1
+        day = calendar.monthrange(year, month)[1] if last else dates[0].day
+        regular.append(dt.date(year, month, day))
+    return Clock(regular, step * _MONTH, at.tolist())
