@@ -29,16 +29,21 @@ def _ids(where: str, agents: Agents) -> list[int]:
     try:
         if any(isinstance(a, bool) for a in found):
             raise TypeError
-        return [operator.index(a) for a in found]
+        ids = [operator.index(a) for a in found]
+        if any(not 0 <= a < 2**31 for a in ids):
+            raise TypeError
+        return ids
     except TypeError:
         raise refusal(where, shown(agents), "the number of an agent, or a list of such numbers") from None
 
 
 def _whole(where: str, value: Any) -> int:
     try:
-        return operator.index(value)
+        if abs(found := operator.index(value)) >= 2**62:
+            raise TypeError
     except TypeError:
         raise refusal(where, shown(value), "the number of a sample") from None
+    return found
 
 
 def _phases(where: str, start: int, agents: Agents | None, schedule: Schedule | None) -> list[tuple[int, list[int]]]:

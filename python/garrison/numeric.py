@@ -24,8 +24,19 @@ def numbers(which: str, value: Any) -> Array:
     if found.dtype.kind == "c":
         raise refusal(which, "complex numbers", "real numbers", "take .real if the imaginary part means nothing")
     if found.dtype.kind not in "biuf":
-        raise refusal(which, f"entries of type {found.dtype.name}", "numbers")
+        kind = "text" if found.dtype.kind in "US" else f"entries of type {found.dtype.name}"
+        raise refusal(which, kind, "numbers")
     return np.asarray(found, dtype=float)
+
+
+def real(value: Any) -> float | None:
+    """A Python or NumPy number as a double; None for anything else, and for whole numbers that no double holds."""
+    if isinstance(value, (bool, complex)) or not isinstance(value, (int, float, np.number)):
+        return None
+    try:
+        return float(value)
+    except (OverflowError, TypeError):
+        return None
 
 
 def _plain(value: Any) -> Any:
@@ -49,8 +60,8 @@ def _of_objects(which: str, found: NDArray[Any]) -> Array:
     for at, entry in np.ndenumerate(found):
         if entry is None or type(entry).__name__ in ("NAType", "NaTType"):
             out[at] = np.nan
-        elif isinstance(entry, (int, float, np.number)) and not isinstance(entry, complex):
-            out[at] = float(entry)
+        elif (value := real(entry)) is not None:
+            out[at] = value
         else:
             place = "".join(f"[{k}]" for k in at)
             raise refusal(f"{which}{place}", shown(entry), "a number, or nan where there is none")

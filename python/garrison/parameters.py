@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from garrison.numeric import numbers
+from garrison.numeric import numbers, real
 from garrison.words import only, refusal, shown
 
 
@@ -37,8 +37,6 @@ def _converted(where: str, info: dict[str, Any], value: Any) -> Any:
         raise refusal(where, shown(value), words, info["doc"])
     if isinstance(default, list):
         return numbers(where, value).ravel().tolist()
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
+    if (found := real(value)) is None:
         raise refusal(where, shown(value), "a number", info["doc"])
-    if isinstance(default, int) and abs(value) >= 2**63:
-        raise refusal(where, shown(value), "a whole number of a sensible size", info["doc"])
-    return value
+    return value if abs(found) < 2.0**63 else found

@@ -17,7 +17,7 @@ def read_attack(section: Section, names: list[str], records: Records | None, sam
     """One attack. names: of the agents; records: whose dates may be meant; samples: of the run."""
     infos = {info["name"]: info for info in _core.attack_infos()}
     kind = section.require("kind", f"one of {', '.join(infos)}")
-    if kind not in infos:
+    if not isinstance(kind, str) or kind not in infos:
         advice = near(kind, infos) if isinstance(kind, str) else ""
         raise refusal(section.place("kind"), shown(kind), f"one of {', '.join(infos)}", advice)
     section.only([*_COMMON, *(p["name"] for p in infos[kind]["params"])])

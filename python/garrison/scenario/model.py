@@ -8,7 +8,7 @@ import numpy as np
 from garrison import _core
 from garrison.fitting import Fit, fit
 from garrison.numeric import numbers
-from garrison.scenario.section import Section, moment, renamed
+from garrison.scenario.section import Section, moment, number, renamed
 from garrison.sizes import require_memory
 from garrison.tables import Records, read_records
 from garrison.words import refusal, shown
@@ -140,7 +140,7 @@ def _noise(section: Section, n: int, outputs: list[int]) -> dict[str, Any]:
         Q = section.numbers("process_covariance")
         if Q.ndim == 1 and len(Q) == n > 1:
             Q = np.diag(Q)
-        out["process_covariance"] = np.eye(n) * Q if Q.size == 1 else Q
+        out["process_covariance"] = np.diag(np.full(n, Q.ravel()[0])) if Q.size == 1 else Q
     if "measurement_covariance" in section:
         out["measurement_covariance"] = _measurement_covariance(section, outputs)
     return out
@@ -150,14 +150,14 @@ def _measurement_covariance(section: Section, outputs: list[int]) -> list[Any]:
     """One (m_i, m_i) matrix per agent: from a number for all, a number per agent, or matrices."""
     where, given = section.place("measurement_covariance"), section.array("measurement_covariance")
     if not isinstance(given, (list, np.ndarray)):
-        return [float(numbers(where, given)) * np.eye(m) for m in outputs]
+        return [np.diag(np.full(m, number(where, given))) for m in outputs]
     if len(given) != len(outputs):
         raise refusal(where, f"{len(given)} entries", f"{len(outputs)}, one per agent (or one number for all)")
     out = []
     for k, (one, m) in enumerate(zip(given, outputs, strict=True)):
         R = np.zeros((0, 0)) if _is_empty(one) and m == 0 else numbers(f"{where}[{k}]", one)
         if R.size == 1:
-            R = float(R.ravel()[0]) * np.eye(m)
+            R = np.diag(np.full(m, R.ravel()[0]))
         elif R.ndim == 1 and len(R) == m:
             R = np.diag(R)
         if R.shape != (m, m):

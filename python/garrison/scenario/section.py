@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.numeric import numbers
+from garrison.numeric import numbers, real
 from garrison.tables import read_matrix
 from garrison.words import near, only, refusal, shown
 
@@ -106,11 +106,12 @@ def whole(where: str, value: Any, least: int = 0, most: int = _MOST) -> int:
 
 def number(where: str, value: Any, *, positive: bool = False) -> float:
     """`value` as a number."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
+    found = real(value)
+    if found is None:
         raise refusal(where, shown(value), "a number, without its unit" if isinstance(value, str) else "a number")
-    if positive and not value > 0:
+    if positive and not found > 0:
         raise refusal(where, shown(value), "a number > 0")
-    return float(value)
+    return found
 
 
 def tables_of(where: str, value: Any, folder: Path) -> list[Section]:
@@ -127,8 +128,8 @@ def moment(where: str, value: Any) -> dt.date | float:
         return _plain(value)
     if isinstance(value, dt.date):
         return value
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return float(value)
+    if (seconds := real(value)) is not None:
+        return seconds
     try:
         found = dt.datetime.fromisoformat(value)
     except (TypeError, ValueError):

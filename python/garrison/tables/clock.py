@@ -189,8 +189,8 @@ def _months(moments: list[Moment]) -> Clock | None:
     if at[-1] + 1 > _MOST_FILLED * len(moments):
         return None
     regular: list[Moment] = []
-    for number in months[0] + step * np.arange(at[-1] + 1):
-        year, month = int(number) // 12, int(number) % 12 + 1
+    for index in months[0] + step * np.arange(at[-1] + 1):
+        year, month = int(index) // 12, int(index) % 12 + 1
         day = calendar.monthrange(year, month)[1] if last else dates[0].day
         regular.append(dt.date(year, month, day))
     return Clock(regular, step * _MONTH, at.tolist())
