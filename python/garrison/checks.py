@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from garrison import _core
-from garrison.words import require_order
+from garrison.words import hinted, require_order
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,7 @@ def verdict(condition: dict[str, Any]) -> str:
     return "NOT MET (required)" if condition["required"] else "not met (optional)"
 
 
+@hinted
 def check(model: _core.Model, network: _core.Network, filter: _core.Filter) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
 

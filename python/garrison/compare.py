@@ -27,6 +27,7 @@ class Row:
     attacked: bool
     run: Run | None  # None for the central Kalman filter
     error: Array | None  # (trial, time, agent)
+    robust_error: Array | None = None  # the same, to the robust reference
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -36,6 +37,8 @@ class Row:
             since = self.error[:, self.scenario.first_attack :]
             out["mean_error"] = float(np.nanmean(since))
             out["worst_error"] = float(np.nanmax(since))
+        if self.robust_error is not None and not self.scenario.truth_is_declared:
+            out["mean_error_robust"] = float(np.nanmean(self.robust_error[:, 1:]))
         if self.run is not None:
             out |= self._bounds(self.run) | self._accusations(self.run) | self._clipped(self.run)
             out["warnings"] = self.run.warnings
@@ -89,7 +92,7 @@ def run_scenario(scenario: Scenario, progress: Progress | None = None, condition
             run = _run(scenario, filter, attacked, _labelled(progress, name), conditions)
             if attacked and attacked_y is None and run.measurements is not None:
                 attacked_y = run.measurements[0]
-            rows.append(Row(scenario, label, attacked, run, run.error))
+            rows.append(Row(scenario, label, attacked, run, run.error, _distance(run.estimate, scenario.robust)))
     return rows
 
 
@@ -147,8 +150,16 @@ def _kalman_row(scenario: Scenario, label: str, attacked: bool, attacked_y: Arra
     y = attacked_y if attacked else scenario.measurements
     if y is None or scenario.truth is None:
         return Row(scenario, label, attacked, None, None)
-    estimate = central_kalman(scenario.model, y)
-    return Row(scenario, label, attacked, None, np.linalg.norm(estimate - scenario.truth, axis=1)[None, :, None])
+    estimate = central_kalman(scenario.model, y)[None, :, None]
+    errors = _distance(estimate, scenario.truth), _distance(estimate, scenario.robust)
+    return Row(scenario, label, attacked, None, *errors)
+
+
+def _distance(estimate: Array | None, states: Array | None) -> Array | None:
+    """Lengths (trial, time, agent) of the differences of estimates to states (time, n)."""
+    if estimate is None or states is None:
+        return None
+    return np.asarray(np.linalg.norm(estimate - states[None, :, None], axis=3))
 
 
 def signal_size(scenario: Scenario) -> float | None:

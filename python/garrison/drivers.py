@@ -11,7 +11,7 @@ from garrison import _core, doubts
 from garrison.numeric import matched, numbers
 from garrison.record import Run
 from garrison.sizes import require_memory
-from garrison.words import count, only, refusal, require_order, shown
+from garrison.words import count, hinted, only, refusal, require_order, shown
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
@@ -88,6 +88,7 @@ def _run(
     return run
 
 
+@hinted
 def simulate(
     model: _core.Model,
     network: _core.Network,
@@ -153,6 +154,7 @@ def output_names(model: _core.Model, network: _core.Network) -> list[str] | None
     return [str(n) for n in names] if names and model.outputs == model.agents else None
 
 
+@hinted
 def replay(
     model: _core.Model,
     network: _core.Network,
@@ -200,6 +202,7 @@ def replay(
     return _run(data, model, network, filter, attacks, conditions)
 
 
+@hinted
 def central_kalman(
     model: _core.Model,
     measurements: ArrayLike,

@@ -37,6 +37,13 @@ class Fit:
         """What we call truth: the least-squares state (samples, n) of clean records of the same day."""
         return self.identified.reference_states(self.measurements(records))
 
+    def robust_reference(self, records: Records) -> Array:
+        """The state (samples, n) with the least sum of absolute deviations: a median over the stations.
+
+        Unlike `reference` it is not pulled by a minority of stations that are wrong. nan where too few have a record.
+        """
+        return _least_absolute(np.asarray(self.identified.C), self.measurements(records))
+
     def to_json(self) -> str:
         """The model as text: everything a scenario or another program needs."""
         i = self.identified
@@ -58,6 +65,25 @@ class Fit:
             {"stations": self.records.stations, "fitted": span, "process_bound": i.process_bound} | arrays,
             indent=1,
         )
+
+
+#: reweightings of `_least_absolute`, and the deviation below which a station counts as met
+_SWEEPS, _MET = 60, 1e-9
+
+
+def _least_absolute(C: Array, y: Array) -> Array:
+    """argmin over x of sum_i |y_i - C_i x| of every row of y, by iteratively reweighted least squares."""
+    known = np.isfinite(y)
+    values = np.where(known, y, 0.0)
+    weights = known.astype(float)
+    n = C.shape[1]
+    x = np.zeros((len(y), n))
+    for _ in range(_SWEEPS):
+        normal = np.einsum("ti,ij,ik->tjk", weights, C, C) + 1e-12 * np.eye(n)
+        x = np.linalg.solve(normal, np.einsum("ti,ij,ti->tj", weights, C, values)[..., None])[..., 0]
+        weights = known / np.maximum(np.abs(values - x @ C.T), _MET)
+    x[known.sum(axis=1) < n] = np.nan
+    return x
 
 
 _OPTIONS = ("factors", "harmonics", "period", "root", "factor")

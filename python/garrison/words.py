@@ -1,9 +1,14 @@
 """How garrison says no: one form of refusal, near names, plurals, the order of arguments."""
 
-from collections.abc import Iterable
-from typing import Any
+import functools
+import inspect
+from collections.abc import Callable, Iterable
+from typing import Any, ParamSpec, TypeVar
 
 from garrison import _core
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 def refusal(which: str, got: str, expected: str, advice: str = "") -> _core.InvalidInput:
@@ -37,6 +42,21 @@ def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:
     for name in names:
         if name not in known:
             raise refusal(where, f"the unknown key {name!r}", f"one of {', '.join(known)}", near(name, known))
+
+
+def hinted(function: Callable[P, T]) -> Callable[P, T]:
+    """`function`, but a keyword that it does not have is refused with the nearest one that it has."""
+    known = [p.name for p in inspect.signature(function).parameters.values() if p.kind is not p.VAR_KEYWORD]
+
+    @functools.wraps(function)
+    def guarded(*args: P.args, **keywords: P.kwargs) -> T:
+        for name in keywords:
+            if name not in known:
+                got = f"the unknown argument {name!r}"
+                raise refusal(function.__name__, got, f"one of {', '.join(known)}", near(name, known))
+        return function(*args, **keywords)
+
+    return guarded
 
 
 def count(number: int, noun: str, plural: str = "") -> str:

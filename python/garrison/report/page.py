@@ -123,6 +123,11 @@ def _table_note(scenario: Scenario, rows: list[Row]) -> str:
         "certified error bound (an agent that has accused all attackers no longer tests, and reports none). Error "
         "within bound: how often the error was below it. Accused: who was accused, and when first (first trial)."
     ]
+    if any("mean_error_robust" in row.summary for row in rows):
+        parts.append(
+            "The robust reference is the state with the least sum of absolute deviations from all sensors: a minority "
+            "of wrong sensors does not pull it."
+        )
     if note := accusation_note(rows):
         parts.append(f"What an accusation is: {note}.")
     return " ".join(parts)

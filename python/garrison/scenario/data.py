@@ -23,6 +23,7 @@ class Recording:
 
     measurements: Array
     reference: Array | None = None
+    robust: Array | None = None  # another reference, which a minority of wrong sensors does not pull
     records: Records | None = None
     notes: list[str] = field(default_factory=list)
 
@@ -59,8 +60,9 @@ def _of_fit(section: Section, fitted: Fit) -> Recording:
     measured = fitted.measurements(records)
     reference = fitted.reference(records)
     # The state before the first record is not known; its error is not counted (see `first` in the summary).
-    whole = np.vstack([reference[:1], reference])
-    return Recording(measured, whole, records, records.notes)
+    robust = fitted.robust_reference(records)
+    whole, other = (np.vstack([states[:1], states]) for states in (reference, robust))
+    return Recording(measured, whole, other, records, records.notes)
 
 
 def _require_width(found: Recording, name: str, model: _core.Model) -> Recording:

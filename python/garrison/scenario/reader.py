@@ -47,7 +47,8 @@ class Scenario:
     fitted: Fit | None = None
     records: Records | None = None
     measurements: Array | None = None
-    truth: Array | None = None
+    truth: Array | None = None  # or the reference in its place, of records
+    robust: Array | None = None  # a second reference, where it is not declared who is attacked
     notes: list[str] = field(default_factory=list)  # doubts about the files
 
     @property
@@ -189,6 +190,7 @@ def _put(scenario: Scenario, recording: Recording | None) -> None:
         return
     scenario.measurements = recording.measurements
     scenario.truth = recording.reference
+    scenario.robust = recording.robust
     scenario.records = recording.records
     scenario.notes += [note for note in recording.notes if note not in scenario.notes]
 
