@@ -10,7 +10,6 @@ stop: first sample that is not attacked any more; probability: chance that an ag
 The other parameters are those of the attack. Raises InvalidInput when something does not fit.
 """
 
-import inspect
 import operator
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -114,8 +113,10 @@ _BY_NAME = {info["name"]: info for info in _core.attack_infos()}
 _INFOS = {_camel(name): info for name, info in _BY_NAME.items()}
 
 
-def _signature(info: dict[str, Any]) -> inspect.Signature:
+def _signature(info: dict[str, Any]) -> Any:
     """Arguments of an attack's function: those of all attacks, then its own with their defaults."""
+    import inspect  # costs as much as the rest of this module
+
     own = [
         inspect.Parameter(
             p["name"],

@@ -1,7 +1,6 @@
 """How garrison says no: one form of refusal, near names, plurals, the order of arguments."""
 
 import functools
-import inspect
 from collections.abc import Callable, Iterable
 from typing import Any, ParamSpec, TypeVar
 
@@ -46,7 +45,8 @@ def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:
 
 def hinted(function: Callable[P, T]) -> Callable[P, T]:
     """`function`, but a keyword that it does not have is refused with the nearest one that it has."""
-    known = [p.name for p in inspect.signature(function).parameters.values() if p.kind is not p.VAR_KEYWORD]
+    code = function.__code__
+    known = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
 
     @functools.wraps(function)
     def guarded(*args: P.args, **keywords: P.kwargs) -> T:

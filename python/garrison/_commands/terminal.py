@@ -16,6 +16,7 @@ OK, NO, REFUSED, BUG, INTERRUPTED = 0, 1, 2, 70, 130
 #: what `add_subparsers` returns
 Commands: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 _WIDTH = 140  # of tables that do not go to a terminal
+_LONG_WORD = 11  # letters; longer words may be broken
 
 
 def console_for(stderr: bool = False) -> Console:
@@ -43,14 +44,22 @@ def print_json(value: Any) -> None:
 
 
 def print_table(title: str, head: list[str], rows: list[list[str]], console: Console) -> None:
-    """A table that breaks lines between words where the terminal is narrow."""
+    """A table that breaks lines between words, as long as the words are not too long for the terminal."""
+    from rich import box
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=Text(title) if title else None, title_justify="left", show_edge=False, pad_edge=False)
-    for name in head:
-        longest = max((len(word) for word in name.split()), default=1)
-        table.add_column(Text(name), overflow="fold", min_width=min(longest, 12))
+    table = Table(
+        title=Text(title) if title else None,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        padding=0,
+        show_edge=False,
+        pad_edge=False,
+    )
+    for k, name in enumerate(head):
+        words = [word for cell in (name, *(row[k] for row in rows)) for word in cell.split()]
+        table.add_column(Text(name), overflow="fold", min_width=min(max(map(len, words), default=1), _LONG_WORD))
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
     console.print(table)
