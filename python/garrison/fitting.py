@@ -1,6 +1,7 @@
 """Models from recorded data: records in, model out."""
 
 import json
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,8 +62,15 @@ class Fit:
             )
         }
         span = [str(self.records.dates[0]), str(self.records.dates[-1])]
+        about = {
+            "stations": self.records.stations,
+            "units": self.records.units,
+            "period_s": self.records.step,
+            "fitted": span,
+            "process_bound": i.process_bound,
+        }
         return json.dumps(
-            {"stations": self.records.stations, "fitted": span, "process_bound": i.process_bound} | arrays,
+            about | arrays,
             indent=1,
         )
 
@@ -111,6 +119,18 @@ def _options(records: Records, given: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
+def _by_name(message: str, records: Records) -> str:
+    """The core's message with names of stations and times of records in place of numbers."""
+
+    def station(found: re.Match[str]) -> str:
+        return f"station {records.stations[int(found[1])]}"
+
+    def record(found: re.Match[str]) -> str:
+        return f"station {records.stations[int(found[2])]}, record of {records.dates[int(found[1])]}"
+
+    return re.sub(r"^records\[(\d+), (\d+)\]", record, re.sub(r"^station (\d+)\b", station, message))
+
+
 def fit(records: Records, **options: Any) -> Fit:
     """Identify seasonal cycle, factors, A, C, noise levels and bounds from clean records.
 
@@ -118,7 +138,10 @@ def fit(records: Records, **options: Any) -> Fit:
     (False: True works on square roots), factor (1: unit conversion). Raises InvalidInput when the records do not
     suffice.
     """
-    i = _core.identify(records.values, records.first, **_options(records, options))
+    try:
+        i = _core.identify(records.values, records.first, **_options(records, options))
+    except _core.Error as error:
+        raise type(error)(_by_name(str(error), records)) from None
     variances = np.asarray(i.measurement_variance)
     model = _core.Model(
         i.A,

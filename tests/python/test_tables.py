@@ -209,3 +209,15 @@ def test_hourly_records_have_a_year_of_hours(tmp_path: Path) -> None:
     assert (cut.dates[0], cut.dates[-1]) == (dt.datetime(2024, 1, 2), dt.datetime(2024, 1, 3, 23))
     with pytest.raises(gr.InvalidInput, match="a date, as the records have"):
         records.between(5.0, None)
+
+
+def test_fit_speaks_of_stations_by_name(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    rows = [f"{k},{a:.3f},{a + b:.3f},7" for k, (a, b) in enumerate(rng.normal(size=(200, 2)))]
+    records = read_records(write(tmp_path, "t,north,south,dead\n" + "\n".join(rows)))
+    with pytest.raises(gr.InvalidInput, match="^station dead: got records without variation"):
+        gr.fit(records, period=20, harmonics=1)
+    values = records.values.copy()
+    values[3, 1] = np.inf
+    with pytest.raises(gr.InvalidInput, match=r"^station south, record of 3\.0: got inf"):
+        gr.fit(type(records)(records.dates, records.stations, values), period=20, harmonics=1)

@@ -41,8 +41,8 @@ def do(args: argparse.Namespace) -> int:
         facts = [
             ["states", str(report["states"])],
             ["structural rank", str(report["structural_rank"])],
-            ["measure at least one state of each of these groups: contractions", contractions],
-            [f"and of each of these: parent components ({len(report['parent_components'])})", parents],
+            ["groups to be measured, one state of each at least: contractions", contractions],
+            [f"and likewise: parent components ({len(report['parent_components'])})", parents],
         ]
         if "observable" in report:
             unstable = len(report["unstable_modes_nobody_sees"])

@@ -55,5 +55,5 @@ def innovation_figure(scenario: Scenario, run: Run, before: int = 30, after: int
             ax.xaxis.set_major_locator(locator)
             ax.xaxis.set_major_formatter(_DATES.ConciseDateFormatter(locator))
     figure.supylabel("test statistic", fontsize=9)
-    figure.supxlabel(f"{time_label(scenario)}   solid: statistic; dashed: threshold; X: accused".strip(), fontsize=9)
+    figure.supxlabel(f"{time_label(scenario) or 'date'} (solid: statistic; dashed: threshold; X: accused)", fontsize=9)
     return figure

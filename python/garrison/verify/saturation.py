@@ -58,7 +58,7 @@ def _run(i: Inputs, filter: _core.Filter) -> gr.Run:
 
 
 def _algorithm2(i: Inputs, index: str = "t") -> _core.Filter:
-    # A measurement that is not a number counts as an attack, the reading of our notes for bad input.
+    # A measurement that is not a number counts as an attack, as the cases of bad input want it.
     return _filter(i, detector=True, detector_index=index, accuse_missing=True, **_bounded(i))
 
 
