@@ -41,22 +41,26 @@ def of_divergence(model: _core.Model, estimate: Array | None, error: Array | Non
     Compares the end with the middle, so an attack must not start in between: quiet_from, first sample from which on
     no attack starts any more.
     """
-    if error is not None:
-        size = error.max(axis=(0, 2))
-    elif estimate is not None:
-        size = np.linalg.norm(estimate, axis=3).max(axis=(0, 2))
-    else:
+    if estimate is not None and not np.isfinite(estimate[:, -1]).all():
+        return ["estimates are not finite at the end of the run: the filter diverged"]
+    what, size = ("errors", error) if error is not None else ("estimates", _lengths(estimate))
+    half = 0 if size is None else size.shape[1] // 2
+    if size is None or half < 5 or quiet_from > half:
         return []
-    half = len(size) // 2
-    if half < 5 or quiet_from > half:
+    # Medians over time: a single wild measurement is no divergence. nan (no truth there) is passed over.
+    largest = np.fmax.reduce(np.fmax.reduce(size, axis=2), axis=0)
+    middle, end = (float(np.median(part)) for part in (largest[half - half // 5 : half + 1], largest[-1 - half // 5 :]))
+    limit = _GROWTH * _plant_growth(model, size.shape[1] - half) * max(middle, float(np.finfo(float).tiny))
+    if math.isnan(middle) or math.isnan(end) or end <= limit:
         return []
-    middle = float(size[half - half // 5 : half + 1].max())
-    end = float(size[-1 - half // 5 :].max())
-    plant = float(np.abs(np.linalg.eigvals(np.asarray(model.A))).max())
-    growth = max(1.0, plant) ** min(len(size) - half, 10_000 if plant <= 1 else 700 / math.log(max(plant, 1.0001)))
-    if math.isfinite(end) and end <= _GROWTH * growth * max(middle, np.finfo(float).tiny):
-        return []
-    if not math.isfinite(middle):
-        return ["estimates are not finite: they diverged"]
-    what = "errors" if error is not None else "estimates"
     return [f"the {what} grow from {middle:.3g} in the middle to {end:.3g} at the end of the run: the filter diverges"]
+
+
+def _lengths(estimate: Array | None) -> Array | None:
+    return None if estimate is None else np.asarray(np.linalg.norm(estimate, axis=3))
+
+
+def _plant_growth(model: _core.Model, samples: int) -> float:
+    """Growth of the state of the plant over so many samples; 1 for a stable one."""
+    radius = max(1.0, float(np.abs(np.linalg.eigvals(np.asarray(model.A))).max()))
+    return math.exp(min(samples * math.log(radius), 700.0))

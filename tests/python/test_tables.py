@@ -215,7 +215,7 @@ def test_fit_speaks_of_stations_by_name(tmp_path: Path) -> None:
     rng = np.random.default_rng(0)
     rows = [f"{k},{a:.3f},{a + b:.3f},7" for k, (a, b) in enumerate(rng.normal(size=(200, 2)))]
     records = read_records(write(tmp_path, "t,north,south,dead\n" + "\n".join(rows)))
-    with pytest.raises(gr.InvalidInput, match="^station dead: got records without variation"):
+    with pytest.raises(gr.InvalidInput, match=r"^station dead: got records without variation"):
         gr.fit(records, period=20, harmonics=1)
     values = records.values.copy()
     values[3, 1] = np.inf
