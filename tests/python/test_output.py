@@ -130,3 +130,17 @@ def test_single_files_are_replaced_whole(folder: Path, capsys: pytest.CaptureFix
     assert (folder / "p.png").read_bytes() == old
     assert sorted(p.name for p in folder.iterdir()) == ["notes.txt", "p.png", "x.toml"]
     assert main(["structure", "x.toml", "-o", "p.png", "--force"]) == 0
+
+
+def test_a_link_to_a_folder_and_an_unwritable_parent(folder: Path) -> None:
+    (folder / "locked" / "out").mkdir(parents=True)
+    (folder / "link").symlink_to(folder / "locked" / "out")
+    (folder / "locked").chmod(0o555)
+    try:
+        assert main(["run", "x.toml", "-o", "link"]) == 0
+        assert main(["run", "x.toml", "-o", "link", "--force"]) == 0
+    finally:
+        (folder / "locked").chmod(0o755)
+    names = sorted(p.name for p in (folder / "locked" / "out").iterdir())
+    assert names == ["estimates.csv", "manifest.json", "overview.png", "report.html", "summary.json"]
+    assert (folder / "link").is_symlink()

@@ -223,3 +223,23 @@ def test_what_is_unambiguous_in_attacks_is_accepted() -> None:
     assert gr.attacks.Bias(agents=3, value=5).agents == [3]
     assert gr.attacks.Constant(agents=3, value=5).agents == [3]
     assert gr.attacks.Bias(agents=np.array([3, 1]), value=np.float64(5)).agents == [1, 3]
+
+
+def test_every_panel_of_a_figure_says_what_it_shows(tmp_path: Path) -> None:
+    from garrison.figures import error_figure, innovation_figure, map_figure
+
+    (tmp_path / "x.toml").write_text(
+        LOG.replace('[data]\nfile = "y.csv"', '[[attack]]\nkind = "bias"\nagents = 1\nvalue = 3\n[run]\nsteps = 40')
+    )
+    scenario = read_scenario(tmp_path / "x.toml")
+    rows = run_scenario(scenario)
+    run = rows[0].run
+    assert run is not None
+    for figure in (run.plot(), error_figure(scenario, rows, 1.0)):
+        for ax in figure.axes:
+            assert ax.get_ylabel() and ax.get_xlabel()
+            shown = {text.get_text() for text in ax.get_legend().get_texts()}
+            assert shown == {line.get_label() for line in ax.get_lines() if not line.get_label().startswith("_")}
+    few = innovation_figure(scenario, run)
+    assert few.get_supylabel() and few.get_supxlabel()
+    assert "actually attacked" in [t.get_text() for t in map_figure(scenario, run).axes[0].get_legend().get_texts()]

@@ -13,6 +13,7 @@ from garrison import _core
 
 #: names and hashes of the files that a run wrote
 MANIFEST = "manifest.json"
+_TEMPORARY = ".garrison-"
 
 
 def new_file(name: str, force: bool) -> Path:
@@ -42,14 +43,17 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 @contextlib.contextmanager
 def output_folder(path: Path, force: bool) -> Iterator[Path]:
-    """A temporary folder beside `path`, whose files are moved to `path` at the end, if all went well.
+    """A temporary folder, whose files are moved to `path` at the end, if all went well.
+
+    It is beside `path`, or in it where it exists: on the same disk, and writable if `path` is.
 
     Of what is in `path` only the files that an earlier run wrote, unchanged since, are replaced (with `force`).
     """
     _ours(path, force)
-    target = path.absolute()
+    target = path.resolve()
     target.parent.mkdir(parents=True, exist_ok=True)
-    temporary = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+    home = target if target.is_dir() else target.parent
+    temporary = Path(tempfile.mkdtemp(prefix=_TEMPORARY, dir=home))
     try:
         yield temporary
         files = sorted(p.name for p in temporary.iterdir())
@@ -83,7 +87,7 @@ def _ours(path: Path, force: bool) -> list[str]:
     """Names of the files in `path` that an earlier run wrote; refused where the folder must not be written to."""
     if path.exists() and not path.is_dir():
         raise _core.IoError(f"{path}: got a file, expected a folder to write to")
-    if not path.exists() or not any(path.iterdir()):
+    if not path.exists() or all(p.name.startswith(_TEMPORARY) for p in path.iterdir()):
         return []
     if not force:
         raise _core.IoError(f"{path}: got a folder that is not empty; choose another one, or replace it with --force")
