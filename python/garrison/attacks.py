@@ -10,12 +10,12 @@ stop: first sample that is not attacked any more; probability: chance that an ag
 The other parameters are those of the attack. Raises InvalidInput when something does not fit.
 """
 
-import operator
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from garrison import _core
 from garrison._core import Attack
+from garrison.arguments import number, whole
 from garrison.parameters import cleaned
 from garrison.words import near, refusal, require_order, shown
 
@@ -23,26 +23,16 @@ Agents = int | Iterable[int]
 Schedule = Iterable[tuple[int, Agents]]
 
 
-def _ids(where: str, agents: Agents) -> list[int]:
-    found = [agents] if isinstance(agents, str) or not isinstance(agents, Iterable) else list(agents)
+def _ids(where: str, agents: Any) -> list[int]:
+    many = isinstance(agents, Iterable) and not isinstance(agents, str) and getattr(agents, "ndim", 1) > 0
     try:
-        if any(isinstance(a, bool) for a in found):
-            raise TypeError
-        ids = [operator.index(a) for a in found]
-        if any(not 0 <= a < 2**31 for a in ids):
-            raise TypeError
-        return ids
-    except TypeError:
+        return [whole(where, a, 0) for a in (agents if many else [agents])]
+    except _core.InvalidInput:
         raise refusal(where, shown(agents), "the number of an agent, or a list of such numbers") from None
 
 
-def _whole(where: str, value: Any) -> int:
-    try:
-        if abs(found := operator.index(value)) >= 2**62:
-            raise TypeError
-    except TypeError:
-        raise refusal(where, shown(value), "the number of a sample") from None
-    return found
+def _sample(where: str, value: Any) -> int:
+    return whole(where, value, -(2**62), 2**62)
 
 
 def _phases(where: str, start: int, agents: Agents | None, schedule: Schedule | None) -> list[tuple[int, list[int]]]:
@@ -51,12 +41,12 @@ def _phases(where: str, start: int, agents: Agents | None, schedule: Schedule | 
         raise refusal(where, f"{got} of agents and schedule", "exactly one")
     if schedule is None:
         assert agents is not None
-        return [(_whole(f"{where}.start", start), _ids(f"{where}.agents", agents))]
+        return [(_sample(f"{where}.start", start), _ids(f"{where}.agents", agents))]
     try:
         pairs = [(t, a) for t, a in schedule]
     except (TypeError, ValueError):
         raise refusal(f"{where}.schedule", shown(schedule), "pairs of a start and a list of agents") from None
-    return [(_whole(f"{where}.schedule", t), _ids(f"{where}.schedule", a)) for t, a in pairs]
+    return [(_sample(f"{where}.schedule", t), _ids(f"{where}.schedule", a)) for t, a in pairs]
 
 
 def make(
@@ -75,10 +65,9 @@ def make(
         raise refusal("attack", repr(name), f"one of {', '.join(_BY_NAME)}", near(str(name), _BY_NAME))
     where = f"attack {name}"
     phases = _phases(where, start, agents, schedule)
-    end = None if stop is None else _whole(f"{where}.stop", stop)
-    if isinstance(probability, bool) or not isinstance(probability, (int, float)):
-        raise refusal(f"{where}.probability", shown(probability), "a number in 0..1")
-    return _core.make_attack(name, phases, end, float(probability), cleaned(where, info["params"], params))
+    end = None if stop is None else _sample(f"{where}.stop", stop)
+    chance = number(f"{where}.probability", probability)
+    return _core.make_attack(name, phases, end, chance, cleaned(where, info["params"], params))
 
 
 def worst_covariance(

@@ -1,62 +1,24 @@
 """Drivers: simulate a plant, replay a recording, and the central Kalman filter everybody is compared with."""
 
-import operator
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from garrison import _core, doubts
+from garrison import _core, arguments, doubts
 from garrison.numeric import matched, numbers
 from garrison.record import Run
 from garrison.sizes import require_memory
-from garrison.words import count, hinted, only, refusal, require_order, shown
+from garrison.words import count, hinted, refusal, require_order
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 Attacks = _core.Attack | Iterable[_core.Attack]
 
+#: what a run keeps when nothing else is asked for, and everything that it can keep
 KEEP = ("estimate", "report", "measurements")
-
-
-def _start(start: Any, states: int) -> Array | None:
-    if start is None:
-        return None
-    rows = np.atleast_1d(numbers("start", start))
-    return rows.reshape(1, -1) if rows.ndim == 1 else rows
-
-
-def _whole(which: str, value: Any, least: int, most: int = 2**31 - 1) -> int:
-    try:
-        found = operator.index(value)
-    except TypeError:
-        found = least - 1
-    if isinstance(value, bool) or not least <= found <= most:
-        words = f"a whole number >= {least}" if most >= 2**31 - 1 else f"a whole number in {least}..{most}"
-        raise refusal(which, shown(value), words)
-    return found
-
-
-def _attacks(attack: Attacks) -> list[_core.Attack]:
-    found = [attack] if isinstance(attack, _core.Attack) else list(attack)
-    for one in found:
-        if not isinstance(one, _core.Attack):
-            raise refusal("attack", shown(one), "an attack of garrison.attacks, or a list of them")
-    return found
-
-
-def _link(link: Mapping[str, float] | None) -> dict[str, float]:
-    found = dict(link or {})
-    only("link", found, ["drop", "delay", "delay_rounds"])
-    for key, value in found.items():
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise refusal(
-                f"link.{key}", shown(value), "a whole number" if key == "delay_rounds" else "a number in 0..1"
-            )
-    if "delay_rounds" in found:
-        found["delay_rounds"] = _whole("link.delay_rounds", found["delay_rounds"], 0)
-    return found
+_KEEPABLE = (*KEEP, "signals", "details")
 
 
 def require_room(model: _core.Model, filter: _core.Filter, keep: Iterable[str], trials: int, steps: int) -> None:
@@ -122,8 +84,9 @@ def simulate(
     Deterministic: equal arguments give bit-identical results. Raises InvalidInput when something does not fit.
     """
     require_order("simulate", model, network, filter)
-    steps, trials = _whole("steps", steps, 1), _whole("trials", trials, 1)
-    attacks, kept = _attacks(attack), list(keep)
+    steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
+    wanted = arguments.flag("conditions", conditions)
+    attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     require_room(model, filter, kept, trials, steps)
     data = _core.simulate(
         model,
@@ -131,19 +94,19 @@ def simulate(
         filter,
         steps=steps,
         x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
-        start_error=float(numbers("start_error", start_error)),
+        start_error=arguments.number("start_error", start_error),
         noise=noise if isinstance(noise, str) else "auto",
-        disturbances=np.zeros((0, 0)) if isinstance(noise, str) else np.atleast_2d(numbers("noise", noise)),
+        disturbances=np.zeros((0, 0)) if isinstance(noise, str) else arguments.table("noise", noise),
         trials=trials,
-        seed=_whole("seed", seed, 0, 2**64 - 1),
-        threads=_whole("threads", threads, 0),
-        start=_start(start, model.states),
+        seed=arguments.whole("seed", seed, 0, 2**64 - 1),
+        threads=arguments.whole("threads", threads, 0),
+        start=None if start is None else arguments.table("start", start),
         attacks=attacks,
-        link=_link(link),
+        link=arguments.link(link),
         keep=kept,
-        progress=progress,
+        progress=arguments.callback("progress", progress),
     )
-    return _run(data, model, network, filter, attacks, conditions)
+    return _run(data, model, network, filter, attacks, wanted)
 
 
 def output_names(model: _core.Model, network: _core.Network) -> list[str] | None:
@@ -181,8 +144,9 @@ def replay(
     """
     require_order("replay", model, network, filter)
     y = numbers("measurements", matched("measurements", measurements, output_names(model, network)))
-    trials = (len(y) if y.ndim == 3 else 1) if trials is None else _whole("trials", trials, 1)
-    attacks, kept = _attacks(attack), list(keep)
+    trials = (len(y) if y.ndim == 3 else 1) if trials is None else arguments.whole("trials", trials, 1)
+    wanted = arguments.flag("conditions", conditions)
+    attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     require_room(model, filter, kept, trials, y.shape[-2] if y.ndim >= 2 else 0)
     data = _core.replay(
         model,
@@ -191,15 +155,15 @@ def replay(
         measurements=y,
         truth=None if truth is None else numbers("truth", truth),
         trials=trials,
-        seed=_whole("seed", seed, 0, 2**64 - 1),
-        threads=_whole("threads", threads, 0),
-        start=_start(start, model.states),
+        seed=arguments.whole("seed", seed, 0, 2**64 - 1),
+        threads=arguments.whole("threads", threads, 0),
+        start=None if start is None else arguments.table("start", start),
         attacks=attacks,
-        link=_link(link),
+        link=arguments.link(link),
         keep=kept,
-        progress=progress,
+        progress=arguments.callback("progress", progress),
     )
-    return _run(data, model, network, filter, attacks, conditions)
+    return _run(data, model, network, filter, attacks, wanted)
 
 
 @hinted
@@ -215,9 +179,11 @@ def central_kalman(
     The unprotected ideal that distributed filters are compared with. Needs the model's covariances; nan or masked =
     missing.
     """
+    if not isinstance(model, _core.Model):
+        raise refusal("central_kalman: model", f"a {type(model).__name__}", "a garrison.Model")
     x0 = np.zeros(model.states) if start is None else numbers("start", start)
     y = numbers("measurements", measurements)
     if y.ndim != 2 or x0.shape != (model.states,):
         got = f"measurements {y.shape} and start {x0.shape}"
         raise refusal("central_kalman", got, f"(samples, {model.outputs}) and ({model.states},)")
-    return _core.central_kalman(model, y, x0, start_variance)
+    return _core.central_kalman(model, y, x0, arguments.number("start_variance", start_variance))

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.arguments import path as path_of
+from garrison.arguments import whole
 from garrison.families import family_of
 from garrison.objects import described, filter_of, model_of, network_of
 from garrison.verdict import Verdict
@@ -78,13 +80,12 @@ class Run:
         """Share of the samples from `start` on at which each agent's measurement was suspected (clipped)."""
         if self.verdict is None:
             raise refusal("limited", "a run without verdicts", 'keep to contain "report"')
-        self._require_trial(trial)
-        suspected = self.verdict[trial, start:] == Verdict.SUSPECTED
+        suspected = self.verdict[self._trial(trial), whole("start", start, 0) :] == Verdict.SUSPECTED
         return np.asarray(suspected.mean(axis=0), dtype=float)
 
     def first_accused(self, trial: int = 0) -> dict[int, int]:
         """Agent -> first time at which some agent took it for attacked."""
-        self._require_trial(trial)
+        trial = self._trial(trial)
         first: dict[int, int] = {}
         for k, time, sets in self.accusations:
             if k == trial:
@@ -92,20 +93,18 @@ class Run:
                     first.setdefault(agent, time)
         return first
 
-    def _require_trial(self, trial: int) -> None:
-        trials = self.shape[0]
-        if not 0 <= trial < max(trials, 1):
-            raise refusal("trial", str(trial), f"a number in 0..{trials - 1}")
+    def _trial(self, trial: int) -> int:
+        return whole("trial", trial, 0, max(self.shape[0] - 1, 0))
 
     def save(self, path: str | Path) -> None:
         """Write everything to a NumPy .npz file (created, or replaced), without pickles; read it with `Run.load`."""
-        Path(path).write_bytes(self._packed())
+        path_of("path", path).write_bytes(self._packed())
 
     @staticmethod
     def load(path: str | Path) -> Run:
         """The run that `save` wrote. Raises IoError when the file cannot be read or holds no run."""
         try:
-            data = Path(path).read_bytes()
+            data = path_of("path", path).read_bytes()
         except OSError as error:
             raise _core.IoError(f"{path}: got {error.strerror}, expected a run written by Run.save") from error
         return _restored(data, str(path))
@@ -141,19 +140,19 @@ class Run:
         """Errors with their bounds, and statistics against thresholds, of one trial, as a figure (extra: plot)."""
         from garrison.figures import run_figure, string_figure
 
-        self._require_trial(trial)
+        trial = self._trial(trial)
         if family_of(self.filter).picture == "string" and self.truth is not None and self.bound is not None:
             return string_figure(self, trial)
         return run_figure(self, trial)
 
     def animate(self, path: str | Path, trial: int = 0) -> None:
         """Write a GIF of vehicles in a string (extra: plot); keep "details" and "measurements" for it."""
-        self._require_trial(trial)
+        trial = self._trial(trial)
         if family_of(self.filter).picture != "string" or self.truth is None or self.measurements is None:
             raise refusal("animate", "a run without vehicles or measurements", "one of a platoon")
         from garrison.figures import animate
 
-        animate(self, path, trial)
+        animate(self, path_of("path", path), trial)
 
     def to_xarray(self) -> Any:
         """An xarray.Dataset of all arrays, with named dimensions (extra: xarray)."""

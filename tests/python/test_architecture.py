@@ -13,7 +13,7 @@ LAYERS = (
     ("_core",),
     ("words", "verdict"),
     ("numeric", "sizes", "storage", "objects", "filters"),
-    ("parameters", "checks", "families", "tables", "longform"),
+    ("arguments", "parameters", "checks", "families", "tables", "longform"),
     ("attacks", "record", "doubts"),
     ("drivers", "fitting", "certificate"),
     ("resilience", "mitigation", "lmi", "scenario"),
