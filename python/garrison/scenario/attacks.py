@@ -4,6 +4,7 @@ import datetime as dt
 from typing import Any
 
 from garrison import _core, attacks
+from garrison.parameters import cleaned
 from garrison.scenario.network import agent_number
 from garrison.scenario.section import Section, moment, renamed, whole
 from garrison.tables import Records
@@ -21,7 +22,8 @@ def read_attack(section: Section, names: list[str], records: Records | None, sam
         advice = near(kind, infos) if isinstance(kind, str) else ""
         raise refusal(section.place("kind"), shown(kind), f"one of {', '.join(infos)}", advice)
     section.only([*_COMMON, *(p["name"] for p in infos[kind]["params"])])
-    arguments = {k: v for k, v in section.table.items() if k not in _COMMON}
+    own = {k: v for k, v in section.table.items() if k not in _COMMON}
+    arguments = cleaned(section.where, infos[kind]["params"], own)
     if "probability" in section:
         arguments["probability"] = section.number("probability", 1.0)
     if "agents" in section:
