@@ -24,7 +24,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="garrison",
         description="A network that keeps its estimate while some of its own sensors lie.",
-        epilog="Exit codes: 0 fine, 1 a check failed, 2 input refused, 70 a bug in garrison, 130 interrupted.",
+        epilog="Exit codes: 0 fine, 1 a check failed, 2 input refused, 70 a bug in garrison, 130 interrupted. "
+        "Environment: GARRISON_MEMORY_GB, the most memory of a run (default 8); GARRISON_DEBUG=1 shows where a bug is.",
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"garrison {_core.__version__}")

@@ -243,3 +243,14 @@ def test_every_panel_of_a_figure_says_what_it_shows(tmp_path: Path) -> None:
     few = innovation_figure(scenario, run)
     assert few.get_supylabel() and few.get_supxlabel()
     assert "actually attacked" in [t.get_text() for t in map_figure(scenario, run).axes[0].get_legend().get_texts()]
+
+
+def test_estimates_of_all_filters_have_names_and_dates(faulty: Path) -> None:
+    assert main(["run", str(faulty / "x.toml"), "-o", str(faulty / "out"), "--all-estimates"]) == 0
+    files = sorted(p.name for p in (faulty / "out").glob("estimates*"))
+    assert files == ["estimates.csv", "estimates_2_structural.csv"]
+    for name in files:
+        lines = (faulty / "out" / name).read_text().splitlines()
+        assert lines[0].startswith("trial,time,date,agent,x0")
+        assert lines[1].startswith("0,0,,RPT,") and lines[13].startswith("0,1,1963-01-01,RPT,")
+        assert len(lines) == 1 + 366 * 12

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import csv
 import json
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,6 +36,7 @@ def add(commands: Commands) -> None:
     command.add_argument("-o", "--output", required=True, help="folder to write to; must be new or empty")
     command.add_argument("--force", action="store_true", help="replace the output of an earlier run")
     command.add_argument("--npz", action="store_true", help="write the whole main run (Run.load) instead of a CSV file")
+    command.add_argument("--all-estimates", action="store_true", help="write the estimates of all filters, not of one")
     command.add_argument("--no-conditions", action="store_true", help="do not evaluate the filters' conditions first")
     command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(do=do)
@@ -49,7 +51,8 @@ def do(args: argparse.Namespace) -> int:
         rows = _run_with_progress(scenario, console, not args.no_conditions)
         summary = _summary(scenario, rows)
         (folder / "summary.json").write_text(json.dumps(clean(summary), indent=1), encoding="utf-8")
-        _write_estimates(folder, scenario, rows, args.npz)
+        for name, row in _estimate_names(rows if args.all_estimates else rows[:1]).items():
+            _write_estimates(folder / name, scenario, row, args.npz)
         try:
             _write_pictures(folder, scenario, rows)
         except Exception as error:  # what is computed is kept whatever happens to its pictures
@@ -103,13 +106,22 @@ def _run_with_progress(scenario: Scenario, console: Console, conditions: bool) -
         return run_scenario(scenario, progress, conditions)
 
 
-def _write_estimates(folder: Path, scenario: Scenario, rows: list[Row], npz: bool) -> None:
-    """Estimates of the main filter, attacked if there is an attack: one row per sample and agent, or the run itself."""
-    run = rows[0].run
+def _estimate_names(rows: list[Row]) -> dict[str, Row]:
+    """Name of the file of each row, without its ending: `estimates` for the main filter."""
+    names = ["estimates"]
+    for k, row in enumerate(rows[1:], start=2):
+        label = re.sub(r"[^A-Za-z0-9]+", "_", row.label).strip("_").lower()
+        names.append(f"estimates_{k}_{label}{'_attacked' if row.attacked else ''}")
+    return dict(zip(names, rows, strict=True))
+
+
+def _write_estimates(path: Path, scenario: Scenario, row: Row, npz: bool) -> None:
+    """Estimates of one filter: one line per sample and agent (.csv), or the run itself (.npz)."""
+    run = row.run
     if run is None or run.estimate is None:
         return
     if npz or run.estimate.size > _MOST_NUMBERS:
-        run.save(folder / "estimates.npz")
+        run.save(path.with_name(f"{path.name}.npz"))
         return
     trials, times, agents, n = run.estimate.shape
     trial, time, agent = (axis.ravel() for axis in np.indices((trials, times, agents)))
@@ -125,7 +137,7 @@ def _write_estimates(folder: Path, scenario: Scenario, rows: list[Row], npz: boo
         dates = ["", *(str(d) for d in scenario.dates)]
         offset = len(dates) - times
         first.insert(2, [dates[t + offset] for t in time])
-    with (folder / "estimates.csv").open("w", newline="", encoding="utf-8") as file:
+    with path.with_name(f"{path.name}.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(head)
         for *keys, values in zip(*first, np.column_stack(numbers), strict=True):
