@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from garrison.families import family_of
 from garrison.verdict import Verdict
 from garrison.words import refusal
 
@@ -38,7 +39,7 @@ def columns(run: Run) -> dict[str, Any]:
     if run.estimate is not None:
         out |= {name: run.estimate[..., k].ravel() for k, name in enumerate(states)}
     if run.truth is not None:
-        truth = run.truth if run.truth.ndim == 4 else run.truth[:, :, None]
+        truth = run.truth if family_of(run.filter).own_plants else run.truth[:, :, None]
         whole = np.broadcast_to(truth, (trials, times, agents, truth.shape[-1]))
         out |= {f"true_{name}": whole[..., k].ravel() for k, name in enumerate(states)}
     for name in ("error", "bound", "statistic", "threshold"):

@@ -158,7 +158,7 @@ class Run:
         """An xarray.Dataset of all arrays, with named dimensions (extra: xarray)."""
         import xarray as xr
 
-        own = self.truth is not None and self.truth.ndim == 4
+        own = family_of(self.filter).own_plants
         dims: dict[str, tuple[str, ...]] = {
             "truth": ("trial", "time", "agent", "state") if own else ("trial", "time", "state"),
             "estimate": ("trial", "time", "agent", "state"),

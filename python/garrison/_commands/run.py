@@ -17,7 +17,7 @@ from garrison._commands.output import output_folder
 from garrison._commands.terminal import OK, Commands, clean, console_for, print_json, print_table, print_warnings
 from garrison.compare import Row, run_scenario, signal_size
 from garrison.report import table_rows
-from garrison.report.table import warnings_of
+from garrison.report.table import error_note, warnings_of
 from garrison.scenario import Scenario, read_scenario
 
 if TYPE_CHECKING:
@@ -63,6 +63,7 @@ def do(args: argparse.Namespace) -> int:
     else:
         head, cells = table_rows(scenario, rows)
         print_table(scenario.title, head, cells, console)
+        print(f"\n{error_note(scenario)}".rstrip())
     print_warnings(warnings_of(scenario, rows), stderr=args.json)
     where = f"written to {args.output}: {', '.join(written)}"
     print(where, file=sys.stderr if args.json else sys.stdout)
@@ -81,6 +82,7 @@ def _summary(scenario: Scenario, rows: list[Row]) -> dict[str, Any]:
         "agents": scenario.model.agents,
         "states": scenario.model.states,
         "samples": scenario.steps,
+        "errors": error_note(scenario),
         "notes": scenario.notes,
         "rows": [row.summary for row in rows],
     }

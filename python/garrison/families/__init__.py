@@ -4,8 +4,8 @@ from garrison import _core
 from garrison.families.family import Family
 from garrison.families.platoon import PLATOON, PLATOON_BASELINE
 
-_SATURATION = Family(accuses=lambda params: bool(params["detector"]), accused="proved attacked", proves=True)
-_STRUCTURAL = Family(accuses=lambda params: True, accused="alarmed")
+_SATURATION = Family(accuses=lambda params: bool(params["detector"]), proves=True)
+_STRUCTURAL = Family(accuses=lambda params: True)
 _FAMILIES = {
     "saturation": _SATURATION,
     "structural": _STRUCTURAL,

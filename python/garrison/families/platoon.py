@@ -38,7 +38,6 @@ def world_of(model: _core.Model, filter: _core.Filter) -> World:
 
 PLATOON = Family(
     accuses=lambda params: bool(params["detector"]),
-    accused="proved attacked",
     proves=True,
     own_plants=True,
     picture="string",

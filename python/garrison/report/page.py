@@ -12,7 +12,7 @@ from garrison.figures import error_figure, innovation_figure, map_figure
 from garrison.figures.errors import smoothing_width
 from garrison.record import Run
 from garrison.report.html import figure, image, page, table
-from garrison.report.table import accusation_note, at_time, table_rows, warnings_of
+from garrison.report.table import accusation_note, at_time, error_note, table_rows, warnings_of
 from garrison.scenario import Scenario
 from garrison.words import count
 
@@ -115,11 +115,9 @@ _STRING_NOTE = (
 
 def _table_note(scenario: Scenario, rows: list[Row]) -> str:
     since = "from the start of the attack on" if scenario.attacks else "over all samples"
-    errors = (
-        "distances to the true state" if scenario.measurements is None else "distances to the reference (see below)"
-    )
-    parts = [
-        f"Errors are {errors}, means over agents, {since}. Samples with a bound: share of agents and samples with a "
+    parts = [error_note(scenario)] if error_note(scenario) else []
+    parts += [
+        f"Means are over agents, {since}. Samples with a bound: share of agents and samples with a "
         "certified error bound (an agent that has accused all attackers no longer tests, and reports none). Error "
         "within bound: how often the error was below it. Accused: who was accused, and when first (first trial)."
     ]

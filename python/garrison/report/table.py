@@ -68,6 +68,15 @@ def at_time(scenario: Scenario, t: int) -> str:
     return f"on {moment}" if isinstance(moment, dt.date) else f"at {moment:g} s"
 
 
+def error_note(scenario: Scenario) -> str:
+    """What errors are distances to; nothing where there are none."""
+    if scenario.measurements is None:
+        return "Errors are distances to the true state."
+    if scenario.truth is None:
+        return ""
+    return "Errors are distances to a reference, the least-squares state of the records of all stations."
+
+
 def accusation_note(rows: list[Row]) -> str:
     """What an accusation is worth, filter by filter."""
     words: dict[str, list[str]] = {}
