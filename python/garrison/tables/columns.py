@@ -65,9 +65,9 @@ def read_table(path: str | Path) -> Table:
     Separators (comma, semicolon, tab, bar, blanks) and decimal commas are detected; units may stand in the header as
     `name [unit]`. Raises IoError or InvalidInput with the line when something does not fit.
     """
-    rows = read_rows(path)
+    rows = _with_header(read_rows(path))
     head = rows.cells[0]
-    if all(number(cell) is not None for cell in head):
+    if _has_no_header(head):
         raise refusal(
             str(rows.path), f"the first line {', '.join(head)[:60]!r}", "a header with the names of the columns"
         )
@@ -88,6 +88,19 @@ def read_table(path: str | Path) -> Table:
             [f"{filled} missing row(s) between the first and the last one, read as missing records"] if filled else []
         )
     return Table(rows.path, named, values, clock, [f"{rows.path.name}: {note}" for note in notes])
+
+
+def _has_no_header(cells: list[str]) -> bool:
+    """The cells are those of a row: a time first, or numbers only."""
+    return looks_like_time(cells[0]) or all(number(cell) is not None for cell in cells)
+
+
+def _with_header(rows: Rows) -> Rows:
+    """With the comment before the first row as a header, where that is what it is."""
+    names = rows.comment.split() if rows.separator == " " else [c.strip() for c in rows.comment.split(rows.separator)]
+    if not _has_no_header(rows.cells[0]) or len(names) != len(rows.cells[0]) or _has_no_header(names):
+        return rows
+    return Rows(rows.path, [names, *rows.cells], [max(rows.lines[0] - 1, 1), *rows.lines], rows.separator)
 
 
 def _column(text: str) -> Column:

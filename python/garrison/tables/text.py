@@ -17,12 +17,16 @@ _LOOK = 50
 
 @dataclass(frozen=True)
 class Rows:
-    """The cells of a file, blank lines and comments (#) left out. lines: line number of each row, from 1."""
+    """The cells of a file, blank lines and comments (#) left out. lines: line number of each row, from 1.
+
+    comment: the last comment before the first row, which may be a header.
+    """
 
     path: Path
     cells: list[list[str]]
     lines: list[int]
     separator: str
+    comment: str = ""
 
     @property
     def separated_by(self) -> str:
@@ -35,13 +39,16 @@ def read_rows(path: str | Path) -> Rows:
     path = Path(path)
     text = _text(path)
     numbered = [(k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
+    comment = ""
+    while numbered and numbered[0][1].lstrip().startswith("#"):
+        comment = numbered.pop(0)[1].lstrip().lstrip("#")
     numbered = [(k, line) for k, line in numbered if not line.lstrip().startswith("#")]
     if not numbered:
         raise refusal(str(path), "an empty file", "rows of cells separated by commas, semicolons or tabs")
     separator = _separator([line for _, line in numbered[:_LOOK]])
     cells = _split([line for _, line in numbered], separator, path)
     lines = [k for k, _ in numbered]
-    return Rows(path, _without_empty_end(cells), lines, separator)
+    return Rows(path, _without_empty_end(cells), lines, separator, comment)
 
 
 def _text(path: Path) -> str:
