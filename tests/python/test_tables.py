@@ -107,6 +107,7 @@ REFUSED = {
     "twice": ("date,A,A\n2024-01-01,1,2\n2024-01-02,1,2\n", ["line 1", "'A' twice (columns 1 and 2)"]),
     "empty name": ("date,A,\n2024-01-01,1,2\n2024-01-02,1,2\n", ["line 1", "no name for column 2"]),
     "duplicate": ("date,A\n2024-01-01,1\n2024-01-01,2\n", ["line 3", "the same time", "remove the duplicate"]),
+    "clocks go back": ("t,A\n2024-10-27 02:00,1\n2024-10-27 02:00,2\n", ["line 3", "where clocks change", "zone"]),
     "backwards": ("date,A\n2024-01-02,1\n2024-01-01,2\n", ["line 3", "before", "sort"]),
     "irregular": ("date,A\n2024-01-01,1\n2024-01-03,2\n2024-01-06,2\n", ["line 4", "whole number of periods of 2 day"]),
     "mixed zones": ("t,A\n2024-01-01T00:00Z,1\n2024-01-01T01:00,2\n", ["line 3", "without a time zone"]),

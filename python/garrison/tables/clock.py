@@ -126,6 +126,8 @@ def _regular(places: list[str], moments: list[Moment]) -> Clock:
         if step <= 0:
             what = "the same time as" if step == 0 else "a time before"
             advice = "remove the duplicate" if step == 0 else "sort the rows by time"
+            if isinstance(moments[k], dt.datetime):
+                advice += "; where clocks change, give the times in UTC or with their zone"
             raise refusal(places[k + 1], f"{moments[k + 1]}, {what} the row before", "a later one", advice)
     if months := _months(moments):
         return months
