@@ -28,12 +28,21 @@ def monte_carlo(repeats: int) -> Rows:
     W = np.eye(AGENTS) - alpha * net.laplacian()
 
     def ours(threads: int) -> gr.Run:
-        return gr.replay(filt, model, net, measurements=y, keep=["estimate"], threads=threads)
+        return gr.replay(model, net, filt, measurements=y, keep=["estimate"], threads=threads, conditions=False)
 
     def end_to_end(threads: int) -> gr.Run:
         """Plant, noise and attack too, and the errors."""
         return gr.simulate(
-            model, net, filt, steps=STEPS, trials=TRIALS, attack=attack, seed=1, keep=["estimate"], threads=threads
+            model,
+            net,
+            filt,
+            steps=STEPS,
+            trials=TRIALS,
+            attack=attack,
+            seed=1,
+            keep=["estimate"],
+            threads=threads,
+            conditions=False,
         )
 
     def numpy_agents() -> np.ndarray:

@@ -32,7 +32,16 @@ def _steps(vehicles: int, attacked: bool) -> float:
     def run(steps: int, seed: int = 0) -> float:
         return cpu(
             lambda: gr.simulate(
-                model, net, filter, steps=steps, start=start, attack=attack, keep=(), threads=1, seed=seed
+                model,
+                net,
+                filter,
+                steps=steps,
+                start=start,
+                attack=attack,
+                keep=(),
+                threads=1,
+                seed=seed,
+                conditions=False,
             )
         )
 

@@ -20,7 +20,8 @@ from typing import Any
 import garrison as gr
 import networkx as nx
 import numpy as np
-from garrison.sensors import Anatomy, anatomy_figure, table_rows
+from garrison.anatomy import Anatomy, table_rows
+from garrison.figures import anatomy_figure
 from rich.console import Console
 from rich.table import Table
 

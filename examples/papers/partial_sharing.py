@@ -20,7 +20,7 @@ import garrison as gr
 import numpy as np
 from claims import claim, print_claims
 from garrison import partial_sharing as ps
-from garrison.plots import resilience_figure
+from garrison.figures import resilience_figure
 from matplotlib.figure import Figure
 
 L, M, BYZANTINE, ETA, K0, STEPS = 25, 8, 5, 25.0, 30, 60

@@ -264,7 +264,7 @@ def delays(e: Experiment, kinds: tuple[str, ...]) -> dict[str, list[str]]:
 
 def theory() -> Rows:
     rows = []
-    found = gr.check(platoon(1), gr.platoon.model(5, T), gr.Network.band(5, 2))
+    found = gr.check(gr.platoon.model(5, T), gr.Network.band(5, 2), platoon(1))
     rows.append(
         claim(
             "Theorem 2: asymptotic bounds, b = 1",

@@ -63,9 +63,9 @@ class Experiment:
     def errors(self, filter: Any, size: float = 0.0, sv: float = 1.0, sw: float = 1.0) -> np.ndarray:
         """Relative errors (time, agent) with the attack times `size`."""
         run = gr.replay(
-            filter,
             self.model(sv, sw),
             NETWORK,
+            filter,
             measurements=self.clean + size * self.attack,
             truth=self.x,
             keep=["report"],
@@ -176,7 +176,7 @@ def bounds(page: Page, runs: list[Experiment]) -> None:
     """(10), half of which is checked at every step, and where the page's own runs start."""
     largest, start = 0.0, 0.0
     for e in runs:
-        run = gr.replay(rdkf(), e.model(), NETWORK, measurements=e.clean + 1e5 * e.attack, keep=["report"])
+        run = gr.replay(e.model(), NETWORK, rdkf(), measurements=e.clean + 1e5 * e.attack, keep=["report"])
         assert run.statistic is not None and run.threshold is not None
         largest = max(largest, float((run.statistic / run.threshold).max()))
         s = theory.Setting(e.model(), NETWORK)
@@ -200,7 +200,7 @@ def scalar(a: float, start: float, steps: int = 400) -> tuple[Any, Any, float]:
     """One agent, one state, Sv = c = lambda = 1, Sw = 1e-4, no attack: its theory, and the error in the end."""
     model = gr.Model([[a]], [[[1.0]]], process_covariance=[[1e-4]], measurement_covariance=[[[1.0]]])
     net = gr.Network([], agents=1)
-    run = gr.replay(rdkf(), model, net, measurements=np.zeros((steps, 1)), start=[start], keep=["estimate"])
+    run = gr.replay(model, net, rdkf(), measurements=np.zeros((steps, 1)), start=[start], keep=["estimate"])
     s = theory.Setting(model, net)
     assert run.estimate is not None
     return s, s.steady_state(), abs(float(run.estimate[0, -1, 0, 0]))
@@ -256,7 +256,7 @@ def persistent(page: Page, seeds: int, folder: Path) -> list[list[str]]:
                 y = np.zeros((150, 3 * N))
                 for i in agents:
                     y[:, 3 * i : 3 * i + 3] = np.array(false) @ C[i].T
-                run = gr.replay(rdkf(), model, NETWORK, measurements=y, truth=np.zeros((151, 4)), keep=["report"])
+                run = gr.replay(model, NETWORK, rdkf(), measurements=y, truth=np.zeros((151, 4)), keep=["report"])
                 assert run.error is not None
                 errors.append(run.error[0].max(axis=1))
                 s = theory.Setting(model, NETWORK)

@@ -73,7 +73,7 @@ class Experiment:
     def errors(self, filter: Any, attack: Any) -> tuple[np.ndarray, list[gr.Run]]:
         """||e_i(t)|| of every run, (run, time, sensor)."""
         results = [
-            gr.replay(filter, self.model, self.net, measurements=y, truth=x, start=s, attack=attack, keep=["report"])
+            gr.replay(self.model, self.net, filter, measurements=y, truth=x, start=s, attack=attack, keep=["report"])
             for x, y, s in zip(self.truth, self.y, self.start, strict=True)
         ]
         return np.stack([r.error[0] for r in results]), results
@@ -117,7 +117,7 @@ def theory(e: Experiment) -> list[list[str]]:
     C = np.vstack(e.model.C)
     for s, fewest in ((0, 41), (3, 50), (5, 75), (6, None)):
         check = gr.check(
-            gr.filters.Saturation(threshold=3.0, rounds=100, attacked=s, initial_error=50.0), e.model, e.net
+            e.model, e.net, gr.filters.Saturation(threshold=3.0, rounds=100, attacked=s, initial_error=50.0)
         )
         least = check["minimal rounds"]
         found = None if np.isnan(least) else int(least)
@@ -217,9 +217,9 @@ def simulations(e: Experiment, folder: Path) -> list[list[str]]:
         for k in range(e.runs):
             agents = [int(a) for a in np.random.default_rng(1000 + k).choice(N, count, replace=False)]
             one = gr.replay(
-                algorithm1(5, 4),
                 e.model,
                 e.net,
+                algorithm1(5, 4),
                 measurements=e.y[k],
                 truth=e.truth[k],
                 start=e.start[k],

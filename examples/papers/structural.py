@@ -66,7 +66,7 @@ class System:
 
     def run(self, y: np.ndarray, truth: np.ndarray | None = None, start: np.ndarray | None = None) -> gr.Run:
         keep = ("estimate", "signals", "report")
-        return gr.replay(self.filter, self.model, self.net, measurements=y, truth=truth, start=start, keep=keep)
+        return gr.replay(self.model, self.net, self.filter, measurements=y, truth=truth, start=start, keep=keep)
 
     def residuals(self, y: np.ndarray) -> np.ndarray:
         """(trial, steps, N)"""
@@ -258,9 +258,9 @@ class Page:
         filter = gr.filters.Saturation(threshold=0.6, rounds=40)
         x, y = self.hub.plant(60, self.runs, 3)
         run = gr.replay(
-            filter,
             gr.Model(self.hub.A, self.hub.C),
             ring,
+            filter,
             measurements=y + attacks(60, self.runs, 2),
             truth=x,
             start=np.random.default_rng(8).normal(size=(4, 10)),
@@ -377,7 +377,8 @@ class Page:
         )
 
     def drawing(self) -> None:
-        from garrison.sensors import Anatomy, anatomy_figure
+        from garrison.anatomy import Anatomy
+        from garrison.figures import anatomy_figure
 
         states = [[m] for m in MEASURED]
         anatomy = Anatomy("Section V: system and network", self.hub.A, states, AGENTS, self.hub.net)

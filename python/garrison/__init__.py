@@ -4,6 +4,8 @@ Resilient distributed state estimation. The maths is in the compiled core; this 
 results, plots and the command line.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from garrison import attacks, filters
 from garrison._core import (
     Agent,
@@ -31,11 +33,27 @@ from garrison._core import (
     structure,
 )
 from garrison.checks import Check, check
-from garrison.fitting import Fit, fit
-from garrison.lmi import lmi_gains
-from garrison.mitigation import Mitigated, replay_mitigated
-from garrison.resilience import Resilience, resilience_per_byte
-from garrison.run import Run, central_kalman, replay, simulate
+from garrison.drivers import central_kalman, replay, simulate
+from garrison.prepared import Prepared, prepare
+from garrison.record import Run
+from garrison.verdict import Verdict
+
+if TYPE_CHECKING:
+    from garrison.fitting import Fit, fit
+    from garrison.lmi import lmi_gains
+    from garrison.mitigation import Mitigated, replay_mitigated
+    from garrison.resilience import Resilience, resilience_per_byte
+
+#: what is imported when it is asked for -> its module
+_LATER = {
+    "Fit": "fitting",
+    "fit": "fitting",
+    "Mitigated": "mitigation",
+    "replay_mitigated": "mitigation",
+    "Resilience": "resilience",
+    "resilience_per_byte": "resilience",
+    "lmi_gains": "lmi",
+}
 
 __all__ = [
     "Agent",
@@ -51,9 +69,11 @@ __all__ = [
     "Mitigated",
     "Model",
     "Network",
+    "Prepared",
     "Resilience",
     "Run",
     "SubsetBound",
+    "Verdict",
     "__version__",
     "attacks",
     "central_kalman",
@@ -67,6 +87,7 @@ __all__ = [
     "one_step_sparse_observable",
     "partial_sharing",
     "platoon",
+    "prepare",
     "replay",
     "replay_mitigated",
     "resilience_per_byte",
@@ -77,3 +98,17 @@ __all__ = [
     "structural",
     "structure",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module 'garrison' has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(f"garrison.{_LATER[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

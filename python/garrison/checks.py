@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from garrison import _core
+from garrison.words import hinted, require_order
 
 
 @dataclass(frozen=True)
@@ -21,33 +22,43 @@ class Check:
     @property
     def holds(self) -> bool:
         """All required conditions hold."""
-        return all(c["holds"] for c in self.conditions if c["required"])
+        return not self.failed
+
+    @property
+    def failed(self) -> list[dict[str, Any]]:
+        """The required conditions that do not hold."""
+        return [c for c in self.conditions if c["required"] and not c["holds"]]
 
     def __getitem__(self, name: str) -> float:
         """Value of the condition or quantity `name`."""
-        for entry in [*self.conditions, *self.quantities]:
+        entries = [*self.conditions, *self.quantities]
+        for entry in entries:
             if entry["name"] == name:
                 return float(entry["value"])
-        known = [e["name"] for e in [*self.conditions, *self.quantities]]
-        raise KeyError(f"{name!r}; there are {known}")
+        raise KeyError(f"{name!r}; there are {[e['name'] for e in entries]}")
 
     def __str__(self) -> str:
-        width = max(len(e["name"]) for e in [*self.conditions, *self.quantities])
+        entries = [*self.conditions, *self.quantities]
+        width = max((len(e["name"]) for e in entries), default=0)
         lines = [
-            f"{verdict(c):5}  {c['name']:{width}}  {c['value']:<12.6g} needs {c['needed']}" for c in self.conditions
+            f"{verdict(c):18}  {c['name']:{width}}  {c['value']:<12.6g} needs {c['needed']}" for c in self.conditions
         ]
-        lines += [f"{'':5}  {q['name']:{width}}  {q['value']:<12.6g} {q['meaning']}" for q in self.quantities]
+        lines += [f"{'':18}  {q['name']:{width}}  {q['value']:<12.6g} {q['meaning']}" for q in self.quantities]
         return "\n".join(lines)
 
 
 def verdict(condition: dict[str, Any]) -> str:
-    """One word for people: holds, FAILS, or no (a condition that is not required)."""
-    return "holds" if condition["holds"] else "FAILS" if condition["required"] else "no"
+    """Whether a condition is met, and whether that matters."""
+    if condition["holds"]:
+        return "met"
+    return "NOT MET (required)" if condition["required"] else "not met (optional)"
 
 
-def check(filter: _core.Filter, model: _core.Model, network: _core.Network) -> Check:
+@hinted
+def check(model: _core.Model, network: _core.Network, filter: _core.Filter) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
 
     Raises InvalidInput when parameters, model and network do not fit together.
     """
+    require_order("check", model, network, filter)
     return Check(*_core.check(filter, model, network))

@@ -1,24 +1,32 @@
 """The command `garrison`.
 
-Exit codes: 0 fine, 1 the answer is no (a condition fails, a case misses), 2 bad input or usage, 130 interrupted.
+Exit codes: 0 fine, 1 a check failed (a condition is not met, a case misses), 2 input or usage refused, 70 a bug,
+130 interrupted.
 """
 
 import argparse
+import os
 import sys
+import traceback
+from pathlib import Path
 
 from garrison import _core
-from garrison._commands import check, fit, run, structure, verify
+from garrison._commands import check, design_file, fit, run, structure, verify
 from garrison._commands import list as list_
-from garrison._commands.terminal import BAD
+from garrison._commands.terminal import BUG, INTERRUPTED, OK, REFUSED
 
-COMMANDS = (run, check, list_, verify, fit, structure)
+COMMANDS = (run, check, list_, verify, fit, structure, design_file)
+#: environment variable that shows where a bug was met
+_DEBUG = "GARRISON_DEBUG"
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="garrison",
         description="A network that keeps its estimate while some of its own sensors lie.",
-        epilog="Exit codes: 0 fine, 1 the answer is no (condition fails, case misses), 2 bad input, 130 interrupted.",
+        epilog="Exit codes: 0 fine, 1 a check failed, 2 input refused, 70 a bug in garrison, 130 interrupted. "
+        "Environment: GARRISON_MEMORY_GB, the most memory of a run (default 8); GARRISON_DEBUG=1 shows where a bug is.",
+        allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"garrison {_core.__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -29,15 +37,40 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(argv: list[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
-    args = _parser().parse_args(argv)
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="replace")  # names of users on terminals that cannot show them
+    try:
+        args = _parser().parse_args(argv)
+    except SystemExit as usage:
+        return int(usage.code or 0)
     try:
         return int(args.do(args))
+    except BrokenPipeError:  # the reader of our output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return OK
     except (_core.Error, OSError) as error:
-        print(f"garrison: {error}", file=sys.stderr)
-        return BAD
+        return _say(_one_line(error), REFUSED)
+    except MemoryError:
+        return _say("got a task that does not fit into this machine's memory, expected a smaller one", REFUSED)
     except KeyboardInterrupt:
-        print("garrison: interrupted", file=sys.stderr)
-        return 130
+        return _say("interrupted", INTERRUPTED)
+    except Exception as error:
+        if os.environ.get(_DEBUG):
+            traceback.print_exc()
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        what = f"{type(error).__name__}: {_one_line(error)} ({Path(place.filename).name}:{place.lineno})"
+        return _say(f"this is a bug, please report it with the command and its input: {what}", BUG)
+
+
+def _one_line(error: BaseException) -> str:
+    if type(error).__module__ == "builtins" and isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: got {error.strerror}, expected a file or folder that can be used"
+    return " ".join(str(error).split())
+
+
+def _say(text: str, code: int) -> int:
+    print(f"garrison: {text}", file=sys.stderr)
+    return code
 
 
 if __name__ == "__main__":

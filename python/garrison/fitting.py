@@ -1,90 +1,19 @@
-"""Models from recorded data: CSV in, model out."""
+"""Models from recorded data: records in, model out."""
 
-import csv
-import datetime as dt
 import json
+import re
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.sizes import require_memory
+from garrison.tables import Records
+from garrison.words import only, refusal, shown
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Records:
-    """A CSV table of one date column and one column of numbers per station; an empty cell is a missing record."""
-
-    dates: list[dt.date]
-    stations: list[str]
-    values: Array  # (samples, stations), nan = missing
-
-    @property
-    def first(self) -> int:
-        """Days from the year 1 to the first record: the seasonal clock."""
-        return self.dates[0].toordinal()
-
-    def between(self, start: dt.date | None, end: dt.date | None) -> "Records":
-        """The records from `start` to `end`, both included. Raises InvalidInput when there are none."""
-        keep = [k for k, d in enumerate(self.dates) if (not start or d >= start) and (not end or d <= end)]
-        if len(keep) < 2:
-            span = f"{self.dates[0]}..{self.dates[-1]}"
-            raise _core.InvalidInput(
-                f"dates {start or ''}..{end or ''}: got {len(keep)} records, expected at least 2; the file has {span}"
-            )
-        return Records([self.dates[k] for k in keep], self.stations, self.values[keep])
-
-
-def _cell(path: Path, line: int, column: str, cell: str) -> float:
-    if not cell.strip():
-        return float("nan")
-    try:
-        return float(cell)
-    except ValueError:
-        raise _core.InvalidInput(
-            f"{path}, line {line}, column {column}: got {cell!r}, expected a number or an empty cell"
-        ) from None
-
-
-def _date(path: Path, line: int, cell: str) -> dt.date:
-    try:
-        return dt.date.fromisoformat(cell.strip())
-    except ValueError:
-        raise _core.InvalidInput(
-            f"{path}, line {line}: got the date {cell!r}, expected YYYY-MM-DD in the first column"
-        ) from None
-
-
-def read_records(path: str | Path) -> Records:
-    """Read daily records: a header `date,STATION,STATION,...`, then a row per day without gaps in the dates.
-
-    Raises IoError when the file cannot be read, InvalidInput with the line when its content does not fit.
-    """
-    path = Path(path)
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise _core.IoError(f"{path}: got {error}, expected a readable CSV file") from error
-    if len(rows) < 3 or len(rows[0]) < 2:
-        raise _core.InvalidInput(f"{path}: got {len(rows)} line(s), expected a header and at least two rows of records")
-    stations = [name.strip() for name in rows[0][1:]]
-    dates, values = [], []
-    for line, row in enumerate(rows[1:], start=2):
-        if len(row) != len(stations) + 1:
-            raise _core.InvalidInput(f"{path}, line {line}: got {len(row)} columns, expected {len(stations) + 1}")
-        dates.append(_date(path, line, row[0]))
-        values.append([_cell(path, line, name, cell) for name, cell in zip(stations, row[1:], strict=True)])
-        if len(dates) > 1 and dates[-1] - dates[-2] != dt.timedelta(days=1):
-            raise _core.InvalidInput(
-                f"{path}, line {line}: got {dates[-1]} after {dates[-2]}, expected the next day; "
-                "add the missing days with empty cells"
-            )
-    return Records(dates, stations, np.array(values))
 
 
 @dataclass(frozen=True)
@@ -99,14 +28,22 @@ class Fit:
     records: Records
 
     def measurements(self, records: Records) -> Array:
-        """Measurements (samples, stations) of other records of the same stations."""
-        if records.stations != self.records.stations:
-            raise _core.InvalidInput(f"stations: got {records.stations}, expected {self.records.stations}")
-        return self.identified.measurements(records.values, records.first)
+        """Measurements (samples, stations) of other records of the same stations and period, matched by name."""
+        if abs(records.step - self.records.step) > 1e-6 * self.records.step:
+            raise refusal("records", f"a period of {records.step:g} s", f"{self.records.step:g} s, as the fitted ones")
+        same = records.of(self.records.stations)
+        return self.identified.measurements(same.values, same.first)
 
     def reference(self, records: Records) -> Array:
         """What we call truth: the least-squares state (samples, n) of clean records of the same day."""
         return self.identified.reference_states(self.measurements(records))
+
+    def robust_reference(self, records: Records) -> Array:
+        """The state (samples, n) with the least sum of absolute deviations: a median over the stations.
+
+        Unlike `reference` it is not pulled by a minority of stations that are wrong. nan where too few have a record.
+        """
+        return _least_absolute(np.asarray(self.identified.C), self.measurements(records))
 
     def to_json(self) -> str:
         """The model as text: everything a scenario or another program needs."""
@@ -125,19 +62,86 @@ class Fit:
             )
         }
         span = [str(self.records.dates[0]), str(self.records.dates[-1])]
+        about = {
+            "stations": self.records.stations,
+            "units": self.records.units,
+            "period_s": self.records.step,
+            "fitted": span,
+            "process_bound": i.process_bound,
+        }
         return json.dumps(
-            {"stations": self.records.stations, "fitted": span, "process_bound": i.process_bound} | arrays,
+            about | arrays,
             indent=1,
         )
+
+
+#: reweightings of `_least_absolute`, and the deviation below which a station counts as met
+_SWEEPS, _MET = 60, 1e-9
+
+
+def _least_absolute(C: Array, y: Array) -> Array:
+    """argmin over x of sum_i |y_i - C_i x| of every row of y, by iteratively reweighted least squares."""
+    known = np.isfinite(y)
+    values = np.where(known, y, 0.0)
+    weights = known.astype(float)
+    n = C.shape[1]
+    x = np.zeros((len(y), n))
+    for _ in range(_SWEEPS):
+        normal = np.einsum("ti,ij,ik->tjk", weights, C, C) + 1e-12 * np.eye(n)
+        x = np.linalg.solve(normal, np.einsum("ti,ij,ti->tj", weights, C, values)[..., None])[..., 0]
+        weights = known / np.maximum(np.abs(values - x @ C.T), _MET)
+    x[known.sum(axis=1) < n] = np.nan
+    return x
+
+
+_OPTIONS = ("factors", "harmonics", "period", "root", "factor")
+#: most factors and harmonics that anybody could mean
+_MOST = 10_000
+
+
+def _options(records: Records, given: dict[str, Any]) -> dict[str, Any]:
+    only("fit", given, _OPTIONS)
+    out: dict[str, Any] = {"period": records.samples_per_year}
+    for name, value in given.items():
+        where = f"fit.{name}"
+        if name == "root":
+            if not isinstance(value, bool):
+                raise refusal(where, shown(value), "true or false")
+        elif isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise refusal(where, shown(value), "a number")
+        elif name in ("factors", "harmonics"):
+            if value != int(value) or not 0 <= value <= _MOST:
+                raise refusal(where, shown(value), f"a whole number in 0..{_MOST}")
+            value = int(value)
+        out[name] = value
+    columns = 1 + 2 * out.get("harmonics", 2)
+    require_memory("fit.harmonics", str(out.get("harmonics", 2)), float(len(records.values)) * columns)
+    return out
+
+
+def _by_name(message: str, records: Records) -> str:
+    """The core's message with names of stations and times of records in place of numbers."""
+
+    def station(found: re.Match[str]) -> str:
+        return f"station {records.stations[int(found[1])]}"
+
+    def record(found: re.Match[str]) -> str:
+        return f"station {records.stations[int(found[2])]}, record of {records.dates[int(found[1])]}"
+
+    return re.sub(r"^records\[(\d+), (\d+)\]", record, re.sub(r"^station (\d+)\b", station, message))
 
 
 def fit(records: Records, **options: Any) -> Fit:
     """Identify seasonal cycle, factors, A, C, noise levels and bounds from clean records.
 
-    options: factors (state dimension, default 2), harmonics (2), period (365.25 samples), root (False: True works
-    on square roots), factor (1: unit conversion). Raises InvalidInput when the records do not suffice.
+    options: factors (state dimension, default 2), harmonics (2), period (of the cycle in samples, default a year), root
+    (False: True works on square roots), factor (1: unit conversion). Raises InvalidInput when the records do not
+    suffice.
     """
-    i = _core.identify(records.values, records.first, **options)
+    try:
+        i = _core.identify(records.values, records.first, **_options(records, options))
+    except _core.Error as error:
+        raise type(error)(_by_name(str(error), records)) from None
     variances = np.asarray(i.measurement_variance)
     model = _core.Model(
         i.A,

@@ -41,7 +41,7 @@ def lmi_gains(setting: structural.Setting, *, iterations: int = 20, margin: floa
         DesignInfeasible: no stable gain within `iterations`; says the radius reached.
         Error: cvxpy is not installed.
 
-    Source: Doostmohammadian et al., IEEE TNSE 2022, (8); our notes on it, items 20 and 21.
+    Source: Doostmohammadian et al., IEEE TNSE 2022, (8).
     """
     cp = _cvxpy()
     A, C, W, U = (np.asarray(M) for M in (setting.A, setting.C, setting.W, setting.U))

@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from garrison import _core
+from garrison import _core, filters
 from garrison._core import structure
-from garrison.run import Run, replay
+from garrison.drivers import replay
+from garrison.numeric import numbers
+from garrison.record import Run
 
 Array = NDArray[np.float64]
 
@@ -64,20 +66,20 @@ def replay_mitigated(
 
     measured: state that each agent measures (None: a relay). truth: (samples + 1, n). noise and attack: (samples, N);
     an attack sits on the first sensor of its agent and is left behind with it. choice: "exact" (any substitute that
-    keeps the system observable, the cheapest by `cost`, agents x states) or "class" (Algorithm 1 as printed). params:
+    keeps the system observable, the cheapest by `cost`, agents x states) or "class" (Algorithm 1 as published). params:
     of the Structural filter, without weights, sharing and gain, which are designed for every segment.
     Raises DesignInfeasible when no stabilising gain is left, InvalidInput when something does not fit.
     """
-    x, v, tau = (np.asarray(a, dtype=float) for a in (truth, noise, attack))
-    A_, E = np.asarray(A, dtype=float), np.asarray(process_covariance, dtype=float)
-    R = np.broadcast_to(np.asarray(measurement_variance, dtype=float), (len(measured),))
+    x, v, tau = numbers("truth", truth), numbers("noise", noise), numbers("attack", attack)
+    A_, E = numbers("A", A), numbers("process_covariance", process_covariance)
+    R = np.broadcast_to(numbers("measurement_variance", measurement_variance), (len(measured),))
     if x.ndim != 2 or v.shape != (len(x) - 1, len(measured)) or tau.shape != v.shape:
         raise _core.InvalidInput(
             f"truth, noise, attack: got shapes {x.shape}, {v.shape}, {tau.shape}, "
             f"expected (samples + 1, n) and twice (samples, {len(measured)})"
         )
     system = structure.System(structure.Pattern.of(A_))
-    filter = _core.Structural(**params)
+    filter = filters.Structural(**params)
     now: list[int | None] = list(measured)
     kinds = system.classes([[] if s is None else [s] for s in now])
     begin = np.zeros((len(now), len(A_))) if start is None else np.asarray(start, dtype=float)
@@ -91,7 +93,9 @@ def replay_mitigated(
         sensing = [i for i, s in enumerate(now) if s is not None]
         columns = [x[t + 1 :, now[i]] + v[t:, i] + tau[t:, i] * original[i] for i in sensing]
         y = np.column_stack(columns or [np.empty((len(x) - 1 - t, 0))])
-        run = replay(filter, _model(A_, E, R, now), network, measurements=y, truth=x[t:], start=out.estimate[t])
+        run = replay(
+            _model(A_, E, R, now), network, filter, measurements=y, truth=x[t:], start=out.estimate[t], conditions=False
+        )
         assert run.estimate is not None and run.error is not None
         alarmed = next(((k, sets) for _, k, sets in run.accusations if any(sets)), None)
         until = len(x) - 1 - t if alarmed is None else alarmed[0]

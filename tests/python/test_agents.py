@@ -9,6 +9,7 @@ from pathlib import Path
 import garrison as gr
 import numpy as np
 import pytest
+from garrison.cli import main
 
 AGENTS = 5
 FILTERS = [
@@ -50,7 +51,7 @@ def test_a_network_of_agents_is_the_replay_bit_for_bit_and_survives_a_new_proces
 ) -> None:
     model, net = problem()
     y = np.random.default_rng(1).normal(size=(40, AGENTS))
-    run = gr.replay(filt, model, net, measurements=y)
+    run = gr.replay(model, net, filt, measurements=y)
     agents = [gr.Agent(model, net, filt, i) for i in range(AGENTS)]
     for t in range(1, 21):
         step(agents, net, t, y[t - 1])
@@ -163,18 +164,43 @@ def test_what_an_agent_cannot_use_is_refused_by_name_or_counted() -> None:
         gr.Agent(model, net, filt, 0).sense(0, [0.0])
 
 
-def test_designs_travel_as_bytes_whole_or_in_parts() -> None:
+def test_designs_travel_as_files_whole_or_in_parts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     model, net = problem()
     for filt in FILTERS:
-        design = gr._core.Design(model, net, filt)
-        data = design.to_bytes()
-        again = gr._core.Design.from_bytes(data)
-        assert again.to_bytes() == data
-        summary = gr._core.design_summary(data)
-        assert summary["filter"] == design.filter_name
-        assert summary["agents"] == AGENTS
-        assert gr.Agent.from_part(design.part(3)) == design.agent(3)
+        prepared = gr.prepare(model, net, filt)
+        path = tmp_path / "x.gdesign"
+        prepared.save(path)
+        again = gr.Prepared.load(path)
+        assert again == prepared
+        assert hash(again) == hash(prepared)
+        assert pickle.loads(pickle.dumps(prepared)) == prepared == copy.deepcopy(prepared)
+        run, repeated = (p.simulate(steps=5, seed=3, noise="normal") for p in (prepared, again))
+        assert run == repeated == gr.simulate(model, net, filt, steps=5, seed=3, noise="normal")
+        assert gr.Agent.from_part(prepared.part(3)) == prepared.agent(3)
+        assert main(["design-file", str(path), "--show"]) == 0
+        shown = capsys.readouterr().out
+        assert f"filter  {again.filter.name}, 5 agents, 2 states" in shown
+        assert "gains\n" in shown
+        prepared.save(path, agent=3)
+        assert main(["design-file", str(path)]) == 0
+        assert "agent 3 alone" in capsys.readouterr().out
+        data = prepared.to_bytes()
         with pytest.raises(gr.InvalidInput, match="damaged"):
-            gr._core.Design.from_bytes(data[:-1] + bytes([data[-1] ^ 1]))
-        with pytest.raises(gr.InvalidInput):
-            gr._core.Design.from_bytes(b"nonsense")
+            gr.Prepared.from_bytes(data[:-1] + bytes([data[-1] ^ 1]))
+    with pytest.raises(gr.InvalidInput):
+        gr.Prepared.from_bytes(b"nonsense")
+    (tmp_path / "bad").write_text("nonsense")
+    assert main(["design-file", str(tmp_path / "bad")]) == 2
+    with pytest.raises(gr.InvalidInput, match="agent in 0"):
+        prepared.agent(5)
+
+
+def test_links_may_fail_by_schedule_or_by_record() -> None:
+    model, net = problem()
+    filt = gr.filters.ScalarGain()
+    run = gr.simulate(model, net, filt, steps=6, noise="normal", link={"cuts": [(None, 2, 3, 5)], "lost": [(6, 0, 1, 0)]})
+    assert run.counters["lost"] == 2 * 2 * 1 * filt.params["rounds"] + 1
+    with pytest.raises(gr.InvalidInput, match="rows of 4"):
+        gr.simulate(model, net, filt, steps=6, link={"cuts": [(1, 2)]})
+    with pytest.raises(gr.InvalidInput, match="agent 9"):
+        gr.simulate(model, net, filt, steps=6, noise="normal", link={"lost": [(6, 0, 9, 0)]})

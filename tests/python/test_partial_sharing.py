@@ -18,7 +18,7 @@ def problem(seed: int = 0, agents: int = 6, states: int = 4) -> tuple[gr.Model, 
 def test_the_worst_attack_costs_what_the_analysis_says() -> None:
     model, net = problem()
     filt = gr.filters.PartialSharing(gain=0.3, shared=2, gains="steady")
-    attack = gr.attacks.worst_covariance(filt, model, net, [1, 4], energy=40.0)
+    attack = gr.attacks.worst_covariance(model, net, filt, [1, 4], energy=40.0)
     assert attack.target == "message" and attack.agents == [1, 4]
     analysis = ps.Analysis(filt, model, net)
     honest = np.mean(analysis.periodic_mse())
@@ -117,11 +117,11 @@ def test_models_that_do_not_fit() -> None:
     )
     filt = gr.filters.PartialSharing(gain=0.1)
     assert np.isfinite(gr.simulate(blind, net, filt, steps=30).estimate).all()  # a finite run is possible
-    assert not gr.check(filt, blind, net).holds
+    assert not gr.check(blind, net, filt).holds
     with pytest.raises(gr.InvalidInput, match="not detectable"):
-        gr.attacks.worst_covariance(filt, blind, net, [0], energy=1.0)
+        gr.attacks.worst_covariance(blind, net, filt, [0], energy=1.0)
     with pytest.raises(gr.InvalidInput, match="expected partial_sharing"):
-        gr.attacks.worst_covariance(gr.filters.ScalarGain(), blind, net, [0], energy=1.0)
+        gr.attacks.worst_covariance(blind, net, gr.filters.ScalarGain(), [0], energy=1.0)
     model, _ = problem()
     with pytest.raises(gr.InvalidInput, match="another plant"):
         lie = gr.attacks.Coordinated(agents=[0], covariance=np.eye(3).ravel().tolist())

@@ -53,7 +53,7 @@ def test_closed_loop_and_its_replay() -> None:
     assert run.first_accused() == {2: 5}
     model, net = string()
     start = np.column_stack([200 - 20.0 * np.arange(5), np.full(5, 10.0)])
-    again = gr.replay(run.filter, model, net, measurements=run.measurements[0], truth=run.truth[0], start=start)
+    again = gr.replay(model, net, run.filter, measurements=run.measurements[0], truth=run.truth[0], start=start)
     assert again.estimate is not None and run.estimate is not None
     assert (again.estimate == run.estimate).all()
 
@@ -67,7 +67,7 @@ def test_recorded_inputs_take_the_place_of_commands() -> None:
     model, net = gr.platoon.model(5, 0.01, True), gr.Network.band(5, 2)
     start = np.column_stack([200 - 20.0 * np.arange(5), np.full(5, 10.0)])
     other = gr.filters.Platoon(**(GIVEN | {"gs": 20.0, "gv": 30.0}))  # another controller: only the log steers
-    replayed = gr.replay(other, model, net, measurements=rows, truth=run.truth[0], start=start)
+    replayed = gr.replay(model, net, other, measurements=rows, truth=run.truth[0], start=start)
     assert replayed.error is not None and run.error is not None
     assert np.abs(replayed.error - run.error).max() < 1e-9
 
@@ -89,11 +89,11 @@ def test_pictures(tmp_path: Path) -> None:
 
 def test_check_and_refusals() -> None:
     model, net = string()
-    found = gr.check(gr.filters.Platoon(**GIVEN), model, net)
+    found = gr.check(model, net, gr.filters.Platoon(**GIVEN))
     assert found["limit of rho"] == pytest.approx(found["limit of rho"])
     assert found["beta_0"] == pytest.approx(301.90375, rel=1e-6)
     with pytest.raises(gr.InvalidInput, match="b = 3"):
-        gr.check(gr.filters.Platoon(**(GIVEN | {"attacked": 3})), model, net)
+        gr.check(model, net, gr.filters.Platoon(**(GIVEN | {"attacked": 3})))
     with pytest.raises(gr.InvalidInput, match="recorded disturbances"):
         gr.simulate(
             gr.Model([[1.0]], [[[1.0]]]), gr.Network.path(1), gr.filters.ScalarGain(), steps=3, noise=np.zeros((4, 2))

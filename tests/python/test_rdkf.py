@@ -6,7 +6,7 @@ import garrison as gr
 import numpy as np
 import pytest
 from garrison._core import rdkf as theory
-from garrison.job import run_scenario, signal_size
+from garrison.compare import run_scenario, signal_size
 from garrison.scenario import read_scenario
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -58,7 +58,7 @@ def test_what_an_agent_reports() -> None:
     assert run.limited(start=10)[2] == 1.0
     assert (run.signals["mu"][0, 10:, 2] > 0).all()
     assert run.warnings == []
-    found = gr.check(filt, model, net)
+    found = gr.check(model, net, filt)
     assert found.holds
     assert "no bound for persistent attacks: radius = " in str(found)
 
@@ -104,7 +104,7 @@ def test_ipopt_is_refused_with_what_to_do_or_agrees() -> None:
 
 def test_wind_scenario(wind: Path) -> None:
     scenario = read_scenario(wind / "rdkf.toml")
-    rows = {(r.label, r.attacked): r.summary(scenario) for r in run_scenario(scenario)}
+    rows = {(r.label, r.attacked): r.summary for r in run_scenario(scenario)}
     signal = signal_size(scenario)
     assert signal is not None
     assert rows["rdkf, huber", True]["mean_error"] < 0.5 * rows["distributed Kalman, unprotected", True]["mean_error"]

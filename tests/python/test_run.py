@@ -22,10 +22,10 @@ def test_replay_of_what_was_simulated(system: tuple[gr.Model, gr.Network, gr.Fil
     assert made.measurements is not None and made.truth is not None and made.estimate is not None
     assert made.estimate.shape == (3, 31, 5, 2)
     assert made.measurements.shape == (3, 30, 5)
-    together = gr.replay(filt, model, net, measurements=made.measurements, truth=made.truth)
+    together = gr.replay(model, net, filt, measurements=made.measurements, truth=made.truth)
     np.testing.assert_array_equal(together.estimate, made.estimate)
     np.testing.assert_array_equal(together.error, made.error)
-    alone = gr.replay(filt, model, net, measurements=made.measurements[1], truth=made.truth[1])
+    alone = gr.replay(model, net, filt, measurements=made.measurements[1], truth=made.truth[1])
     assert alone.estimate is not None
     np.testing.assert_array_equal(alone.estimate[0], made.estimate[1])
 
@@ -47,7 +47,7 @@ def test_replay_of_what_was_simulated(system: tuple[gr.Model, gr.Network, gr.Fil
 def test_replay_refuses(system: tuple[gr.Model, gr.Network, gr.Filter], wrong: dict[str, object], words: str) -> None:
     model, net, filt = system
     with pytest.raises(gr.InvalidInput, match=words):
-        gr.replay(filt, model, net, **wrong)  # type: ignore[arg-type]
+        gr.replay(model, net, filt, **wrong)  # type: ignore[arg-type]
 
 
 def test_a_run_saves_plots_and_converts(system: tuple[gr.Model, gr.Network, gr.Filter], tmp_path: Path) -> None:
@@ -59,7 +59,7 @@ def test_a_run_saves_plots_and_converts(system: tuple[gr.Model, gr.Network, gr.F
         assert {"error", "threshold", "verdict", "signal_innovation"} <= set(saved.files)
     assert run.to_xarray()["estimate"].dims == ("trial", "time", "agent", "state")
     assert len(run.plot().axes) >= 2
-    assert repr(run) == "Run(saturation: 1 trial(s), 10 samples, 5 agents)"
+    assert repr(run) == "Run(saturation: 1 trial, 10 samples, 5 agents)"
 
 
 def test_networks_from_other_libraries() -> None:

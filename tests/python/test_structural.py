@@ -60,7 +60,12 @@ def test_structure_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
 
 def test_structure_command_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "A.csv"
-    for text, words in (("1,2\n3", "expected a square matrix"), ("1,x\n2,3", "expected numbers"), ("", "square")):
+    for text, words in (
+        ("1,2\n3", "line 2: got 1 column, expected 2"),
+        ("1,x\n2,3", "line 1, column 2: got 'x', expected a number"),
+        ("1,2", "expected a square matrix"),
+        ("", "an empty file"),
+    ):
         file.write_text(text)
         assert main(["structure", str(file)]) == 2
         assert words in capsys.readouterr().err

@@ -6,14 +6,14 @@ from pathlib import Path
 import garrison as gr
 import numpy as np
 import pytest
-from garrison.fitting import read_records
-from garrison.job import run_scenario, signal_size
+from garrison.compare import run_scenario, signal_size
 from garrison.scenario import read_scenario
+from garrison.tables import read_records
 
 
 def test_hijacked_wind_is_as_the_readme_says(wind: Path) -> None:
     scenario = read_scenario(wind / "hijacked.toml")
-    rows = {(r.label, r.attacked): r.summary(scenario) for r in run_scenario(scenario)}
+    rows = {(r.label, r.attacked): r.summary for r in run_scenario(scenario)}
     signal = signal_size(scenario)
     assert signal is not None
     detector = rows["saturation with detector", True]

@@ -1,58 +1,61 @@
 """`garrison fit`: identify a model from records."""
 
 import argparse
-import datetime as dt
 
 import numpy as np
 
-from garrison import _core
-from garrison._commands.terminal import OK, Commands, console_for, new_file, print_table
-from garrison.fitting import fit, read_records
+from garrison._commands.output import new_file, write_whole
+from garrison._commands.terminal import OK, Commands, console_for, print_table, print_warnings
+from garrison.fitting import fit
+from garrison.scenario.section import moment
+from garrison.tables import read_records
+from garrison.tables.clock import Moment
+from garrison.words import count
 
 
 def add(commands: Commands) -> None:
-    command = commands.add_parser("fit", help="identify a model from clean daily records (CSV: date,STATION,...)")
+    """Declare the command."""
+    command = commands.add_parser(
+        "fit", help="identify a model from clean regular records (CSV: date,STATION,...)", allow_abbrev=False
+    )
     command.add_argument("records", help="CSV file")
-    command.add_argument("--from", dest="start", help="first day, YYYY-MM-DD")
-    command.add_argument("--to", dest="end", help="last day, YYYY-MM-DD")
-    command.add_argument("--factors", type=int, default=2, help="common factors that become the state (default 2)")
-    command.add_argument("--harmonics", type=int, default=2, help="of the seasonal cycle (default 2)")
-    command.add_argument("--period", type=float, default=365.25, help="of the cycle, in samples (default 365.25)")
+    command.add_argument("--from", dest="start", help="first record: YYYY-MM-DD, with a time, or seconds")
+    command.add_argument("--to", dest="end", help="last record, included")
+    command.add_argument(
+        "--factors", type=int, default=2, help="number of states: common factors of all stations (default 2)"
+    )
+    command.add_argument(
+        "--harmonics", type=int, default=2, help="number of harmonics of the seasonal cycle (default 2)"
+    )
+    command.add_argument("--period", type=float, help="length of the cycle in samples (default: a year)")
     command.add_argument("--root", action="store_true", help="work on the square root of the records")
-    command.add_argument("--factor", type=float, default=1.0, help="unit conversion (default 1)")
+    command.add_argument(
+        "--scale", type=float, default=1.0, help="multiply the records by this number, to convert units (default 1)"
+    )
     command.add_argument("-o", "--output", help="model file to write (JSON); default: standard output")
     command.add_argument("--force", action="store_true", help="replace an existing model file")
-    command.add_argument("--json", action="store_true", help="print the result for machines")
+    command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(do=do)
 
 
 def do(args: argparse.Namespace) -> int:
-    def day(text: str | None) -> dt.date | None:
-        try:
-            return dt.date.fromisoformat(text) if text else None
-        except ValueError:
-            raise _core.InvalidInput(f"got the date {text!r}, expected YYYY-MM-DD") from None
-
-    records = read_records(args.records).between(day(args.start), day(args.end))
-    found = fit(
-        records,
-        factors=args.factors,
-        harmonics=args.harmonics,
-        period=args.period,
-        root=args.root,
-        factor=args.factor,
-    )
+    """Run the command."""
+    start, end = (_moment(name, text) for name, text in (("--from", args.start), ("--to", args.end)))
+    records = read_records(args.records).between(start, end)
+    options = {"factors": args.factors, "harmonics": args.harmonics, "root": args.root, "factor": args.scale}
+    found = fit(records, **options, **({"period": args.period} if args.period is not None else {}))
+    print_warnings(records.notes, stderr=True)
     text = found.to_json()
     if args.output:
-        target = new_file(args.output, args.force)
-        target.write_text(text + "\n", encoding="utf-8")
+        write_whole(new_file(args.output, args.force), lambda path: path.write_text(text + "\n", encoding="utf-8"))
     if args.json or not args.output:
         print(text)
         return OK
     i = found.identified
     console = console_for()
     console.print(
-        f"{len(records.dates)} records, {records.dates[0]} to {records.dates[-1]}, {len(records.stations)} stations"
+        f"{len(records.dates)} records, {records.dates[0]} to {records.dates[-1]}, "
+        f"{count(len(records.stations), 'station')}"
     )
     console.print(f"factors carry {', '.join(f'{s:.1%}' for s in i.share)} of the variance around the season")
     console.print(f"A = {np.asarray(i.A).round(4).tolist()}, ||w|| <= {i.process_bound:.4g}")
@@ -66,3 +69,12 @@ def do(args: argparse.Namespace) -> int:
     print_table("", head, rows, console)
     console.print(f"written to {args.output}")
     return OK
+
+
+def _moment(name: str, text: str | None) -> Moment | None:
+    if text is None:
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        return moment(name, text)

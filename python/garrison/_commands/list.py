@@ -1,4 +1,4 @@
-"""`garrison list`: what exists, with parameters."""
+"""`garrison list`: the filters and attacks with their parameters."""
 
 import argparse
 import math
@@ -6,12 +6,14 @@ from typing import Any
 
 from garrison import _core
 from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table
+from garrison.words import near, refusal
 
 
 def add(commands: Commands) -> None:
-    command = commands.add_parser("list", help="what exists, with parameters, units, ranges, defaults")
-    command.add_argument("what", nargs="?", choices=["filters", "attacks"])
-    command.add_argument("--json", action="store_true", help="print the result for machines")
+    """Declare the command."""
+    command = commands.add_parser("list", help="list the filters and attacks with their parameters", allow_abbrev=False)
+    command.add_argument("what", nargs="?", help="filters, attacks, or the name of one (default: all)")
+    command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(do=do)
 
 
@@ -34,9 +36,23 @@ def _param_rows(params: list[dict[str, Any]]) -> list[list[str]]:
     return [[p["name"], p["symbol"], p["unit"], _range(p), _default(p), p["doc"]] for p in params]
 
 
-def do(args: argparse.Namespace) -> int:
+def _wanted(what: str | None) -> dict[str, list[dict[str, Any]]]:
     kinds = {"filters": _core.filter_infos(), "attacks": _core.attack_infos()}
-    wanted = {args.what: kinds[args.what]} if args.what else kinds
+    if what is None:
+        return kinds
+    if what in kinds:
+        return {what: kinds[what]}
+    named = {kind: [info for info in infos if info["name"] == what] for kind, infos in kinds.items()}
+    found = {kind: infos for kind, infos in named.items() if infos}
+    if not found:
+        known = [*kinds, *(info["name"] for infos in kinds.values() for info in infos)]
+        raise refusal("list", repr(what), "filters, attacks, or the name of one", near(what, known))
+    return found
+
+
+def do(args: argparse.Namespace) -> int:
+    """Run the command."""
+    wanted = _wanted(args.what)
     if args.json:
         print_json(wanted)
         return OK
@@ -45,7 +61,7 @@ def do(args: argparse.Namespace) -> int:
     for kind, infos in wanted.items():
         for info in infos:
             about = info.get("title") or f"{info['doc']} ({info['target']} attack)"
-            console.print(f"\n[bold]{info['name']}[/bold]  {about}  [dim]{kind}[/dim]")
+            console.print(f"\n{info['name']}: {about} [{kind}]")
             if info["params"]:
                 print_table("", head, _param_rows(info["params"]), console)
     return OK

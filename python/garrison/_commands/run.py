@@ -1,122 +1,154 @@
 """`garrison run`: simulate or replay a scenario."""
 
+from __future__ import annotations
+
 import argparse
+import csv
 import json
-import shutil
+import re
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from garrison import _core
-from garrison._commands.terminal import OK, Commands, clean, console_for, print_json, print_table
-from garrison.job import Row, run_scenario
+from garrison._commands.output import output_folder
+from garrison._commands.terminal import OK, Commands, clean, console_for, print_json, print_table, print_warnings
+from garrison.compare import Row, run_scenario, signal_size
+from garrison.report import table_rows
+from garrison.report.table import error_note, warnings_of
 from garrison.scenario import Scenario, read_scenario
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+#: numbers in estimates.csv; more are written as .npz
+_MOST_NUMBERS = 2_000_000
 
 
 def add(commands: Commands) -> None:
+    """Declare the command."""
     command = commands.add_parser(
-        "run", help="simulate or replay a scenario; write summary.json, estimates, report.html"
+        "run", help="simulate or replay a scenario; write summary.json, estimates, report.html", allow_abbrev=False
     )
     command.add_argument("scenario", help="scenario file (TOML)")
     command.add_argument("-o", "--output", required=True, help="folder to write to; must be new or empty")
     command.add_argument("--force", action="store_true", help="replace the output of an earlier run")
-    command.add_argument("--npz", action="store_true", help="write all arrays as estimates.npz instead of a CSV file")
-    command.add_argument("--json", action="store_true", help="print the result for machines")
+    command.add_argument("--npz", action="store_true", help="write the whole main run (Run.load) instead of a CSV file")
+    command.add_argument("--all-estimates", action="store_true", help="write the estimates of all filters, not of one")
+    command.add_argument("--no-conditions", action="store_true", help="do not evaluate the filters' conditions first")
+    command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(do=do)
 
 
-def _output_folder(path: Path, force: bool) -> Path:
-    if path.exists() and not path.is_dir():
-        raise _core.IoError(f"{path}: got a file, expected a folder to write to")
-    if path.exists() and any(path.iterdir()):
-        if not force:
-            raise _core.IoError(
-                f"{path}: got a folder that is not empty; choose another one, or replace it with --force"
-            )
-        if not (path / "summary.json").is_file():
-            raise _core.IoError(f"{path}: got a folder that no run of garrison has written, and will not replace it")
-        shutil.rmtree(path)
-    path.mkdir(parents=True, exist_ok=True)
-    return path
-
-
-def _bar(console: Console) -> Progress:
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:>3.0f} %"),
-        TimeRemainingColumn(),
-    )
-    return Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
-
-
-def _run_with_progress(scenario: Scenario, console: Console) -> list[Row]:
-    with _bar(console) as bar:
-        tasks: dict[str, TaskID] = {}
-
-        def progress(label: str, done: int, total: int) -> None:
-            task = tasks.setdefault(label, bar.add_task(label, total=total)) if label not in tasks else tasks[label]
-            bar.update(task, completed=done)
-
-        return run_scenario(scenario, progress)
-
-
-def _write_estimates(folder: Path, scenario: Scenario, rows: list[Row], npz: bool) -> None:
-    """Estimates of the main filter, attacked if there is an attack: one row per sample and agent, or .npz."""
-    run = rows[0].run
-    if run is None or run.estimate is None:
-        return
-    if npz or run.estimate.size > 2_000_000:
-        run.save(folder / "estimates.npz")
-        return
-    trials, times, agents, n = run.estimate.shape
-    index = np.indices((trials, times, agents)).reshape(3, -1).T
-    columns = [index, run.estimate.reshape(-1, n)]
-    head = ["trial", "time", "agent", *(f"x{k}" for k in range(n))]
-    if run.bound is not None:
-        columns.append(run.bound.reshape(-1, 1))
-        head.append("bound")
-    formats = ["%d"] * 3 + ["%.9g"] * (len(head) - 3)
-    np.savetxt(
-        folder / "estimates.csv",
-        np.column_stack(columns),
-        fmt=formats,
-        delimiter=",",
-        header=",".join(head),
-        comments="",
-    )
-
-
 def do(args: argparse.Namespace) -> int:
-    from garrison.job import signal_size
-    from garrison.plots import overview_figure
-    from garrison.report import table_rows, write_report
-
-    console = console_for(stderr=args.json)
+    """Run the command."""
     scenario = read_scenario(args.scenario)
-    folder = _output_folder(Path(args.output), args.force)
-    rows = _run_with_progress(scenario, console)
-    summary = {
+    console = console_for(stderr=args.json)
+    doubt: Exception | None = None
+    with output_folder(Path(args.output), args.force) as folder:
+        rows = _run_with_progress(scenario, console, not args.no_conditions)
+        summary = _summary(scenario, rows)
+        (folder / "summary.json").write_text(json.dumps(clean(summary), indent=1), encoding="utf-8")
+        for name, row in _estimate_names(rows if args.all_estimates else rows[:1]).items():
+            _write_estimates(folder / name, scenario, row, args.npz)
+        try:
+            _write_pictures(folder, scenario, rows)
+        except Exception as error:  # what is computed is kept whatever happens to its pictures
+            doubt = error
+        written = sorted(p.name for p in folder.iterdir())
+    if args.json:
+        print_json(summary)
+    else:
+        head, cells = table_rows(scenario, rows)
+        print_table(scenario.title, head, cells, console)
+        print(f"\n{error_note(scenario)}".rstrip())
+    print_warnings(warnings_of(scenario, rows), stderr=args.json)
+    where = f"written to {args.output}: {', '.join(written)}"
+    print(where, file=sys.stderr if args.json else sys.stdout)
+    if isinstance(doubt, _core.Error):
+        print_warnings([f"no report and no picture: {doubt}"], stderr=args.json)
+    elif doubt is not None:
+        raise doubt
+    return OK
+
+
+def _summary(scenario: Scenario, rows: list[Row]) -> dict[str, Any]:
+    return {
         "title": scenario.title,
         "version": _core.__version__,
         "scenario": scenario.path.name,
         "agents": scenario.model.agents,
         "states": scenario.model.states,
         "samples": scenario.steps,
-        "rows": [row.summary(scenario) for row in rows],
+        "errors": error_note(scenario),
+        "notes": scenario.notes,
+        "rows": [row.summary for row in rows],
     }
-    (folder / "summary.json").write_text(json.dumps(clean(summary), indent=1), encoding="utf-8")
-    _write_estimates(folder, scenario, rows, args.npz)
+
+
+def _run_with_progress(scenario: Scenario, console: Console, conditions: bool) -> list[Row]:
+    from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %", markup=False),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        tasks: dict[str, TaskID] = {}
+
+        def progress(label: str, done: int, total: int) -> None:
+            if label not in tasks:
+                tasks[label] = bar.add_task(label, total=total)
+            bar.update(tasks[label], completed=done)
+
+        return run_scenario(scenario, progress, conditions)
+
+
+def _estimate_names(rows: list[Row]) -> dict[str, Row]:
+    """Name of the file of each row, without its ending: `estimates` for the main filter."""
+    names = ["estimates"]
+    for k, row in enumerate(rows[1:], start=2):
+        label = re.sub(r"[^A-Za-z0-9]+", "_", row.label).strip("_").lower()
+        names.append(f"estimates_{k}_{label}{'_attacked' if row.attacked else ''}")
+    return dict(zip(names, rows, strict=True))
+
+
+def _write_estimates(path: Path, scenario: Scenario, row: Row, npz: bool) -> None:
+    """Estimates of one filter: one line per sample and agent (.csv), or the run itself (.npz)."""
+    run = row.run
+    if run is None or run.estimate is None:
+        return
+    if npz or run.estimate.size > _MOST_NUMBERS:
+        run.save(path.with_name(f"{path.name}.npz"))
+        return
+    trials, times, agents, n = run.estimate.shape
+    trial, time, agent = (axis.ravel() for axis in np.indices((trials, times, agents)))
+    numbers = [run.estimate.reshape(-1, n)]
+    head = ["trial", "time", "agent", *(f"x{k}" for k in range(n))]
+    if run.bound is not None:
+        numbers.append(run.bound.reshape(-1, 1))
+        head.append("bound")
+    names = [scenario.names[a] for a in agent]
+    first: list[Any] = [trial.tolist(), time.tolist(), names]
+    if scenario.dates:  # sample 1 is the first record
+        head.insert(2, "date")
+        dates = ["", *(str(d) for d in scenario.dates)]
+        offset = len(dates) - times
+        first.insert(2, [dates[t + offset] for t in time])
+    with path.with_name(f"{path.name}.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(head)
+        for *keys, values in zip(*first, np.column_stack(numbers), strict=True):
+            writer.writerow([*keys, *(f"{v:.9g}" for v in values)])
+
+
+def _write_pictures(folder: Path, scenario: Scenario, rows: list[Row]) -> None:
+    from garrison.figures import overview_figure
+    from garrison.report.page import write_report
+
     write_report(folder / "report.html", scenario, rows)
     overview_figure(scenario, rows, signal_size(scenario)).savefig(folder / "overview.png", dpi=110)
-    if args.json:
-        print_json(summary)
-    else:
-        head, cells = table_rows(scenario, rows)
-        print_table(scenario.title, head, cells, console)
-        console.print(
-            f"\nwritten to {folder}: report.html (open it in a browser), overview.png, summary.json, estimates"
-        )
-    return OK

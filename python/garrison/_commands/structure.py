@@ -1,13 +1,20 @@
-"""`garrison structure`: who is indispensable."""
+"""`garrison structure`: which sensors are necessary, and what could replace them."""
 
 import argparse
+from pathlib import Path
 
-from garrison._commands.terminal import NO, OK, Commands, console_for, new_file, print_json, print_table
+from garrison._commands.output import new_file, write_whole
+from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
+from garrison.anatomy import Anatomy, read_anatomy, states_text, table_rows
+from garrison.words import refusal
 
 
 def add(commands: Commands) -> None:
+    """Declare the command."""
     command = commands.add_parser(
-        "structure", help="who is indispensable: classes, necessary sensors, substitutes; exit 1 if not observable"
+        "structure",
+        help="structural analysis: which sensors are necessary and what could replace them; exit 1 if not observable",
+        allow_abbrev=False,
     )
     command.add_argument("source", help="scenario file (TOML), or a CSV file with the matrix A")
     command.add_argument(
@@ -15,18 +22,16 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("-o", "--output", help="picture to write (.png, .svg, .pdf)")
     command.add_argument("--force", action="store_true", help="replace an existing picture")
-    command.add_argument("--json", action="store_true", help="print the result for machines")
+    command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(do=do)
 
 
 def do(args: argparse.Namespace) -> int:
-    from garrison.sensors import anatomy_figure, read_anatomy, states_text, table_rows
-
+    """Run the command."""
     anatomy = read_anatomy(args.source, args.measured)
     report = anatomy.report()
     if args.output:
-        target = new_file(args.output, args.force)
-        anatomy_figure(anatomy).savefig(target, dpi=120)
+        _write_picture(new_file(args.output, args.force), anatomy)
     if args.json:
         print_json(report)
     else:
@@ -36,8 +41,8 @@ def do(args: argparse.Namespace) -> int:
         facts = [
             ["states", str(report["states"])],
             ["structural rank", str(report["structural_rank"])],
-            ["contractions (overlapping ones joined)", contractions],
-            [f"parent components ({len(report['parent_components'])})", parents],
+            ["groups to be measured, one state of each at least: contractions", contractions],
+            [f"and likewise: parent components ({len(report['parent_components'])})", parents],
         ]
         if "observable" in report:
             unstable = len(report["unstable_modes_nobody_sees"])
@@ -45,13 +50,24 @@ def do(args: argparse.Namespace) -> int:
                 ["structurally observable", "yes" if report["observable"] else "no"],
                 ["every state reaches a sensor", "yes" if report["output_connected"] else "no"],
                 ["rank of [A; C] is full", "yes" if report["rank_condition"] else "no"],
-                ["unstable modes that nobody sees", str(unstable)],
+                ["unstable modes that no sensor observes", str(unstable)],
             ]
         print_table(anatomy.title, ["structure", ""], facts, console)
         if "agents" in report:
             console.print()
-            head = ["agent", "measures", "class", "necessary", "substitutes", "could lie unseen"]
+            head = ["agent", "measures", "class", "necessary", "substitutes", "could drift without limit, unseen"]
             print_table("", head, table_rows(report), console)
         if args.output:
             console.print(f"\nwritten to {args.output}")
     return OK if report.get("observable", True) else NO
+
+
+def _write_picture(target: Path, anatomy: Anatomy) -> None:
+    from garrison.figures import anatomy_figure
+
+    figure = anatomy_figure(anatomy)
+    kinds = figure.canvas.get_supported_filetypes()
+    kind = target.suffix.lower().removeprefix(".")
+    if kind not in kinds:
+        raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
+    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))

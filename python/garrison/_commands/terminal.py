@@ -1,26 +1,30 @@
-"""What all commands share: exit codes, tables, JSON, files that are not overwritten."""
+"""What all commands share: exit codes, tables, JSON."""
+
+from __future__ import annotations
 
 import argparse
 import json
 import math
 import sys
-from pathlib import Path
-from typing import Any, TypeAlias
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from rich.console import Console
-from rich.table import Table
+if TYPE_CHECKING:
+    from rich.console import Console
 
-from garrison import _core
-
-OK, NO, BAD = 0, 1, 2
+OK, NO, REFUSED, BUG, INTERRUPTED = 0, 1, 2, 70, 130
 #: what `add_subparsers` returns
 Commands: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 _WIDTH = 140  # of tables that do not go to a terminal
+_LONG_WORD = 11  # letters; longer words may be broken
 
 
 def console_for(stderr: bool = False) -> Console:
+    """Where tables go. Texts of users are never read as markup."""
+    from rich.console import Console
+
     stream = sys.stderr if stderr else sys.stdout
-    return Console(stderr=stderr, width=None if stream.isatty() else _WIDTH)
+    return Console(stderr=stderr, width=None if stream.isatty() else _WIDTH, markup=False, emoji=False, highlight=False)
 
 
 def clean(value: Any) -> Any:
@@ -35,21 +39,33 @@ def clean(value: Any) -> Any:
 
 
 def print_json(value: Any) -> None:
+    """One JSON document on standard output."""
     print(json.dumps(clean(value), indent=1))
 
 
 def print_table(title: str, head: list[str], rows: list[list[str]], console: Console) -> None:
-    table = Table(title=title, title_justify="left", show_edge=False, pad_edge=False)
-    for name in head:
-        table.add_column(name, overflow="fold")
+    """A table that breaks lines between words, as long as the words are not too long for the terminal."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(
+        title=Text(title) if title else None,
+        title_justify="left",
+        box=box.SIMPLE_HEAD,
+        padding=0,
+        show_edge=False,
+        pad_edge=False,
+    )
+    for k, name in enumerate(head):
+        words = [word for cell in (name, *(row[k] for row in rows)) for word in cell.split()]
+        table.add_column(Text(name), overflow="fold", min_width=min(max(map(len, words), default=1), _LONG_WORD))
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*(Text(cell) for cell in row))
     console.print(table)
 
 
-def new_file(name: str, force: bool) -> Path:
-    """The path of a file to write; refused where it exists and `force` is not given."""
-    path = Path(name)
-    if path.exists() and not force:
-        raise _core.IoError(f"{path}: exists already; choose another name, or replace it with --force")
-    return path
+def print_warnings(lines: Iterable[str], stderr: bool = False) -> None:
+    """Doubts, one a line."""
+    for line in lines:
+        print(f"warning: {line}", file=sys.stderr if stderr else sys.stdout)

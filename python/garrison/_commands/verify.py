@@ -6,14 +6,16 @@ import sys
 
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
 from garrison.verify import FileResult, verify
+from garrison.words import count
 
 
 def add(commands: Commands) -> None:
-    command = commands.add_parser("verify", help="replay reference cases; exit 1 on any miss")
+    """Declare the command."""
+    command = commands.add_parser("verify", help="replay reference cases; exit 1 on any miss", allow_abbrev=False)
     command.add_argument("folder", help="folder with case files (*.json), subfolders included")
     command.add_argument("--family", help="only the cases of this family, e.g. saturation")
     command.add_argument("--fields", action="store_true", help="print every field, not only the misses")
-    command.add_argument("--json", action="store_true", help="print the result for machines")
+    command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(do=do)
 
 
@@ -23,6 +25,7 @@ def _worst(result: FileResult) -> str:
 
 
 def do(args: argparse.Namespace) -> int:
+    """Run the command."""
     results = verify(args.folder, args.family)
     fields = sum(len(r.fields) for r in results)
     misses = sum(r.misses for r in results)
@@ -57,7 +60,7 @@ def do(args: argparse.Namespace) -> int:
         print(f"verify: no case files in {args.folder}", file=sys.stderr)
         return NO
     print(
-        f"verify: {len(results)} files, {fields} fields, {misses} missed",
+        f"verify: {count(len(results), 'file')}, {count(fields, 'field')}, {misses} missed",
         file=sys.stderr if args.json else sys.stdout,
     )
     return OK if misses == 0 else NO

@@ -7,12 +7,14 @@ that has to be refused or survived. Files are read by content, whatever their na
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
-from garrison._core import IoError
+from garrison._core import Error, IoError
 from garrison.verify import certificates, partial_sharing, platoon, rdkf, saturation, structural
 from garrison.verify.bad import judge
 from garrison.verify.compare import FieldResult, compare
+from garrison.verify.shapes import words
 
 #: name of the paper in a case file -> module that recomputes its cases
 FAMILIES = {
@@ -46,9 +48,16 @@ def _family(case: dict[str, Any], path: Path) -> str:
     inputs = case.get("inputs", {})
     inputs = inputs[0] if isinstance(inputs, list) and inputs else inputs
     for name, module in FAMILIES.items():
-        if isinstance(inputs, dict) and module.recognises(inputs):
+        if isinstance(inputs, dict) and _recognises(module, inputs):
             return name
     return "unknown"
+
+
+def _recognises(module: ModuleType, inputs: dict[str, Any]) -> bool:
+    try:
+        return bool(module.recognises(inputs))
+    except (TypeError, AttributeError):  # entries of other kinds than any family has
+        return False
 
 
 def _template(case: dict[str, Any], family: str, path: Path) -> dict[str, Any]:
@@ -63,8 +72,8 @@ def _template(case: dict[str, Any], family: str, path: Path) -> dict[str, Any]:
 def verify_file(path: Path, family: str | None = None) -> FileResult | None:
     """Recompute one file; None when it belongs to another family than the one asked for."""
     try:
-        case = json.loads(path.read_text())
-    except (OSError, ValueError) as error:
+        case = json.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as error:
         return FileResult(path.name, "unknown", [FieldResult.failure("file", f"cannot be read: {error}")])
     paper = _family(case, path) if isinstance(case, dict) else "unknown"
     if family is not None and family not in (paper, getattr(FAMILIES.get(paper), "NAME", None)):
@@ -85,8 +94,10 @@ def verify_file(path: Path, family: str | None = None) -> FileResult | None:
             )
         else:
             result.fields = [FieldResult.failure("file", "has neither expected nor must")]
+    except Error as error:
+        result.fields.append(FieldResult.failure("file", f"refused: {error}"))
     except Exception as error:  # a case must never stop the replay of the others
-        result.fields.append(FieldResult.failure("file", f"{type(error).__name__}: {error}"))
+        result.fields.append(FieldResult.failure("file", words(case, error)))
     return result
 
 

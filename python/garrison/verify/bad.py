@@ -8,6 +8,7 @@ import numpy as np
 
 from garrison._core import Error
 from garrison.verify.compare import FieldResult, array
+from garrison.verify.shapes import problem, words
 
 
 def _fits(message: str, names: list[str]) -> bool:
@@ -26,6 +27,10 @@ def _refused(module: ModuleType, case: dict[str, Any], template: dict[str, Any])
         fits = _fits(str(error), case["names"])
         note = str(error) if fits else f"the message names none of {case['names']}: {error}"
         return [FieldResult("refused", 0.0 if fits else 1.0, fits, note)]
+    except Exception as error:
+        found = problem("inputs", case["inputs"])  # the reader of cases cannot even make arrays of them
+        fits = found is not None and _fits(found, case["names"])
+        return [FieldResult("refused", 0.0 if fits else 1.0, fits, words(case, error))]
     if "also_ok" in case:
         return [FieldResult("refused", 0.0, True, f"not refused; accepted: {case['also_ok']}")]
     return [FieldResult.failure("refused", "was not refused")]

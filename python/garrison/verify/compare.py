@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from garrison.words import shown
+
 #: the object `inputs` of a case
 Inputs = dict[str, Any]
 Array = NDArray[np.float64]
@@ -44,7 +46,7 @@ class FieldResult:
 
 def number(value: Any) -> Any:
     """Numbers as written in case files: infinities and not-a-number are texts."""
-    return float(value) if value in ("inf", "-inf", "nan") else value
+    return float(value) if isinstance(value, str) and value in ("inf", "-inf", "nan") else value
 
 
 def array(value: Any) -> Any:
@@ -52,7 +54,7 @@ def array(value: Any) -> Any:
     if isinstance(value, list):
         try:
             return np.array(_decoded(value), dtype=float)
-        except (ValueError, TypeError):
+        except (ValueError, TypeError, OverflowError):
             return value
     return number(value)
 
@@ -73,14 +75,63 @@ def _whole(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
+def _lists(value: Any) -> Any:
+    """Arrays, also inside lists and tuples, as nested lists with their numbers decoded."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_lists(v) for v in value]
+    return value.item() if isinstance(value, np.generic) else number(value)
+
+
+def _shape(value: Any) -> Any:
+    """Lengths of nested lists: 0 dimensions, or the shapes of all entries."""
+    return [_shape(v) for v in value] if isinstance(value, list) else None
+
+
+def _leaves(value: Any) -> list[Any]:
+    return [leaf for v in value for leaf in _leaves(v)] if isinstance(value, list) else [value]
+
+
+def _blocks(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
+    """Blocks of different sizes (gains per agent, lists of sets): the same sizes, and entries as in one array."""
+    ours, theirs = _lists(got), _lists(expected)
+    if _shape(ours) != _shape(theirs):
+        return FieldResult.failure(name, f"got blocks of other sizes than expected ({_sizes(ours)}, {_sizes(theirs)})")
+    if _whole(theirs) and _whole(ours):
+        return _same(name, ours, theirs)
+    a, b = _leaves(ours), _leaves(theirs)
+    if any(isinstance(v, (str, dict, bool)) or v is None for v in [*a, *b]):
+        return _same(name, ours, theirs)
+    return _numeric(name, a, b, relative)
+
+
+def _sizes(value: Any) -> str:
+    if not isinstance(value, list):
+        return "no blocks"
+    return " + ".join(str(len(_leaves(v))) for v in value[:8]) + (" + ..." if len(value) > 8 else "") + " numbers"
+
+
+def _same(name: str, got: Any, expected: Any) -> FieldResult:
+    same = bool(got == expected)
+    return FieldResult(
+        name, 0.0 if same else 1.0, same, "" if same else f"got {shown(got)}, expected {shown(expected)}"
+    )
+
+
 def _numeric(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
     e = np.asarray(expected, dtype=float)
-    allowed = None
+    allowed: Any = None
     if isinstance(got, Within):
-        got, allowed = got.value, np.broadcast_to(np.asarray(got.allowed, dtype=float), e.shape)
-    g = np.asarray(got, dtype=float)
+        got, allowed = got.value, got.allowed
+    try:
+        g = np.asarray(array(_lists(got)), dtype=float)
+    except (ValueError, TypeError):
+        return FieldResult.failure(name, f"got something else than an array, expected one of shape {e.shape}")
     if g.shape != e.shape:
         return FieldResult.failure(name, f"got shape {g.shape}, expected {e.shape}")
+    if allowed is not None:
+        allowed = np.broadcast_to(np.asarray(allowed, dtype=float), e.shape)
     finite = np.isfinite(e)
     special_agree = np.array_equal(g[~finite], e[~finite], equal_nan=True) and bool(np.isfinite(g[finite]).all())
     if not special_agree:
@@ -101,18 +152,19 @@ def _leaf(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
         or expected is None
         or (isinstance(expected, str) and isinstance(array(expected), str))
     ):
-        same = got == expected and isinstance(got, bool) == isinstance(expected, bool)
-        return FieldResult(name, 0.0 if same else 1.0, same, "" if same else f"got {got!r}, expected {expected!r}")
-    if got is None or isinstance(got, bool):
-        return FieldResult.failure(name, f"got {got!r}, expected a number")
-    numbers = array(expected)
-    if isinstance(numbers, list):  # ragged: lists of index lists
-        same = got == expected
-        return FieldResult(name, 0.0 if same else 1.0, same, "" if same else "lists differ")
+        comparable = isinstance(got, (bool, str, int, float)) or got is None
+        same = comparable and got == expected and isinstance(got, bool) == isinstance(expected, bool)
+        return FieldResult(
+            name, 0.0 if same else 1.0, same, "" if same else f"got {shown(got)}, expected {shown(expected)}"
+        )
+    if got is None or isinstance(got, (bool, dict, str)):
+        return FieldResult.failure(name, f"got {shown(got)}, expected a number")
+    found = array(expected)
+    if isinstance(found, (list, dict)):  # ragged
+        return _blocks(name, got.value if isinstance(got, Within) else got, expected, relative)
     if _whole(expected) and _whole(got):
-        same = got == expected
-        return FieldResult(name, 0.0 if same else 1.0, same, "" if same else f"got {got!r}, expected {expected!r}")
-    return _numeric(name, got, numbers, relative)
+        return _same(name, got, expected)
+    return _numeric(name, got, found, relative)
 
 
 def compare(

@@ -174,9 +174,9 @@ class Case:
                 "perturb", everybody, start=START, width=self.agents * self.states, deltas=self.delta.ravel().tolist()
             )
         run = gr.replay(
-            self.filter(**changes),
             self.model,
             self.network,
+            self.filter(**changes),
             measurements=self.y,
             start=start,
             attack=attack,

@@ -97,7 +97,7 @@ def _filter(i: Inputs, **more: Any) -> _core.Filter:
         "detector": bool(p.get("detector", True)),
         "bound": p.get("bound", "safe"),
         "tie": p.get("tie", "low"),
-        # A measurement that is not a number counts as an attack, the reading of our notes for bad input.
+        # A measurement that is not a number counts as an attack, as the cases of bad input want it.
         "accuse_missing": True,
     }
     sets0 = i.get("sets0", {})
@@ -121,9 +121,9 @@ def _replay(i: Inputs, **more: Any) -> gr.Run:
     """The recorded closed loop, observer alone."""
     model, net = _system(i["params"], recorded_inputs=True)
     return gr.replay(
-        _filter(i, **more),
         model,
         net,
+        _filter(i, **more),
         measurements=_measurements(i),
         truth=numbers(i["x"]) if "x" in i else None,
         start=numbers(i["xhat_init"]),

@@ -80,9 +80,9 @@ class _Case:
 
     def run(self, filter: _core.Filter, measurements: Array | None = None, truth: Array | None = None) -> gr.Run:
         return gr.replay(
-            filter,
             self.model,
             self.network,
+            filter,
             measurements=self.measurements if measurements is None else measurements,
             truth=truth,
             start=self.start,

@@ -53,12 +53,12 @@ def _run(i: Inputs, filter: _core.Filter) -> gr.Run:
     y = np.asarray(array(i["y"]), dtype=float)[1:]
     truth = np.asarray(array(i["x"]), dtype=float) if "x" in i else None
     return gr.replay(
-        filter, model, net, measurements=y, truth=truth, start=start, keep=("estimate", "report", "signals")
+        model, net, filter, measurements=y, truth=truth, start=start, keep=("estimate", "report", "signals")
     )
 
 
 def _algorithm2(i: Inputs, index: str = "t") -> _core.Filter:
-    # A measurement that is not a number counts as an attack, the reading of our notes for bad input.
+    # A measurement that is not a number counts as an attack, as the cases of bad input want it.
     return _filter(i, detector=True, detector_index=index, accuse_missing=True, **_bounded(i))
 
 
@@ -96,7 +96,7 @@ def _facts(i: Inputs) -> dict[str, Any]:
     model, net = _system(i)
     s = i.get("s", 0)
     probe = gr.filters.Saturation(threshold=1.0, rounds=i.get("L", 1), attacked=s)
-    found = gr.check(probe, model, net)
+    found = gr.check(model, net, probe)
     return {
         "N": model.agents,
         "n": model.states,

@@ -45,7 +45,7 @@ def _run(i: Inputs, y: Array) -> gr.Run:
     filter = gr.filters.Structural(weights=W.ravel().tolist(), sharing=U.ravel().tolist(), gain=gain)
     keep = ("estimate", "signals")
     truth = numbers(i["x_true"]) if "x_true" in i else None
-    return gr.replay(filter, model, net, measurements=y, truth=truth, start=numbers(i["xhat0"]), keep=keep)
+    return gr.replay(model, net, filter, measurements=y, truth=truth, start=numbers(i["xhat0"]), keep=keep)
 
 
 def _estimates(i: Inputs, setting: theory.Setting, expected: dict[str, Any]) -> dict[str, Any]:
@@ -160,9 +160,9 @@ def _saturated(i: Inputs, beta: float, rounds: int, expected: dict[str, Any]) ->
     filter = gr.filters.Saturation(threshold=beta, rounds=rounds)
     start = numbers(i["xhat0"])
     run = gr.replay(
-        filter,
         gr.Model(numbers(i["A"]), C),
         net,
+        filter,
         measurements=numbers(i["y"]),
         start=start,
         keep=("estimate", "signals"),

@@ -1,0 +1,42 @@
+"""`garrison design-file`: what is in a design file."""
+
+import argparse
+from pathlib import Path
+
+from garrison import _core
+from garrison._commands.terminal import OK, Commands, print_json
+from garrison.prepared import Prepared
+from garrison.words import count
+
+
+def add(commands: Commands) -> None:
+    """Declare the command."""
+    command = commands.add_parser(
+        "design-file", help="print what a design file holds, whole or one agent's part", allow_abbrev=False
+    )
+    command.add_argument("file", help="a file that Prepared.save wrote")
+    command.add_argument("--show", action="store_true", help="list the gains as well")
+    command.add_argument("--json", action="store_true", help="print JSON")
+    command.set_defaults(do=do)
+
+
+def do(args: argparse.Namespace) -> int:
+    """Run the command."""
+    data = Path(args.file).read_bytes()
+    summary = _core.design_summary(data)
+    whole = summary["agent"] is None
+    gains = Prepared.from_bytes(data).outline if args.show and whole else []
+    if args.json:
+        print_json({**summary, **({"gains": gains} if gains else {})})
+        return OK
+    whose = "the whole network" if whole else f"agent {summary['agent']} alone"
+    print(f"{args.file}: design of {whose}, written by garrison {summary['garrison']}, {count(len(data), 'byte')}")
+    print(f"hash    {summary['hash']}")
+    print(f"filter  {summary['filter']}, {count(summary['agents'], 'agent')}, {count(summary['states'], 'state')}")
+    for name, value in summary["params"].items():
+        print(f"  {name} = {value}")
+    if args.show:
+        print("gains" if whole else "the gains of one agent are listed by the design of the whole network")
+    for line in gains:
+        print(f"  {line}")
+    return OK

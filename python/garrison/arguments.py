@@ -1,0 +1,115 @@
+"""Arguments of the public functions, read one by one: each is of the kind that is asked for, or refused by name."""
+
+import operator
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from garrison import _core
+from garrison.numeric import Array, numbers, real
+from garrison.words import near, only, refusal, shown
+
+_MOST = 2**31 - 1
+
+
+def whole(which: str, value: Any, least: int, most: int = _MOST) -> int:
+    """A whole number in a range."""
+    try:
+        found = operator.index(value)
+    except TypeError:
+        found = least - 1
+    if isinstance(value, bool) or not least <= found <= most:
+        words = f"a whole number >= {least}" if most >= _MOST else f"a whole number in {least}..{most}"
+        raise refusal(which, shown(value), words)
+    return found
+
+
+def number(which: str, value: Any) -> float:
+    """A number."""
+    found = real(value)
+    if found is None:
+        raise refusal(which, shown(value), "a number")
+    return found
+
+
+def flag(which: str, value: Any) -> bool:
+    """True or false."""
+    if not isinstance(value, bool):
+        raise refusal(which, shown(value), "True or False")
+    return value
+
+
+def path(which: str, value: Any) -> Path:
+    """The path of a file."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise refusal(which, shown(value), "the path of a file")
+    return Path(value)
+
+
+def choices(which: str, value: Any, known: tuple[str, ...]) -> list[str]:
+    """Some of the known words; one word is a list of one."""
+    found = [value] if isinstance(value, str) else _list(which, value, f"some of {', '.join(known)}")
+    for word in found:
+        if not isinstance(word, str) or word not in known:
+            advice = near(word, known) if isinstance(word, str) else ""
+            raise refusal(which, shown(word), f"some of {', '.join(known)}", advice)
+    return found
+
+
+def attacks(value: Any) -> list[_core.Attack]:
+    """One attack or several."""
+    words = "an attack of garrison.attacks, or a list of them"
+    found = [value] if isinstance(value, _core.Attack) else _list("attack", value, words)
+    for one in found:
+        if not isinstance(one, _core.Attack):
+            raise refusal("attack", shown(one), words)
+    return found
+
+
+def link(value: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Faults of the links."""
+    if value is None:
+        return {}
+    if not isinstance(value, Mapping):
+        raise refusal("link", shown(value), 'a dict such as {"drop": 0.1}')
+    lists = {"cuts": 4, "lost": 4}
+    known = ["drop", "delay", "delay_rounds", *lists]
+    only("link", (key if isinstance(key, str) else repr(key) for key in value), known)
+    out = {key: number(f"link.{key}", one) for key, one in value.items() if key not in lists}
+    if "delay_rounds" in out:
+        out["delay_rounds"] = whole("link.delay_rounds", value["delay_rounds"], 0)
+    return out | {key: _rows(f"link.{key}", value[key], width) for key, width in lists.items() if key in value}
+
+
+def _rows(which: str, value: Any, width: int) -> list[tuple[int | None, ...]]:
+    """Rows of whole numbers or None."""
+    expected = f"a list of rows of {width} whole numbers or None"
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        raise refusal(which, shown(value), expected)
+    rows = [tuple(row) if isinstance(row, Iterable) and not isinstance(row, str) else (row,) for row in value]
+    for row in rows:
+        if len(row) != width or not all(v is None or (isinstance(v, int) and not isinstance(v, bool)) for v in row):
+            raise refusal(which, shown(row), expected)
+    return rows
+
+
+def callback(which: str, value: Any) -> Callable[[int, int], Any] | None:
+    """A function to be called, or None."""
+    if value is not None and not callable(value):
+        raise refusal(which, shown(value), "a function, or None")
+    return value  # type: ignore[no-any-return]
+
+
+def table(which: str, value: Any) -> Array:
+    """Rows of numbers; a single row is a table of one."""
+    rows = numbers(which, value)
+    if rows.ndim > 2:
+        raise refusal(which, f"{rows.ndim} dimensions", "rows of numbers")
+    return rows.reshape(1, -1) if rows.ndim < 2 else rows
+
+
+def _list(which: str, value: Any, expected: str) -> list[Any]:
+    if isinstance(value, (bytes, Mapping)) or not isinstance(value, Iterable) or getattr(value, "ndim", 1) == 0:
+        raise refusal(which, shown(value), expected)
+    return list(value)

@@ -1,0 +1,167 @@
+"""The main job: run a scenario with all its filters, attacked and not, and sum up."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison.drivers import KEEP, central_kalman, replay, require_room, simulate
+from garrison.families import family_of
+from garrison.record import Run
+from garrison.scenario import Scenario
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass
+class Row:
+    """One filter in one condition: under the attacks, or without them."""
+
+    scenario: Scenario = field(repr=False)
+    label: str
+    attacked: bool
+    run: Run | None  # None for the central Kalman filter
+    error: Array | None  # (trial, time, agent)
+    robust_error: Array | None = None  # the same, to the robust reference
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """Numbers for tables, worked out once; what does not exist for this filter is not there."""
+        out: dict[str, Any] = {"filter": self.label, "attacked": self.attacked}
+        if self.error is not None:
+            since = self.error[:, self.scenario.first_attack :]
+            out["mean_error"] = float(np.nanmean(since))
+            out["worst_error"] = float(np.nanmax(since))
+        if self.robust_error is not None and not self.scenario.truth_is_declared:
+            out["mean_error_robust"] = float(np.nanmean(self.robust_error[:, 1:]))
+        if self.run is not None:
+            out |= self._bounds(self.run) | self._accusations(self.run) | self._clipped(self.run)
+            out["warnings"] = self.run.warnings
+            out["counters"] = {k: v for k, v in self.run.counters.items() if v and k != "sent"}
+        return out
+
+    def _bounds(self, run: Run) -> dict[str, Any]:
+        if run.bound is None:
+            return {}
+        bound = run.bound[:, 1:]
+        out: dict[str, Any] = {"share_with_bound": float(np.isfinite(bound).mean())}
+        if self.error is not None:
+            known = np.isfinite(bound) & np.isfinite(self.error[:, 1:])
+            out["inside_bound"] = float((self.error[:, 1:] <= bound)[known].mean()) if known.any() else None
+        return out
+
+    def _accusations(self, run: Run) -> dict[str, Any]:
+        """Who was accused first when, in the first trial; false alarms of all trials where the truth is declared."""
+        if not family_of(run.filter).accuses(run.filter.params):
+            return {}
+        names = self.scenario.names
+        accused = [run.first_accused(k) for k in range(run.shape[0])]
+        out: dict[str, Any] = {
+            "detected": {names[a]: int(t) for a, t in sorted(accused[0].items(), key=lambda entry: entry[1])}
+        }
+        if self.scenario.truth_is_declared:
+            hit = self.scenario.hit if self.attacked else []
+            out["false_alarms"] = sum(a not in hit for found in accused for a in found)
+        return out
+
+    def _clipped(self, run: Run) -> dict[str, Any]:
+        if run.verdict is None:
+            return {}
+        share = run.limited(start=self.scenario.first_attack)
+        return {"limited": {self.scenario.names[a]: float(v) for a, v in enumerate(share) if v > 0}}
+
+
+def run_scenario(scenario: Scenario, progress: Progress | None = None, conditions: bool = True) -> list[Row]:
+    """Run every filter of the scenario under its attacks, and once more without them when there are any.
+
+    progress(label, done, total) is called at most once per percent of a run. conditions: as in `simulate`.
+    """
+    rows: list[Row] = []
+    attacked_y: Array | None = None
+    for attacked in [True, False] if scenario.attacks else [False]:
+        for label, filter in scenario.filters:
+            if filter is None:
+                rows.append(_kalman_row(scenario, label, attacked, attacked_y))
+                continue
+            name = f"{label}{', attacked' if attacked else ''}"
+            run = _run(scenario, filter, attacked, _labelled(progress, name), conditions)
+            if attacked and attacked_y is None and run.measurements is not None:
+                attacked_y = run.measurements[0]
+            rows.append(Row(scenario, label, attacked, run, run.error, _distance(run.estimate, scenario.robust)))
+    return rows
+
+
+def rehearse(scenario: Scenario) -> None:
+    """Let every filter run for a single sample, so that everything a run would refuse is refused now."""
+    for _, filter in scenario.filters:
+        if filter is not None:
+            keep = _options(scenario, filter, True)["keep"]
+            require_room(scenario.model, filter, keep, scenario.run.get("trials", 1), scenario.steps)
+            _run(scenario, filter, True, None, conditions=False, rehearsal=True)
+        elif scenario.measurements is not None:
+            central_kalman(scenario.model, scenario.measurements[:1])
+
+
+def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], None] | None:
+    if progress is None:
+        return None
+
+    def report(done: int, total: int) -> None:
+        progress(label, done, total)
+
+    return report
+
+
+def _options(scenario: Scenario, filter: _core.Filter, attacked: bool) -> dict[str, Any]:
+    """Arguments that simulate and replay share."""
+    options: dict[str, Any] = {k: scenario.run[k] for k in ("trials", "seed", "threads", "start") if k in scenario.run}
+    sets = filter.detail_names  # sets over time, for the pictures
+    options["keep"] = (*KEEP, "signals", "details") if sets else KEEP
+    return options | {"attack": scenario.attacks if attacked else [], "link": scenario.link}
+
+
+def _run(
+    scenario: Scenario,
+    filter: _core.Filter,
+    attacked: bool,
+    progress: Callable[[int, int], None] | None,
+    conditions: bool,
+    rehearsal: bool = False,
+) -> Run:
+    options = _options(scenario, filter, attacked) | {"progress": progress, "conditions": conditions}
+    if rehearsal:
+        options["trials"] = 1
+    parts = scenario.model, scenario.network, filter
+    if scenario.measurements is not None:
+        y, truth = scenario.measurements, scenario.truth
+        if rehearsal:
+            y, truth = y[:1], None if truth is None else truth[:2]
+        return replay(*parts, measurements=y, truth=truth, **options)
+    options |= {k: scenario.run[k] for k in ("x0", "start_error") if k in scenario.run}
+    return simulate(*parts, steps=1 if rehearsal else scenario.steps, noise=scenario.noise, **options)
+
+
+def _kalman_row(scenario: Scenario, label: str, attacked: bool, attacked_y: Array | None) -> Row:
+    y = attacked_y if attacked else scenario.measurements
+    if y is None or scenario.truth is None:
+        return Row(scenario, label, attacked, None, None)
+    estimate = central_kalman(scenario.model, y)[None, :, None]
+    errors = _distance(estimate, scenario.truth), _distance(estimate, scenario.robust)
+    return Row(scenario, label, attacked, None, *errors)
+
+
+def _distance(estimate: Array | None, states: Array | None) -> Array | None:
+    """Lengths (trial, time, agent) of the differences of estimates to states (time, n)."""
+    if estimate is None or states is None:
+        return None
+    return np.asarray(np.linalg.norm(estimate - states[None, :, None], axis=3))
+
+
+def signal_size(scenario: Scenario) -> float | None:
+    """Mean length of the reference state: what an estimate of 0 would be off by."""
+    return None if scenario.truth is None else float(np.nanmean(np.linalg.norm(scenario.truth[1:], axis=1)))

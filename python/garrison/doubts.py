@@ -1,0 +1,66 @@
+"""Doubts about a run that only show when it is looked at from outside: conditions that are not met, divergence."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison.checks import check
+
+Array = NDArray[np.float64]
+#: growth of the error over half a run, beyond that of the plant, from which on it is called divergence
+_GROWTH = 1e3
+#: most states of the whole network, and sets of sensors, up to which conditions are evaluated without being asked
+_STATES, _SUBSETS = 400, 20_000
+
+
+def _cheap(model: _core.Model, filter: _core.Filter) -> bool:
+    attacked = int(filter.params.get("attacked", 0))
+    return model.agents * model.states <= _STATES and math.comb(model.agents, min(attacked, model.agents)) <= _SUBSETS
+
+
+def of_conditions(model: _core.Model, network: _core.Network, filter: _core.Filter) -> list[str]:
+    """One line per required condition that is not met; one line when they were not evaluated."""
+    if not _cheap(model, filter):
+        return ["conditions were not checked, which takes long for a network of this size: garrison.check does"]
+    try:
+        failed = check(model, network, filter).failed
+    except _core.Error as error:
+        return [f"conditions could not be checked: {error}"]
+    return [
+        f"condition not met: {c['name']} is {c['value']:.4g}, needs {c['needed']} ({c['meaning']}); "
+        "what the theorems promise does not hold for this run"
+        for c in failed
+    ]
+
+
+def of_divergence(model: _core.Model, estimate: Array | None, error: Array | None, quiet_from: int) -> list[str]:
+    """A line when errors (or, without truth, estimates) grow without bound, beyond the plant's own growth.
+
+    Compares the end with the middle, so an attack must not start in between: quiet_from, first sample from which on
+    no attack starts any more.
+    """
+    if estimate is not None and not np.isfinite(estimate[:, -1]).all():
+        return ["estimates are not finite at the end of the run: the filter diverged"]
+    what, size = ("errors", error) if error is not None else ("estimates", _lengths(estimate))
+    half = 0 if size is None else size.shape[1] // 2
+    if size is None or half < 5 or quiet_from > half:
+        return []
+    # Medians over time: a single wild measurement is no divergence. nan (no truth there) is passed over.
+    largest = np.fmax.reduce(np.fmax.reduce(size, axis=2), axis=0)
+    middle, end = (float(np.median(part)) for part in (largest[half - half // 5 : half + 1], largest[-1 - half // 5 :]))
+    limit = _GROWTH * _plant_growth(model, size.shape[1] - half) * max(middle, float(np.finfo(float).tiny))
+    if math.isnan(middle) or math.isnan(end) or end <= limit:
+        return []
+    return [f"the {what} grow from {middle:.3g} in the middle to {end:.3g} at the end of the run: the filter diverges"]
+
+
+def _lengths(estimate: Array | None) -> Array | None:
+    return None if estimate is None else np.asarray(np.linalg.norm(estimate, axis=3))
+
+
+def _plant_growth(model: _core.Model, samples: int) -> float:
+    """Growth of the state of the plant over so many samples; 1 for a stable one."""
+    radius = max(1.0, float(np.abs(np.linalg.eigvals(np.asarray(model.A))).max()))
+    return math.exp(min(samples * math.log(radius), 700.0))

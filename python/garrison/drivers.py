@@ -1,0 +1,190 @@
+"""Drivers: simulate a plant, replay a recording, and the central Kalman filter everybody is compared with."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from garrison import _core, arguments, doubts
+from garrison.numeric import matched, numbers
+from garrison.record import Run
+from garrison.sizes import require_memory
+from garrison.words import count, hinted, refusal, require_order
+
+Array = NDArray[np.float64]
+Progress = Callable[[int, int], None]
+Attacks = _core.Attack | Iterable[_core.Attack]
+
+#: what a run keeps when nothing else is asked for, and everything that it can keep
+KEEP = ("estimate", "report", "measurements")
+_KEEPABLE = (*KEEP, "signals", "details")
+
+
+def require_room(model: _core.Model, filter: _core.Filter, keep: Iterable[str], trials: int, steps: int) -> None:
+    """Refuse a run whose arrays would not fit into the memory limit, before anything is computed."""
+    n, N = model.states, model.agents
+    row = {
+        "estimate": N * n,
+        "report": 5 * N,
+        "measurements": model.outputs,
+        "signals": len(filter.signal_names) * N,
+    }
+    doubles = trials * (steps + 1.0) * (n + sum(row.get(name, 0) for name in keep))
+    require_memory("steps, trials", f"{count(steps, 'sample')} in {count(trials, 'trial')}", doubles)
+
+
+def _run(
+    data: dict[str, Any],
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    attacks: list[_core.Attack],
+    conditions: bool,
+) -> Run:
+    run = Run(data, model, network, filter)
+    if conditions:
+        run.warnings[:0] = doubts.of_conditions(model, network, filter)
+    quiet = max((a.start for a in attacks), default=0)
+    run.warnings += doubts.of_divergence(model, run.estimate, run.error, quiet)
+    return run
+
+
+@hinted
+def simulate(
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    *,
+    steps: int,
+    attack: Attacks = (),
+    trials: int = 1,
+    seed: int = 0,
+    x0: ArrayLike | None = None,
+    start: ArrayLike | None = None,
+    start_error: float = 0.0,
+    noise: str | ArrayLike = "auto",
+    link: Mapping[str, float] | None = None,
+    keep: Iterable[str] = KEEP,
+    threads: int = 0,
+    progress: Progress | None = None,
+    conditions: bool = True,
+    design: _core.Design | None = None,
+) -> Run:
+    """Simulate the plant, attack it, filter it.
+
+    steps: samples >= 1. attack: one or more, applied in order. x0: (n,) true initial state, default 0. start: (n,)
+    common initial estimate, or (N, n) one per agent, default 0; start_error moves it by a random vector of at most
+    that length per trial. noise: "uniform" within the model's bounds, "extreme" at them, "normal", "none", "auto";
+    families whose agents drive plants of their own have laws of their own, x0 (N, n), default: where they should be,
+    and take recorded disturbances, one row per time 0..steps, in place of a law (garrison.platoon).
+    link: drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says), cuts: a
+    list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of (sample,
+    round, sender, receiver). keep: of "estimate", "report", "signals", "measurements",
+    "details" (lists such as sets). threads: 0 = all cores; the result does not depend on it.
+    progress(done, total) is called at most once per percent. conditions: evaluate the filter's conditions first, and
+    put the required ones that are not met into the run's `warnings`. design: made before of these very three
+    (garrison.prepare does that).
+    Deterministic: equal arguments give bit-identical results. Raises InvalidInput when something does not fit.
+    """
+    require_order("simulate", model, network, filter)
+    steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
+    wanted = arguments.flag("conditions", conditions)
+    attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
+    require_room(model, filter, kept, trials, steps)
+    data = _core.simulate(
+        _core.Design(model, network, filter) if design is None else design,
+        steps=steps,
+        x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
+        start_error=arguments.number("start_error", start_error),
+        noise=noise if isinstance(noise, str) else "auto",
+        disturbances=np.zeros((0, 0)) if isinstance(noise, str) else arguments.table("noise", noise),
+        trials=trials,
+        seed=arguments.whole("seed", seed, 0, 2**64 - 1),
+        threads=arguments.whole("threads", threads, 0),
+        start=None if start is None else arguments.table("start", start),
+        attacks=attacks,
+        link=arguments.link(link),
+        keep=kept,
+        progress=arguments.callback("progress", progress),
+    )
+    return _run(data, model, network, filter, attacks, wanted)
+
+
+def output_names(model: _core.Model, network: _core.Network) -> list[str] | None:
+    """Names of the columns of measurements: the outputs', or the agents' where each has one output; else None."""
+    if names := getattr(model, "output_names", None):
+        return [str(n) for n in names]
+    names = getattr(network, "names", None)
+    return [str(n) for n in names] if names and model.outputs == model.agents else None
+
+
+@hinted
+def replay(
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    *,
+    measurements: ArrayLike,
+    truth: ArrayLike | None = None,
+    start: ArrayLike | None = None,
+    attack: Attacks = (),
+    trials: int | None = None,
+    seed: int = 0,
+    link: Mapping[str, float] | None = None,
+    keep: Iterable[str] = KEEP,
+    threads: int = 0,
+    progress: Progress | None = None,
+    conditions: bool = True,
+    design: _core.Design | None = None,
+) -> Run:
+    """Feed recorded measurements, (samples, outputs), nan or masked = missing; row r belongs to time r + 1.
+
+    A pandas table with columns named as the network's agents (or the model's outputs) is matched by name.
+    In families with a sample at the start (platoon) row r belongs to time r, and truth is (samples, N, n).
+    truth: (samples + 1, n), from time 0, or None. Both may have a leading axis of trials, one log per trial;
+    otherwise the one log serves all `trials` (default 1). Attacks come on top of the log. The rest as in simulate.
+    """
+    require_order("replay", model, network, filter)
+    y = numbers("measurements", matched("measurements", measurements, output_names(model, network)))
+    trials = (len(y) if y.ndim == 3 else 1) if trials is None else arguments.whole("trials", trials, 1)
+    wanted = arguments.flag("conditions", conditions)
+    attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
+    require_room(model, filter, kept, trials, y.shape[-2] if y.ndim >= 2 else 0)
+    data = _core.replay(
+        _core.Design(model, network, filter) if design is None else design,
+        measurements=y,
+        truth=None if truth is None else numbers("truth", truth),
+        trials=trials,
+        seed=arguments.whole("seed", seed, 0, 2**64 - 1),
+        threads=arguments.whole("threads", threads, 0),
+        start=None if start is None else arguments.table("start", start),
+        attacks=attacks,
+        link=arguments.link(link),
+        keep=kept,
+        progress=arguments.callback("progress", progress),
+    )
+    return _run(data, model, network, filter, attacks, wanted)
+
+
+@hinted
+def central_kalman(
+    model: _core.Model,
+    measurements: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    start_variance: float = 1.0,
+) -> Array:
+    """Estimates (samples + 1, n) of a central Kalman filter that sees all measurements (samples, outputs).
+
+    The unprotected ideal that distributed filters are compared with. Needs the model's covariances; nan or masked =
+    missing.
+    """
+    if not isinstance(model, _core.Model):
+        raise refusal("central_kalman: model", f"a {type(model).__name__}", "a garrison.Model")
+    x0 = np.zeros(model.states) if start is None else numbers("start", start)
+    y = numbers("measurements", measurements)
+    if y.ndim != 2 or x0.shape != (model.states,):
+        got = f"measurements {y.shape} and start {x0.shape}"
+        raise refusal("central_kalman", got, f"(samples, {model.outputs}) and ({model.states},)")
+    return _core.central_kalman(model, y, x0, arguments.number("start_variance", start_variance))

@@ -1,0 +1,24 @@
+"""The questions that tables, pictures and reports ask of a family."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+
+def _nobody(params: dict[str, Any]) -> bool:
+    return False
+
+
+@dataclass(frozen=True)
+class Family:
+    """Answers of one family. accuses: filters with these parameters may accuse sensors.
+
+    proves: an accusation is a proof under the filter's assumptions (else an alarm, false at a chosen rate).
+    own_plants: every agent drives a plant of its own, states have an agent axis. picture: name of the figure of a run
+    in garrison.figures.
+    """
+
+    accuses: Callable[[dict[str, Any]], bool] = _nobody
+    proves: bool = False
+    own_plants: bool = False
+    picture: str = "network"

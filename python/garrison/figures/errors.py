@@ -1,0 +1,55 @@
+"""Errors of all filters over time."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from garrison.compare import Row
+from garrison.figures.style import LINES, axes, plain, time_label, times
+from garrison.scenario import Scenario
+
+
+def smoothing_width(samples: int) -> int:
+    """Samples that a drawn error is a mean over."""
+    return max(1, min(30, samples // 20))
+
+
+def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figure: Any = None) -> Any:
+    """Mean error of every filter over time (moving mean), with the certified bound of the main one."""
+    figure = figure or Figure(figsize=(9.2, 4.6), layout="constrained")
+    ax = axes(figure)
+    shown = [row for row in rows if row.error is not None and (row.attacked or not scenario.attacks)]
+    for row, (colour, style) in zip(shown, LINES, strict=False):
+        error = np.nanmean(row.error, axis=(0, 2))[1:]  # type: ignore[arg-type]
+        width = smoothing_width(len(error))
+        smooth = np.convolve(error, np.ones(width) / width, mode="valid")
+        at = np.arange(width, len(error) + 1)
+        ax.plot(times(scenario, at), smooth, color=colour, linestyle=style, linewidth=1.6, label=plain(row.label))
+    _draw_bound(ax, scenario, shown)
+    if signal is not None:
+        ax.axhline(signal, color="#999999", linewidth=1, label="size of the signal itself")
+    for k, attack in enumerate(scenario.attacks):
+        start = times(scenario, np.array([attack.start]))[0]
+        label = "attack starts" if k == 0 else None
+        ax.axvline(start, color="black", linewidth=0.8, linestyle=(0, (2, 2)), label=label)
+    if ax.get_lines() and all(np.nanmax(np.asarray(row.error)) > 0 for row in shown):
+        ax.set_yscale("log")
+    ax.set_ylabel("mean error, log scale")
+    ax.set_xlabel(time_label(scenario))
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False, fontsize=9)
+    return figure
+
+
+def _draw_bound(ax: Any, scenario: Scenario, shown: list[Row]) -> None:
+    """The certified bound of the first filter that has one."""
+    for row, (colour, _) in zip(shown, LINES, strict=False):
+        if row.run is None or row.run.bound is None or not np.isfinite(row.run.bound[0, 1:]).any():
+            continue
+        bound = row.run.bound[0, 1:].max(axis=1)
+        if not np.isfinite(bound).any():
+            continue
+        at = np.arange(1, len(bound) + 1)
+        label = f"certified bound of {plain(row.label)}"
+        ax.plot(times(scenario, at), bound, color=colour, linewidth=3, alpha=0.35, label=label)
+        return

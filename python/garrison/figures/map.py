@@ -1,0 +1,67 @@
+"""The network at its places, and the run in one picture."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from garrison.compare import Row
+from garrison.figures.errors import error_figure
+from garrison.figures.style import LOOKS, plain
+from garrison.record import Run
+from garrison.scenario import Scenario
+from garrison.verdict import Verdict
+
+
+def final_verdicts(run: Run) -> list[Verdict]:
+    """Per agent: what the network says of it at the end of the first trial."""
+    assert run.verdict is not None
+    accused = run.first_accused()
+    return [Verdict.ATTACKED if i in accused else Verdict(int(v)) for i, v in enumerate(run.verdict[0, -1])]
+
+
+def overview_figure(scenario: Scenario, rows: list[Row], signal: float | None) -> Figure:
+    """Map and errors side by side."""
+    figure = Figure(figsize=(13, 5.6), layout="constrained")
+    parts: Any = figure.subfigures(1, 2, width_ratios=[1, 1.45])
+    left, right = parts
+    if rows[0].run is not None and rows[0].run.verdict is not None:
+        map_figure(scenario, rows[0].run, left)
+    if any(row.error is not None for row in rows):
+        error_figure(scenario, rows, signal, right)
+    figure.suptitle(plain(scenario.title), fontsize=13)
+    return figure
+
+
+def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
+    """Who is attacked (ring, where that is declared), and what the network says of everybody (marker)."""
+    figure = figure or Figure(figsize=(6.4, 6.2), layout="constrained")
+    ax = figure.add_subplot()
+    place = scenario.positions
+    if place is None:
+        angle = 2 * np.pi * np.arange(len(scenario.names)) / len(scenario.names)
+        place = np.column_stack([np.sin(angle), np.cos(angle)])
+    for i, j in scenario.network.edges:
+        ax.plot(*place[[i, j]].T, color="#bbbbbb", linewidth=1, zorder=1)
+    verdicts = final_verdicts(run)
+    for verdict, (marker, colour, label) in LOOKS.items():
+        group = [i for i, v in enumerate(verdicts) if v == verdict]
+        if group:
+            ax.scatter(*place[group].T, s=170, marker=marker, color=colour, edgecolor="white", zorder=3, label=label)
+    if ring := scenario.hit:
+        look = {"facecolor": "none", "edgecolor": "black", "linewidth": 1.4}
+        ax.scatter(*place[ring].T, s=520, zorder=2, label="actually attacked", **look)
+    for i, name in enumerate(scenario.names):
+        full = plain(scenario.places[i] if scenario.places else name)
+        spot = {"xytext": (0, -19), "textcoords": "offset points", "ha": "center", "va": "top"}
+        ax.annotate(full, place[i], fontsize=9, zorder=4, **spot)
+    if scenario.positions is None:
+        ax.set_axis_off()
+    else:
+        ax.set_xlabel("kilometres east of the centre")
+        ax.set_ylabel("kilometres north of the centre")
+        ax.spines[["top", "right"]].set_visible(False)
+    ax.set_aspect("equal")
+    ax.margins(0.12)
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9)
+    return figure

@@ -1,0 +1,56 @@
+"""Any run, without a scenario."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from garrison.figures.style import axes, trial_words
+from garrison.record import Run
+
+
+def run_figure(run: Run, trial: int = 0) -> Figure:
+    """Errors with their bounds, and statistics against thresholds, of one trial; its title says which."""
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    panels = [draw for draw in (_errors, _statistics) if draw(run, trial, None)]
+    for k, draw in enumerate(panels, start=1):
+        ax = axes(figure, len(panels), 1, k)
+        draw(run, trial, ax)
+        ax.set_xlabel("sample")
+        ax.legend(frameon=False, fontsize=9)
+    words = ": ".join(w for w in (run.filter.name, trial_words(trial, run.shape[0])) if w)
+    figure.suptitle(words, fontsize=11)
+    return figure
+
+
+def _log(ax: Any, values: Any) -> None:
+    if np.nanmax(values, initial=0.0) > 0:
+        ax.set_yscale("log")
+
+
+def _errors(run: Run, trial: int, ax: Any) -> bool:
+    if run.error is None:
+        return False
+    if ax is None:
+        return True
+    error = run.error[trial]
+    ax.plot(error.max(axis=1), color="#0072B2", label="largest error of an agent")
+    ax.plot(error.mean(axis=1), color="#009E73", linestyle="--", label="mean error")
+    if run.bound is not None and np.isfinite(run.bound[trial]).any():
+        ax.plot(run.bound[trial].max(axis=1), color="#D55E00", linestyle="-.", label="certified bound")
+    _log(ax, error)
+    ax.set_ylabel("error")
+    return True
+
+
+def _statistics(run: Run, trial: int, ax: Any) -> bool:
+    if run.statistic is None or run.threshold is None or not np.isfinite(run.statistic[trial]).any():
+        return False
+    if ax is None:
+        return True
+    lines = ax.plot(run.statistic[trial], color="#0072B2", linewidth=0.6, alpha=0.6)
+    lines[0].set_label("statistic, one line per agent")
+    ax.plot(run.threshold[trial].max(axis=1), color="#D55E00", linestyle="--", label="largest threshold")
+    _log(ax, run.statistic[trial])
+    ax.set_ylabel("test statistic")
+    return True

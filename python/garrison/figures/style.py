@@ -1,0 +1,61 @@
+"""What all figures share: axes, colours, markers, times, texts without markup."""
+
+import datetime as dt
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison.scenario import Scenario
+from garrison.verdict import Verdict
+
+#: per verdict: marker, colour, word
+LOOKS = {
+    Verdict.CLEARED: ("o", "#0072B2", "cleared"),
+    Verdict.SUSPECTED: ("^", "#E69F00", "suspected"),
+    Verdict.ATTACKED: ("X", "#D55E00", "accused"),
+    Verdict.SILENT: ("s", "#888888", "no measurement"),
+    Verdict.NOT_TESTED: ("D", "#CC79A7", "not tested"),
+}
+_COLOURS = ("#0072B2", "#009E73", "#D55E00", "#444444", "#CC79A7", "#E69F00", "#56B4E9", "#8C6D31")
+_DASHES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 1)))
+#: eight colours and seven dashes in turn: 56 lines before two look alike
+LINES = [(_COLOURS[k % len(_COLOURS)], _DASHES[k % len(_DASHES)]) for k in range(len(_COLOURS) * len(_DASHES))]
+
+
+def axes(figure: Any, *place: int) -> Any:
+    """Axes as all figures have them."""
+    ax = figure.add_subplot(*place)
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.grid(True, color="#dddddd", linewidth=0.6)
+    ax.set_axisbelow(True)
+    return ax
+
+
+def plain(text: str) -> str:
+    """Text of a user without mathtext: a dollar is a dollar."""
+    return text.replace("$", r"\$")
+
+
+def times(scenario: Scenario, samples: NDArray[np.int64]) -> Any:
+    """Times of samples where the scenario has them (sample 1 is the first record), else the sample numbers."""
+    found = scenario.dates
+    if not found:
+        return samples
+    if not isinstance(found[0], dt.date):
+        step = scenario.records.step if scenario.records else 1.0
+        return [float(found[0]) + step * (int(t) - 1) for t in samples]
+    before = found[0] - dt.timedelta(seconds=scenario.records.step if scenario.records else 0.0)
+    return [found[int(t) - 1] if 1 <= t <= len(found) else before for t in samples]
+
+
+def time_label(scenario: Scenario) -> str:
+    """Label of the time axis."""
+    if not scenario.dates:
+        return "sample"
+    return "" if isinstance(scenario.dates[0], dt.date) else "time (s)"
+
+
+def trial_words(trial: int, trials: int) -> str:
+    """Which trial a figure shows: nothing where there is only one."""
+    return f"trial {trial} of {trials} (numbered from 0)" if trials > 1 else ""

@@ -1,0 +1,60 @@
+"""A run as one long table: a row per trial, time and agent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from garrison.families import family_of
+from garrison.verdict import Verdict
+from garrison.words import refusal
+
+if TYPE_CHECKING:
+    from garrison.record import Run
+
+
+def agent_names(run: Run) -> list[str] | None:
+    """Names of the agents, where the network has them."""
+    names = getattr(run.network, "names", None)
+    return [str(n) for n in names] if names else None
+
+
+def state_names(run: Run) -> list[str]:
+    """Names of the states, else x0, x1, ..."""
+    names = getattr(run.model, "state_names", None)
+    return [str(n) for n in names] if names else [f"x{k}" for k in range(run.model.states)]
+
+
+def columns(run: Run) -> dict[str, Any]:
+    """Columns of the table, all of one length."""
+    trials, times, agents = run.shape
+    if trials == 0:
+        raise refusal("to_pandas", "a run of which nothing was kept", 'keep to contain "estimate" or "report"')
+    index = np.indices((trials, times, agents)).reshape(3, -1)
+    names = agent_names(run)
+    out: dict[str, Any] = {"trial": index[0], "time": index[1]}
+    out["agent"] = index[2] if names is None else np.array(names, dtype=object)[index[2]]
+    states = state_names(run)
+    if run.estimate is not None:
+        out |= {name: run.estimate[..., k].ravel() for k, name in enumerate(states)}
+    if run.truth is not None:
+        truth = run.truth if family_of(run.filter).own_plants else run.truth[:, :, None]
+        whole = np.broadcast_to(truth, (trials, times, agents, truth.shape[-1]))
+        out |= {f"true_{name}": whole[..., k].ravel() for k, name in enumerate(states)}
+    for name in ("error", "bound", "statistic", "threshold"):
+        if getattr(run, name) is not None:
+            out[name] = getattr(run, name).ravel()
+    if run.verdict is not None:
+        words = np.array([v.word for v in Verdict], dtype=object)
+        out["verdict"] = words[run.verdict.ravel()]
+    return out | {name: values.ravel() for name, values in run.signals.items() if name not in out}
+
+
+def frame(run: Run) -> Any:
+    """`columns` as a pandas.DataFrame."""
+    try:
+        import pandas as pd
+    except ImportError:
+        raise refusal("to_pandas", "no pandas", 'it installed: pip install "garrison[pandas]"') from None
+    return pd.DataFrame(columns(run))

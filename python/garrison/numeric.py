@@ -1,0 +1,88 @@
+"""Numbers from what people pass: lists, arrays, masked arrays, tables of pandas. What is masked or NA becomes nan."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison.words import refusal, shown
+
+Array = NDArray[np.float64]
+
+
+def numbers(which: str, value: Any) -> Array:
+    """`value` as an array of doubles; masked, NA and None entries are nan.
+
+    Raises InvalidInput for text, complex numbers and rows of different lengths.
+    """
+    try:
+        found = np.asarray(_plain(value))
+    except (ValueError, TypeError) as error:
+        raise refusal(which, _why(error), "numbers, with rows of equal length") from None
+    if found.dtype == object:
+        found = _of_objects(which, found)
+    if found.dtype.kind == "c":
+        raise refusal(which, "complex numbers", "real numbers", "take .real if the imaginary part means nothing")
+    if found.dtype.kind not in "biuf":
+        kind = "text" if found.dtype.kind in "US" else f"entries of type {found.dtype.name}"
+        raise refusal(which, kind, "numbers")
+    return np.asarray(found, dtype=float)
+
+
+def real(value: Any) -> float | None:
+    """A Python or NumPy number as a double; None for anything else, and for whole numbers that no double holds."""
+    if isinstance(value, (bool, complex)) or not isinstance(value, (int, float, np.number)):
+        return None
+    try:
+        return float(value)
+    except (OverflowError, TypeError):
+        return None
+
+
+def _plain(value: Any) -> Any:
+    """Masked arrays and tables without their special missing values; lists of such likewise."""
+    if value is np.ma.masked:
+        return np.nan
+    if isinstance(value, np.ma.MaskedArray):
+        kind: type = complex if value.dtype.kind == "c" else float
+        return np.ma.filled(value.astype(kind), np.nan)
+    if hasattr(value, "to_numpy"):  # pandas: NA of nullable columns becomes an object, treated below
+        return value.to_numpy()
+    if hasattr(value, "toarray"):  # a sparse matrix
+        return value.toarray()
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    return value
+
+
+def _of_objects(which: str, found: NDArray[Any]) -> Array:
+    out = np.empty(found.shape)
+    for at, entry in np.ndenumerate(found):
+        if entry is None or type(entry).__name__ in ("NAType", "NaTType"):
+            out[at] = np.nan
+        elif (value := real(entry)) is not None:
+            out[at] = value
+        else:
+            place = "".join(f"[{k}]" for k in at)
+            raise refusal(f"{which}{place}", shown(entry), "a number, or nan where there is none")
+    return out
+
+
+def _why(error: Exception) -> str:
+    return "rows of different lengths" if "inhomogeneous" in str(error) else "something that is not an array of numbers"
+
+
+def matched(which: str, value: Any, names: list[str] | None) -> Any:
+    """A table of pandas with its columns in the order of `names`; anything else, and without names, as it is.
+
+    Raises InvalidInput when the table's columns have other names.
+    """
+    columns = getattr(value, "columns", None)
+    if columns is None or not names:
+        return value
+    found = [str(c) for c in columns]
+    if found == [str(k) for k in range(len(names))]:
+        return value  # numbered, not named
+    if sorted(found) != sorted(names):
+        raise refusal(f"{which}: columns", ", ".join(found), ", ".join(names), "columns are matched by name")
+    return value[[columns[found.index(name)] for name in names]]

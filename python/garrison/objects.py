@@ -1,0 +1,77 @@
+"""Model, network and filter as plain data (for JSON), and back."""
+
+from typing import Any
+
+import numpy as np
+
+from garrison import _core
+
+Plain = dict[str, Any]
+
+
+def described(model: _core.Model, network: _core.Network, filter: _core.Filter) -> Plain:
+    """The three objects by the arguments that make them."""
+    return {"model": _model(model), "network": _network(network), "filter": _filter(filter)}
+
+
+def _lists(value: Any) -> Any:
+    """Arrays, also inside lists, as nested lists; None stays."""
+    if isinstance(value, (list, tuple)):
+        return [_lists(v) for v in value]
+    if isinstance(value, dict):
+        return {key: _lists(v) for key, v in value.items()}
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+
+
+def _arguments(thing: Any) -> Plain | None:
+    """The arguments that make an equal object, where the core keeps them for pickles."""
+    state = thing.__getstate__() if hasattr(thing, "__getstate__") else None
+    return {key: _lists(value) for key, value in state.items()} if isinstance(state, dict) else None
+
+
+def _model(model: _core.Model) -> Plain:
+    if (arguments := _arguments(model)) is not None:
+        return arguments
+    bounds = np.asarray(model.measurement_bound)
+    out: Plain = {"A": model.A, "C": model.C, "process_bound": model.process_bound}
+    return {key: _lists(value) for key, value in (out | ({"measurement_bound": bounds} if bounds.size else {})).items()}
+
+
+def model_of(plain: Plain) -> _core.Model:
+    """The model that was described."""
+    A = np.asarray(plain["A"], dtype=float)
+    C = [np.asarray(c, dtype=float).reshape(-1, len(A)) for c in plain["C"]]
+    rest = {key: value for key, value in plain.items() if key not in ("A", "C")}
+    if "measurement_covariance" in rest:
+        pairs = zip(rest["measurement_covariance"], C, strict=True)
+        rest["measurement_covariance"] = [np.asarray(r, dtype=float).reshape(len(c), len(c)) for r, c in pairs]
+    return _core.Model(A, C, **rest)
+
+
+def _network(network: _core.Network) -> Plain:
+    if (arguments := _arguments(network)) is not None:
+        return arguments
+    return {"agents": network.agents, "directed": network.directed, "edges": _lists(network.edges)}
+
+
+def network_of(plain: Plain) -> _core.Network:
+    """The network that was described."""
+    rest = {key: value for key, value in plain.items() if key != "edges"}
+    return _core.Network([(int(a), int(b)) for a, b in plain["edges"]], **rest)
+
+
+def named(network: _core.Network, names: list[str] | None) -> _core.Network:
+    """The same network with names of its agents, where the core keeps names."""
+    if not names or not hasattr(network, "names"):
+        return network
+    plain = _network(network) | {"names": names}
+    return network_of(plain)
+
+
+def _filter(filter: _core.Filter) -> Plain:
+    return {"name": filter.name, "params": filter.params}
+
+
+def filter_of(plain: Plain) -> _core.Filter:
+    """The filter that was described."""
+    return _core.make_filter(plain["name"], plain["params"])

@@ -1,0 +1,109 @@
+"""A filter designed once, for any number of runs and agents; it can leave the process."""
+
+from pathlib import Path
+from typing import Any
+
+from garrison import _core, drivers
+from garrison.arguments import path as path_of
+from garrison.arguments import whole
+from garrison.checks import Check, check
+from garrison.record import Run
+from garrison.words import hinted, refusal, require_order
+
+
+class Prepared:
+    """A filter designed for one model and network: `prepare` makes it, `save` and `load` carry it elsewhere.
+
+    The gains travel with it, so that every run and agent of it has the same bits, here and on another machine; nothing
+    is designed again. Compares by value, copies and pickles.
+    """
+
+    def __init__(self, design: _core.Design) -> None:
+        self._design = design
+
+    @property
+    def model(self) -> _core.Model:
+        """The plant it was designed for."""
+        return self._design.model
+
+    @property
+    def network(self) -> _core.Network:
+        """The network it was designed for."""
+        return self._design.network
+
+    @property
+    def filter(self) -> _core.Filter:
+        """The filter with its parameters."""
+        return _core.make_filter(self._design.filter_name, self._design.filter_params)
+
+    def check(self) -> Check:
+        """Conditions and bounds of the filter's theorems, as `garrison.check`."""
+        return check(self.model, self.network, self.filter)
+
+    def simulate(self, **arguments: Any) -> Run:
+        """`garrison.simulate` with this design: the same keyword arguments."""
+        return drivers.simulate(self.model, self.network, self.filter, **arguments, design=self._design)
+
+    def replay(self, **arguments: Any) -> Run:
+        """`garrison.replay` with this design: the same keyword arguments."""
+        return drivers.replay(self.model, self.network, self.filter, **arguments, design=self._design)
+
+    def agent(self, id: int) -> _core.Agent:
+        """Agent `id` on its own. It holds what it needs of the gains, nothing of the others'."""
+        return self._design.agent(self._agent(id))
+
+    def part(self, id: int) -> bytes:
+        """What agent `id` needs of this design; see `garrison.Agent.from_part`."""
+        return self._design.part(self._agent(id))
+
+    def to_bytes(self) -> bytes:
+        """The design file (`save`) as bytes."""
+        return self._design.to_bytes()
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> "Prepared":
+        """The design that to_bytes() wrote. Raises InvalidInput for anything else."""
+        return cls(_core.Design.from_bytes(data))
+
+    def save(self, path: str | Path, agent: int | None = None) -> None:
+        """Write the design file (created, or replaced), or the part of one agent."""
+        path_of("save", path).write_bytes(self.to_bytes() if agent is None else self.part(agent))
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Prepared":
+        """The design in a file. Raises InvalidInput when it is damaged, of another version or no design."""
+        return cls.from_bytes(path_of("load", path).read_bytes())
+
+    @property
+    def outline(self) -> list[str]:
+        """What the gains consist of, a line each."""
+        return list(self._design.outline)
+
+    def _agent(self, id: int) -> int:
+        last = self.network.agents - 1
+        found = whole("id", id, 0)
+        if found > last:
+            raise refusal("id", str(found), f"an agent in 0..{last}")
+        return found
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Prepared) and self.to_bytes() == other.to_bytes()
+
+    def __hash__(self) -> int:
+        return hash(self.to_bytes())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Prepared.from_bytes, (self.to_bytes(),)
+
+    def __repr__(self) -> str:
+        return f"garrison.prepare({self.model!r}, {self.network!r}, {self.filter!r})"
+
+
+@hinted
+def prepare(model: _core.Model, network: _core.Network, filter: _core.Filter) -> Prepared:
+    """Design the filter for this model and network, once.
+
+    Raises InvalidInput when parameters, model and network do not fit together, DesignInfeasible when no gains exist.
+    """
+    require_order("prepare", model, network, filter)
+    return Prepared(_core.Design(model, network, filter))

@@ -1,0 +1,202 @@
+"""What a run leaves behind: arrays, accusations, counters, and the objects it was made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison.arguments import path as path_of
+from garrison.arguments import whole
+from garrison.families import family_of
+from garrison.objects import described, filter_of, model_of, network_of
+from garrison.verdict import Verdict
+from garrison.words import count, refusal
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+#: arrays of a run, in the order of its text
+ARRAYS = ("truth", "measurements", "estimate", "error", "bound", "statistic", "threshold", "verdict")
+
+#: what a run keeps besides arrays and objects
+_LISTS = ("accusations", "details", "counters", "warnings", "bytes_per_step")
+#: beginning of a signal's name in a saved run
+_SIGNAL = "signal_"
+
+
+class Run:
+    """Arrays of a finished run, indexed [trial, time, agent, ...]; time 0 is the start, nan = does not exist.
+
+    truth (trial, time, n), or (trial, time, agent, n) of agents with states of their own; estimate (trial, time, agent,
+    n); error, bound, statistic, threshold (trial, time, agent); verdict (trial, time, agent): values of
+    garrison.Verdict; measurements (trial, time 1.., output; from time 0 in families with a sample at the start),
+    as the filter received them; signals: name -> (trial, time, agent). An array that was not kept, or that cannot
+    exist (errors without truth), is None. Runs compare with ==, copy and pickle;
+    `save` and `Run.load` keep everything.
+    """
+
+    def __init__(self, data: dict[str, Any], model: _core.Model, network: _core.Network, filter: _core.Filter) -> None:
+        self.model = model
+        self.network = network
+        self.filter = filter
+        self.truth: Array | None = data.get("truth")
+        self.measurements: Array | None = data.get("measurements")
+        self.estimate: Array | None = data.get("estimate")
+        self.error: Array | None = data.get("error")
+        self.bound: Array | None = data.get("bound")
+        self.statistic: Array | None = data.get("statistic")
+        self.threshold: Array | None = data.get("threshold")
+        self.verdict: NDArray[np.uint8] | None = data.get("verdict")
+        signals = data.get("signals")
+        self.signals: dict[str, Array] = (
+            {} if signals is None else {name: signals[:, :, k] for k, name in enumerate(data["signal_names"])}
+        )
+        #: (trial, time, sets): the agents that each agent takes for attacked, whenever one of the sets changed
+        self.accusations: list[tuple[int, int, list[list[int]]]] = data["accusations"]
+        #: (trial, time, agent, name, values): lists of the family (sets, gains), whenever one of them changed
+        self.details: list[tuple[int, int, int, str, list[float]]] = data["details"]
+        #: lost, late, forged and refused messages, missing and non-finite measurements, overflows
+        self.counters: dict[str, int] = data["counters"]
+        #: doubts about this run, for people: required conditions that are not met, estimates that diverge, what the
+        #: filter's family has to say (needs keep "report")
+        self.warnings: list[str] = list(data["warnings"])
+        #: payload of all messages of one sample, when none is lost
+        self.bytes_per_step: int = data["bytes_per_step"]
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """(trials, times, agents); times counts the start."""
+        found = next((a for a in (self.error, self.estimate, self.bound, self.verdict) if a is not None), None)
+        if found is None:
+            return next((s.shape for s in self.signals.values()), (0, 0, self.network.agents))
+        return found.shape[0], found.shape[1], found.shape[2]
+
+    def limited(self, trial: int = 0, start: int = 1) -> Array:
+        """Share of the samples from `start` on at which each agent's measurement was suspected (clipped)."""
+        if self.verdict is None:
+            raise refusal("limited", "a run without verdicts", 'keep to contain "report"')
+        suspected = self.verdict[self._trial(trial), whole("start", start, 0) :] == Verdict.SUSPECTED
+        return np.asarray(suspected.mean(axis=0), dtype=float)
+
+    def first_accused(self, trial: int = 0) -> dict[int, int]:
+        """Agent -> first time at which some agent took it for attacked."""
+        trial = self._trial(trial)
+        first: dict[int, int] = {}
+        for k, time, sets in self.accusations:
+            if k == trial:
+                for agent in {a for s in sets for a in s}:
+                    first.setdefault(agent, time)
+        return first
+
+    def _trial(self, trial: int) -> int:
+        return whole("trial", trial, 0, max(self.shape[0] - 1, 0))
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to a NumPy .npz file (created, or replaced), without pickles; read it with `Run.load`."""
+        path_of("path", path).write_bytes(self._packed())
+
+    @staticmethod
+    def load(path: str | Path) -> Run:
+        """The run that `save` wrote. Raises IoError when the file cannot be read or holds no run."""
+        try:
+            data = path_of("path", path).read_bytes()
+        except OSError as error:
+            raise _core.IoError(f"{path}: got {error.strerror}, expected a run written by Run.save") from error
+        return _restored(data, str(path))
+
+    def _document(self) -> dict[str, Any]:
+        """Everything but the arrays, as plain data."""
+        lists = {name: getattr(self, name) for name in _LISTS}
+        return {"objects": described(self.model, self.network, self.filter)} | lists
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        arrays = {name: getattr(self, name) for name in ARRAYS if getattr(self, name) is not None}
+        return arrays | {f"{_SIGNAL}{name}": value for name, value in self.signals.items()}
+
+    def _packed(self) -> bytes:
+        from garrison.storage import pack
+
+        return pack(self._document(), self._arrays())
+
+    def __reduce__(self) -> Any:
+        return _restored, (self._packed(), "pickle")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Run):
+            return NotImplemented
+        if repr(self._document()) != repr(other._document()):
+            return False
+        one, two = self._arrays(), other._arrays()
+        return one.keys() == two.keys() and all(np.array_equal(one[k], two[k], equal_nan=True) for k in one)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def plot(self, trial: int = 0) -> Figure:
+        """Errors with their bounds, and statistics against thresholds, of one trial, as a figure (extra: plot)."""
+        from garrison.figures import run_figure, string_figure
+
+        trial = self._trial(trial)
+        if family_of(self.filter).picture == "string" and self.truth is not None and self.bound is not None:
+            return string_figure(self, trial)
+        return run_figure(self, trial)
+
+    def animate(self, path: str | Path, trial: int = 0) -> None:
+        """Write a GIF of vehicles in a string (extra: plot); keep "details" and "measurements" for it."""
+        trial = self._trial(trial)
+        if family_of(self.filter).picture != "string" or self.truth is None or self.measurements is None:
+            raise refusal("animate", "a run without vehicles or measurements", "one of a platoon")
+        from garrison.figures import animate
+
+        animate(self, path_of("path", path), trial)
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset of all arrays, with named dimensions (extra: xarray)."""
+        import xarray as xr
+
+        own = family_of(self.filter).own_plants
+        dims: dict[str, tuple[str, ...]] = {
+            "truth": ("trial", "time", "agent", "state") if own else ("trial", "time", "state"),
+            "estimate": ("trial", "time", "agent", "state"),
+            "measurements": ("trial", "sample", "output"),
+        }
+        found = {name: getattr(self, name) for name in ARRAYS if getattr(self, name) is not None}
+        return xr.Dataset({k: (dims.get(k, ("trial", "time", "agent")), v) for k, v in found.items()})
+
+    def to_pandas(self) -> Any:
+        """A pandas.DataFrame in long form (extra: pandas): one row per trial, time and agent.
+
+        Columns trial, time, agent (its name where the network has names), the estimate x0, x1, ... and the truth
+        true_x0, ... (state names where the model has them), error, bound, statistic, threshold, verdict (as a word),
+        and the signals that were kept.
+        """
+        from garrison.longform import frame
+
+        return frame(self)
+
+    def __repr__(self) -> str:
+        trials, times, agents = self.shape
+        sizes = (count(trials, "trial"), count(max(times - 1, 0), "sample"), count(agents, "agent"))
+        return f"Run({self.filter.name}: {', '.join(sizes)})"
+
+
+def _restored(data: bytes, name: str) -> Run:
+    """The run of an archive that `save` wrote."""
+    from garrison.storage import unpack
+
+    document, found = unpack(data, name)
+    try:
+        objects = document["objects"]
+        content: dict[str, Any] = {key: document[key] for key in _LISTS}
+        content["accusations"] = [(k, t, sets) for k, t, sets in content["accusations"]]
+        content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
+        parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise _core.IoError(f"{name}: got {error!r}, expected a run written by Run.save") from None
+    run = Run(content | {key: found[key] for key in ARRAYS if key in found}, *parts)
+    run.signals = {key.removeprefix(_SIGNAL): value for key, value in found.items() if key.startswith(_SIGNAL)}
+    return run

@@ -1,0 +1,166 @@
+"""[model]: matrices, a fit to records, or vehicles."""
+
+import json
+from typing import Any
+
+import numpy as np
+
+from garrison import _core
+from garrison.fitting import Fit, fit
+from garrison.numeric import numbers
+from garrison.scenario.section import Section, moment, number, renamed
+from garrison.sizes import require_memory
+from garrison.tables import Records, read_records
+from garrison.words import refusal, shown
+
+_FIT_KEYS = ["fit", "from", "to", "factors", "harmonics", "period", "root", "factor"]
+_MATRIX_KEYS = ["A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_covariance"]
+_VEHICLE_KEYS = ["vehicles", "period", "inputs"]
+
+
+def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | None]:
+    """The model, the fit behind it where there is one, and the names of the stations where they are known."""
+    if "fit" in section:
+        section.only(_FIT_KEYS)
+        fitted = _fitted(section)
+        return fitted.model, fitted, fitted.records.stations
+    if "vehicles" in section:
+        section.only(_VEHICLE_KEYS)
+        return _vehicles(section), None, None
+    if "file" in section:
+        section.only(["file"])
+        model, names = _from_file(section)
+        return model, None, names
+    section.only([*_MATRIX_KEYS, "fit", "vehicles", "file"])
+    return _matrices(section), None, None
+
+
+def between(section: Section, records: Records) -> Records:
+    """The records between the section's `from` and `to`."""
+    ends = [moment(section.place(k), section.table[k]) if k in section else None for k in ("from", "to")]
+    try:
+        return records.between(*ends)
+    except _core.Error as error:
+        raise renamed(error, section.where) from None
+
+
+def _fitted(section: Section) -> Fit:
+    records = between(section, read_records(section.file("fit")))
+    options: dict[str, Any] = {}
+    for key in ("factors", "harmonics"):
+        if key in section:
+            options[key] = section.whole(key, 0)
+    for key in ("period", "factor"):
+        if key in section:
+            options[key] = section.number(key, 0.0, positive=True)
+    options["root"] = section.flag("root", False)
+    return fit(records, **options)
+
+
+def _vehicles(section: Section) -> _core.Model:
+    section.require("period", "the sampling time in s beside vehicles")
+    vehicles = section.whole("vehicles", 0, 1)
+    # Every vehicle has up to 5 outputs of 2 states, and sets and covariances of all the others.
+    require_memory(section.place("vehicles"), str(vehicles), 40.0 * vehicles + float(vehicles) ** 2)
+    return _core.platoon.model(vehicles, section.number("period", 0.0, positive=True), section.flag("inputs", False))
+
+
+def _from_file(section: Section) -> tuple[_core.Model, list[str] | None]:
+    """A model that `garrison fit` wrote."""
+    path = section.file("file")
+    try:
+        plain = json.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise _core.IoError(f"{path}: got {error.strerror}, expected a model file of garrison fit") from None
+    except ValueError as error:
+        raise refusal(str(path), f"{error}", "a model file of garrison fit (JSON)") from None
+    wanted = ("A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_variance")
+    if not isinstance(plain, dict) or any(key not in plain for key in wanted):
+        raise refusal(str(path), "a file without some of the keys", ", ".join(wanted))
+    values = {key: numbers(f"{path}: {key}", plain[key]) for key in wanted}
+    variances = values.pop("measurement_variance").ravel()
+    model = _core.Model(
+        np.atleast_2d(values["A"]),
+        np.atleast_2d(values["C"]),
+        process_bound=float(values["process_bound"]),
+        measurement_bound=values["measurement_bound"],
+        process_covariance=np.atleast_2d(values["process_covariance"]),
+        measurement_covariance=[[[v]] for v in variances],
+    )
+    names = plain.get("stations")
+    return model, [str(n) for n in names] if isinstance(names, list) and len(names) == model.agents else None
+
+
+def _matrices(section: Section) -> _core.Model:
+    for key in ("A", "C"):
+        section.require(key, 'A and C, fit = "records.csv", or vehicles and period')
+    A = np.atleast_2d(section.numbers("A"))
+    if A.ndim != 2 or A.shape[0] != A.shape[1]:
+        raise refusal(section.place("A"), f"{' x '.join(map(str, A.shape))} numbers", "a square matrix")
+    C = _rows(section, len(A))
+    try:
+        return _core.Model(A, C, **_noise(section, len(A), [len(c) for c in C]))
+    except _core.Error as error:
+        raise renamed(error, section.where) from None
+
+
+def _rows(section: Section, n: int) -> list[Any]:
+    """One matrix (m_i, n) per agent: from rows, from matrices, or from both mixed; [] is a relay."""
+    given = section.array("C")
+    if isinstance(given, (int, float)) and not isinstance(given, bool) and n == 1:
+        given = [[given]]
+    if not isinstance(given, (list, np.ndarray)):
+        raise refusal(section.place("C"), shown(given), "a list with a row (or a matrix) per agent")
+    if n == 1 and all(isinstance(c, (int, float)) and not isinstance(c, bool) for c in given):
+        given = [[c] for c in given]
+    out = []
+    for k, one in enumerate(given):
+        rows = np.zeros((0, n)) if _is_empty(one) else numbers(f"{section.place('C')}[{k}]", one)
+        if rows.ndim > 2 or rows.ndim == 0:
+            raise refusal(f"{section.place('C')}[{k}]", shown(one), f"a row of {n} numbers, or a matrix with such rows")
+        out.append(np.atleast_2d(rows))
+    return out
+
+
+def _is_empty(one: Any) -> bool:
+    """Nothing, as a relay without sensors has it: [] or [[]]."""
+    return isinstance(one, (list, np.ndarray)) and (len(one) == 0 or (len(one) == 1 and _is_empty(one[0])))
+
+
+def _noise(section: Section, n: int, outputs: list[int]) -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    if "process_bound" in section:
+        out["process_bound"] = section.number("process_bound", 0.0)
+    if "measurement_bound" in section:
+        bound = section.numbers("measurement_bound")
+        if bound.ndim > 1:
+            raise refusal(section.place("measurement_bound"), f"{bound.ndim} dimensions", "a number, or one per agent")
+        out["measurement_bound"] = bound
+    if "process_covariance" in section:
+        Q = section.numbers("process_covariance")
+        if Q.ndim == 1 and len(Q) == n > 1:
+            Q = np.diag(Q)
+        out["process_covariance"] = np.diag(np.full(n, Q.ravel()[0])) if Q.size == 1 else Q
+    if "measurement_covariance" in section:
+        out["measurement_covariance"] = _measurement_covariance(section, outputs)
+    return out
+
+
+def _measurement_covariance(section: Section, outputs: list[int]) -> list[Any]:
+    """One (m_i, m_i) matrix per agent: from a number for all, a number per agent, or matrices."""
+    where, given = section.place("measurement_covariance"), section.array("measurement_covariance")
+    if not isinstance(given, (list, np.ndarray)):
+        return [np.diag(np.full(m, number(where, given))) for m in outputs]
+    if len(given) != len(outputs):
+        raise refusal(where, f"{len(given)} entries", f"{len(outputs)}, one per agent (or one number for all)")
+    out = []
+    for k, (one, m) in enumerate(zip(given, outputs, strict=True)):
+        R = np.zeros((0, 0)) if _is_empty(one) and m == 0 else numbers(f"{where}[{k}]", one)
+        if R.size == 1:
+            R = np.diag(np.full(m, R.ravel()[0]))
+        elif R.ndim == 1 and len(R) == m:
+            R = np.diag(R)
+        if R.shape != (m, m):
+            raise refusal(f"{where}[{k}]", f"shape {R.shape}", f"a number, or {m} x {m} numbers")
+        out.append(R)
+    return out

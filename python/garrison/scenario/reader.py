@@ -1,0 +1,198 @@
+"""A scenario file as objects, all of it checked."""
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison.fitting import Fit
+from garrison.numeric import numbers
+from garrison.objects import named
+from garrison.scenario.attacks import read_attack
+from garrison.scenario.data import Recording, read_data
+from garrison.scenario.filters import CENTRAL_KALMAN, read_filters
+from garrison.scenario.model import read_model
+from garrison.scenario.network import read_network
+from garrison.scenario.section import Section, tables_of, whole
+from garrison.tables import Records
+from garrison.tables.clock import Moment
+from garrison.words import only, refusal, shown
+
+Array = NDArray[np.float64]
+
+_TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run"]
+_RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error"]
+
+
+@dataclass
+class Scenario:
+    """Everything one run needs, read and checked."""
+
+    path: Path
+    title: str
+    model: _core.Model
+    network: _core.Network
+    filters: list[tuple[str, _core.Filter | None]]  # label and filter, the main one first; None = central Kalman
+    attacks: list[_core.Attack]
+    link: dict[str, float]
+    run: dict[str, Any]
+    noise: str
+    names: list[str]  # of the agents
+    positions: Array | None = None  # (agents, 2), kilometres east and north
+    places: list[str] | None = None  # full names of the agents
+    fitted: Fit | None = None
+    records: Records | None = None
+    measurements: Array | None = None
+    truth: Array | None = None  # or the reference in its place, of records
+    robust: Array | None = None  # a second reference, where it is not declared who is attacked
+    notes: list[str] = field(default_factory=list)  # doubts about the files
+
+    @property
+    def dates(self) -> list[Moment]:
+        """Times of the recorded samples; empty where there are none."""
+        return self.records.dates if self.records is not None else []
+
+    @property
+    def steps(self) -> int:
+        """Samples of a trial."""
+        return int(self.run["steps"]) if self.measurements is None else len(self.measurements)
+
+    @property
+    def truth_is_declared(self) -> bool:
+        """It is known who is attacked: the plant is simulated, or attacks were put on the records."""
+        return self.measurements is None or bool(self.attacks)
+
+    @property
+    def hit(self) -> list[int]:
+        """Agents that some attack is put on."""
+        return sorted({a for attack in self.attacks for a in attack.agents})
+
+    @property
+    def first_attack(self) -> int:
+        """Start of the first attack; 1 where there is none."""
+        return max(1, min((attack.start for attack in self.attacks), default=1))
+
+
+def read_scenario(path: str | Path) -> Scenario:
+    """Read and check a scenario file; paths in it are relative to the file.
+
+    Raises IoError when a file cannot be read, InvalidInput when its content does not fit, always with where, what
+    was found and what was expected.
+    """
+    path = Path(path)
+    document = _document(path)
+    only("scenario", document, ["title", *_TABLES])
+    folder = path.parent
+
+    def section(name: str) -> Section:
+        value = document.get(name, {})
+        if isinstance(value, list):
+            raise refusal(f"[{name}]", f"{len(value)} tables [[{name}]]", f"one table: a line [{name}]")
+        return Section(f"[{name}]", value, folder)
+
+    model, fitted, names = read_model(section("model"))
+    ground = read_network(section("network"), names, model.agents)
+    known = ground.names or names
+    names = known or [str(i) for i in range(model.agents)]
+    recording = read_data(section("data"), model, fitted, names) if "data" in document else None
+    run = _run(section("run"), model, recording is not None)
+    scenario = Scenario(
+        path=path,
+        title=_title(document.get("title", path.stem)),
+        model=model,
+        network=named(ground.network, known),
+        filters=read_filters(document, folder),
+        attacks=[],
+        link=_link(section("link")),
+        run=run,
+        noise=_noise(section("noise"), recording),
+        names=names,
+        positions=ground.positions,
+        places=ground.places,
+        fitted=fitted,
+    )
+    _put(scenario, recording)
+    for entry in tables_of("attack", document.get("attack", []), folder):
+        scenario.attacks.append(read_attack(entry, names, scenario.records, scenario.steps))
+    return scenario
+
+
+def _document(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        raise _core.IoError(f"{path}: got {error.strerror}, expected a scenario file (TOML)") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise refusal(str(path), str(error), "a TOML document") from error
+    except (ValueError, RecursionError) as error:  # a NUL in the path, a number or nesting without end
+        raise refusal(str(path), f"{type(error).__name__}: {error}", "a TOML document") from error
+
+
+def _title(value: Any) -> str:
+    if isinstance(value, (dict, list)):
+        raise refusal("title", shown(value), "a string")
+    return str(value)
+
+
+def _run(section: Section, model: _core.Model, recorded: bool) -> dict[str, Any]:
+    section.only(_RUN_KEYS)
+    out: dict[str, Any] = {}
+    for key, least in (("steps", 1), ("trials", 1), ("threads", 0)):
+        if key in section:
+            out[key] = section.whole(key, 1, least)
+    if "seed" in section:
+        out["seed"] = section.whole("seed", 0, 0, 2**63 - 1)
+    if "start_error" in section:
+        out["start_error"] = section.number("start_error", 0.0)
+        if not 0 <= out["start_error"] < np.inf:
+            raise refusal(section.place("start_error"), shown(out["start_error"]), "a number >= 0")
+    for key in ("x0", "start"):
+        if key in section:
+            out[key] = numbers(section.place(key), section.array(key))
+    if recorded:
+        for key in ("steps", "x0", "start_error"):
+            if key in out:
+                advice = "the records say how many" if key == "steps" else "records are not simulated"
+                raise refusal(section.place(key), f"{shown(section.table[key])} together with [data]", "none", advice)
+    elif "steps" not in out:
+        raise refusal("scenario", "neither [data] nor [run] steps", "one of them")
+    return out
+
+
+def _link(section: Section) -> dict[str, float]:
+    section.only(["drop", "delay", "delay_rounds"])
+    out: dict[str, float] = {}
+    for key in ("drop", "delay"):
+        if key in section:
+            out[key] = section.number(key, 0.0)
+            if not 0 <= out[key] <= 1:
+                raise refusal(section.place(key), shown(section.table[key]), "a probability in 0..1")
+    if "delay_rounds" in section:
+        out["delay_rounds"] = whole(section.place("delay_rounds"), section.table["delay_rounds"])
+    return out
+
+
+def _noise(section: Section, recording: Recording | None) -> str:
+    section.only(["law"])
+    if recording is not None and section.table:
+        raise refusal(section.where, "a law together with [data]", "none", "records carry their own noise")
+    return section.text("law", "auto")  # the laws are the plant's; a rehearsal of the run refuses others
+
+
+def _put(scenario: Scenario, recording: Recording | None) -> None:
+    if scenario.fitted is not None:
+        scenario.notes += scenario.fitted.records.notes
+    if recording is None:
+        return
+    scenario.measurements = recording.measurements
+    scenario.truth = recording.reference
+    scenario.robust = recording.robust
+    scenario.records = recording.records
+    scenario.notes += [note for note in recording.notes if note not in scenario.notes]
+
+
+__all__ = ["CENTRAL_KALMAN", "Scenario", "read_scenario"]

@@ -1,0 +1,198 @@
+"""Times of the rows: dates, dates with a time, or plain seconds; any regular period."""
+
+import calendar
+import datetime as dt
+import re
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison.tables.cells import is_missing, number
+from garrison.tables.text import Rows
+from garrison.words import count, refusal
+
+Array = NDArray[np.float64]
+#: a date for daily (or slower) records, a date with a time (UTC where a zone was given), or seconds
+Moment: TypeAlias = dt.date | float
+_DAY = 86400.0
+_MONTH = 365.25 / 12 * _DAY
+#: part of a period by which times with a clock may be off a regular grid
+_JITTER = 0.05
+#: missing rows that are filled in, per row that is there
+_MOST_FILLED = 50
+_SLASHED = re.compile(r"(\d{1,4})[./-](\d{1,2})[./-](\d{1,4})(?:[T ]+(\d{1,2}):(\d{2})(?::(\d{2})(?:[.,]\d*)?)?)?")
+_ISO = re.compile(r"\d{4}-\d{2}-\d{2}([T ]\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?\s*(Z|[+-]\d{2}:?\d{2})?)?")
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Regular times. moments: of all rows, the missing ones included; step: s, or nan for calendar months."""
+
+    moments: list[Moment]
+    step: float
+    at: list[int]  # row of the clock of each row of the file
+
+    def fill(self, values: Array) -> tuple[Array, int]:
+        """Rows for all moments, nan where the file has none; and how many were missing."""
+        filled = np.full((len(self.moments), values.shape[1]), np.nan)
+        filled[self.at] = values
+        return filled, len(self.moments) - len(self.at)
+
+
+def looks_like_time(cell: str) -> bool:
+    """A date, with or without a time."""
+    return bool(_ISO.fullmatch(cell.strip()) or _SLASHED.fullmatch(cell.strip()))
+
+
+def read_clock(rows: Rows, cells: list[str]) -> Clock:
+    """The regular clock that the first column tells, gaps filled in. Raises InvalidInput with the line."""
+    places = [f"{rows.path}, line {line}" for line in rows.lines[1:]]
+    for place, cell in zip(places, cells, strict=True):
+        if is_missing(cell):
+            raise refusal(place, "no time", "a date or a number of seconds in the first column")
+    plain = [number(c, rows.separator != ",") for c in cells]
+    moments: list[Moment]
+    if plain[0] is not None and not looks_like_time(cells[0]):
+        moments = _seconds(places, cells, plain)
+    else:
+        moments = _dates(places, cells)
+    return _regular(places, moments)
+
+
+def _seconds(places: list[str], cells: list[str], plain: list[float | None]) -> list[Moment]:
+    out: list[Moment] = []
+    for place, cell, value in zip(places, cells, plain, strict=True):
+        if value is None or not np.isfinite(value):
+            raise refusal(place, f"the time {cell!r}", "a number of seconds, as in the rows before")
+        out.append(value)
+    return out
+
+
+def _dates(places: list[str], cells: list[str]) -> list[Moment]:
+    order = _order(places, cells)
+    found = [_moment(place, cell, order) for place, cell in zip(places, cells, strict=True)]
+    zoned = [m.tzinfo is not None for m in found]
+    if any(zoned) and not all(zoned):
+        raise refusal(places[zoned.index(False)], "a time without a time zone", "one with a zone, as other rows have")
+    utc = [m.astimezone(dt.UTC).replace(tzinfo=None) if m.tzinfo else m for m in found]
+    if all(m.time() == dt.time() for m in utc):
+        return [m.date() for m in utc]
+    return list(utc)
+
+
+def _order(places: list[str], cells: list[str]) -> str:
+    """Order of day and month in dates with slashes or points: the only one that fits all rows."""
+    parts = [m.groups() for c in cells if not _ISO.fullmatch(c.strip()) and (m := _SLASHED.fullmatch(c.strip()))]
+    if not parts or len(parts[0][0]) == 4:
+        return "ymd"
+    if any(int(p[0]) > 12 for p in parts) or any("." in c for c in cells[:1]):
+        return "dmy"
+    if any(int(p[1]) > 12 for p in parts):
+        return "mdy"
+    raise refusal(places[0], f"the date {cells[0]!r}, day and month in either order", "YYYY-MM-DD in the first column")
+
+
+def _moment(place: str, cell: str, order: str) -> dt.datetime:
+    text = cell.strip()
+    try:
+        if _ISO.fullmatch(text):
+            return dt.datetime.fromisoformat(text.replace(",", "."))
+        found = _SLASHED.fullmatch(text)
+        if found is None:
+            raise ValueError
+        named = dict(zip(order, (int(v) for v in found.groups()[:3]), strict=True))
+        hour, minute, second = (int(v or 0) for v in found.groups()[3:])
+        return dt.datetime(named["y"], named["m"], named["d"], hour, minute, second)
+    except ValueError:
+        raise _core.InvalidInput(
+            f"{place}: got the date {cell!r}, expected YYYY-MM-DD in the first column, with HH:MM:SS if there is a time"
+        ) from None
+
+
+def seconds_of(moment: Moment) -> float:
+    """Seconds since the beginning of the year 1; of plain seconds themselves."""
+    if isinstance(moment, dt.datetime):
+        return (moment - dt.datetime(1, 1, 1)).total_seconds() + _DAY
+    return moment.toordinal() * _DAY if isinstance(moment, dt.date) else float(moment)
+
+
+def _regular(places: list[str], moments: list[Moment]) -> Clock:
+    times = np.array([seconds_of(m) for m in moments])
+    steps = np.diff(times)
+    for k, step in enumerate(steps):
+        if step <= 0:
+            what = "the same time as" if step == 0 else "a time before"
+            advice = "remove the duplicate" if step == 0 else "sort the rows by time"
+            if isinstance(moments[k], dt.datetime):
+                advice += "; where clocks change, give the times in UTC or with their zone"
+            raise refusal(places[k + 1], f"{moments[k + 1]}, {what} the row before", "a later one", advice)
+    if months := _months(moments):
+        return months
+    least = float(np.min(steps))
+    if times[-1] - times[0] > _MOST_FILLED * len(moments) * least:
+        got = f"{(times[-1] - times[0]) / least:.3g} periods of {_words(least)} with {count(len(moments), 'row')}"
+        raise refusal(places[-1], got, "fewer gaps")
+    at = np.concatenate([[0], np.cumsum(np.rint(steps / least))]).astype(int)
+    step = float((times[-1] - times[0]) / at[-1])
+    off = np.abs(times - times[0] - at * step)
+    daily = all(isinstance(m, dt.date) and not isinstance(m, dt.datetime) for m in moments)
+    # Dates are exact; clocks and printed seconds are rounded.
+    if (off > (1e-6 if daily else _JITTER) * step).any():
+        wrong = int(np.argmax(np.abs(steps / least - np.rint(steps / least)))) + 1
+        raise refusal(
+            places[wrong],
+            f"{moments[wrong]} after {moments[wrong - 1]}",
+            f"a whole number of periods of {_words(least)} later",
+            "resample the records to a regular period (in UTC where clocks change)",
+        )
+    return Clock(
+        _whole(moments, at.tolist(), [_later(moments[0], k, step) for k in range(at[-1] + 1)]), step, at.tolist()
+    )
+
+
+def _whole(moments: list[Moment], at: list[int], regular: list[Moment]) -> list[Moment]:
+    """The regular times, those that the file has as it has them."""
+    for k, moment in zip(at, moments, strict=True):
+        regular[k] = moment
+    return regular
+
+
+def _words(step: float) -> str:
+    for size, unit in ((_DAY, "day(s)"), (3600.0, "hour(s)"), (60.0, "minute(s)")):
+        if step >= size:
+            return f"{step / size:g} {unit}"
+    return f"{step:g} s"
+
+
+def _later(first: Moment, count: int, step: float) -> Moment:
+    if isinstance(first, dt.datetime):
+        return first + dt.timedelta(seconds=round(count * step, 6))
+    if isinstance(first, dt.date):
+        return first + dt.timedelta(days=round(count * step / _DAY))
+    return first + count * step
+
+
+def _months(moments: list[Moment]) -> Clock | None:
+    """Monthly (or yearly) records: always the same day of the month, or always the last one."""
+    dates = [m for m in moments if isinstance(m, dt.date) and not isinstance(m, dt.datetime)]
+    if len(dates) < len(moments) or len(moments) < 3:
+        return None
+    last = all(d.day == calendar.monthrange(d.year, d.month)[1] for d in dates)
+    if not last and (len({d.day for d in dates}) > 1 or dates[0].day > 28):
+        return None
+    months = np.array([12 * d.year + d.month - 1 for d in dates])
+    step = int(np.diff(months).min())
+    if step < 1 or (np.diff(months) % step).any():
+        return None
+    at = (months - months[0]) // step
+    if at[-1] + 1 > _MOST_FILLED * len(moments):
+        return None
+    regular: list[Moment] = []
+    for index in months[0] + step * np.arange(at[-1] + 1):
+        year, month = int(index) // 12, int(index) % 12 + 1
+        day = calendar.monthrange(year, month)[1] if last else dates[0].day
+        regular.append(dt.date(year, month, day))
+    return Clock(regular, step * _MONTH, at.tolist())

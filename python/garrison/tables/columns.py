@@ -1,0 +1,173 @@
+"""A table with named columns: header, units, an optional column of time, numbers."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison.tables.cells import has_decimal_comma, is_missing, number
+from garrison.tables.clock import Clock, looks_like_time, read_clock
+from garrison.tables.text import Rows, read_rows, require_widths
+from garrison.words import refusal
+
+Array = NDArray[np.float64]
+_UNIT = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
+#: names of a first column that is time even where it holds plain numbers
+TIME_NAMES = {
+    "t",
+    "time",
+    "times",
+    "date",
+    "datetime",
+    "timestamp",
+    "day",
+    "sample",
+    "second",
+    "seconds",
+    "zeit",
+    "datum",
+}
+#: constants that many instruments write for "no value"
+_SENTINELS = (-999.0, -9999.0, -99999.0, -999.9, -999.99, -99.99, 9999.0, 99999.0, 999.9)
+_FAR = 100.0  # robust deviations from which on a value is suspicious
+
+
+@dataclass(frozen=True)
+class Column:
+    """Name and unit ("" where none is said)."""
+
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of numbers (rows, columns), nan = missing; clock: times of the rows, where the first column has them."""
+
+    path: Path
+    columns: list[Column]
+    values: Array
+    clock: Clock | None
+    notes: list[str]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the columns of numbers."""
+        return [c.name for c in self.columns]
+
+
+def read_table(path: str | Path) -> Table:
+    """Read a CSV file with a header; rows in order of time, missing ones filled in where the times are regular.
+
+    Separators (comma, semicolon, tab, bar, blanks) and decimal commas are detected; units may stand in the header as
+    `name [unit]`. Raises IoError or InvalidInput with the line when something does not fit.
+    """
+    rows = _with_header(read_rows(path))
+    head = rows.cells[0]
+    if _has_no_header(head):
+        raise refusal(
+            str(rows.path), f"the first line {', '.join(head)[:60]!r}", "a header with the names of the columns"
+        )
+    require_widths(rows, 1, len(head))
+    if len(rows.cells) < 3:
+        raise refusal(str(rows.path), f"{len(rows.cells) - 1} row(s) of records", "a header and at least two rows")
+    columns = [_column(text) for text in head]
+    body = rows.cells[1:]
+    timed = _is_timed(columns[0].name, [row[0] for row in body])
+    clock = read_clock(rows, [row[0] for row in body]) if timed else None
+    named = columns[1:] if timed else columns
+    _require_names(rows, named)
+    values = _numbers(rows, 1, int(timed), [c.name for c in named])
+    notes = _suspicious(named, values)
+    if clock is not None:
+        values, filled = clock.fill(values)
+        notes += (
+            [f"{filled} missing row(s) between the first and the last one, read as missing records"] if filled else []
+        )
+    return Table(rows.path, named, values, clock, [f"{rows.path.name}: {note}" for note in notes])
+
+
+def _has_no_header(cells: list[str]) -> bool:
+    """The cells are those of a row: a time first, or numbers only."""
+    return looks_like_time(cells[0]) or all(number(cell) is not None for cell in cells)
+
+
+def _with_header(rows: Rows) -> Rows:
+    """With the comment before the first row as a header, where that is what it is."""
+    names = rows.comment.split() if rows.separator == " " else [c.strip() for c in rows.comment.split(rows.separator)]
+    if not _has_no_header(rows.cells[0]) or len(names) != len(rows.cells[0]) or _has_no_header(names):
+        return rows
+    return Rows(rows.path, [names, *rows.cells], [max(rows.lines[0] - 1, 1), *rows.lines], rows.separator)
+
+
+def _column(text: str) -> Column:
+    found = _UNIT.fullmatch(text.strip())
+    name, unit = (found[1], found[2]) if found and found[1] else (text.strip(), "")
+    return Column(name.strip(), unit.strip())
+
+
+def _is_timed(name: str, cells: list[str]) -> bool:
+    present = [c for c in cells if not is_missing(c)]
+    return name.lower() in TIME_NAMES or (bool(present) and looks_like_time(present[0]))
+
+
+def _require_names(rows: Rows, columns: list[Column]) -> None:
+    if not columns:
+        raise refusal(f"{rows.path}, line {rows.lines[0]}", "no column besides the time", "columns of numbers")
+    seen: dict[str, int] = {}
+    for k, column in enumerate(columns, start=1):
+        if not column.name:
+            raise refusal(f"{rows.path}, line {rows.lines[0]}", f"no name for column {k}", "a name for every column")
+        if column.name in seen:
+            places = f"columns {seen[column.name]} and {k}"
+            raise refusal(
+                f"{rows.path}, line {rows.lines[0]}", f"the name {column.name!r} twice ({places})", "different names"
+            )
+        seen[column.name] = k
+
+
+def _numbers(rows: Rows, first: int, skip: int, names: list[str]) -> Array:
+    """Numbers of all cells; everything that is none is refused at once, the first of each column by name."""
+    cells = [row[skip:] for row in rows.cells[first:]]
+    comma = rows.separator != "," and has_decimal_comma([c for row in cells for c in row])
+    values = np.empty((len(cells), len(names)))
+    wrong: dict[str, str] = {}
+    for r, row in enumerate(cells):
+        for c, cell in enumerate(row):
+            value = number(cell, comma)
+            if value is None:
+                line = rows.lines[first + r]
+                wrong.setdefault(names[c], f"{rows.path}, line {line}, column {names[c]}: got {cell!r}")
+                value = np.nan
+            values[r, c] = value
+    if wrong:
+        others = list(wrong)[1:]
+        more = f"; also in column(s) {', '.join(others[:8])}" if others else ""
+        raise _core.InvalidInput(f"{next(iter(wrong.values()))}, expected a number or an empty cell{more}")
+    return values
+
+
+def _suspicious(columns: list[Column], values: Array) -> list[str]:
+    """Constants that stand for "no value" in many files, and values far from all others."""
+    notes = []
+    for column, series in zip(columns, values.T, strict=True):
+        known = series[np.isfinite(series)]
+        if len(known) < 4:
+            continue
+        middle = np.median(known)
+        spread = 1.4826 * np.median(np.abs(known - middle))
+        far = known[np.abs(known - middle) > _FAR * spread] if spread > 0 else known[np.isin(known, _SENTINELS)]
+        if len(far) and len(far) < len(known) / 2:
+            kinds, counts = np.unique(far, return_counts=True)
+            worst = kinds[np.argmax(counts)]
+            how = (
+                f"{np.abs(worst - middle) / spread:.0f} robust deviations off" if spread > 0 else "far from all others"
+            )
+            notes.append(
+                f"column {column.name}: {len(far)} value(s) such as {worst:g}, {how}; "
+                "if they mean that there is none, make the cells empty"
+            )
+    return notes

@@ -1,0 +1,100 @@
+"""Records of stations over time."""
+
+import datetime as dt
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison.tables.clock import Moment, seconds_of
+from garrison.tables.columns import read_table
+from garrison.words import refusal
+
+Array = NDArray[np.float64]
+_DAY = 86400.0
+_DAYS_OF_A_YEAR = 365.25
+
+
+@dataclass(frozen=True)
+class Records:
+    """Regular records: times, and one column of numbers per station; nan = missing.
+
+    dates: dates, dates with a time, or seconds. step: seconds between records. units: per station, "" = not said.
+    notes: doubts about the file.
+    """
+
+    dates: list[Moment]
+    stations: list[str]
+    values: Array  # (samples, stations), nan = missing
+    step: float = _DAY
+    units: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def first(self) -> int:
+        """Records from the year 1 to the first one: the seasonal clock."""
+        return round(seconds_of(self.dates[0]) / self.step)
+
+    @property
+    def samples_per_year(self) -> float:
+        """Records of a year."""
+        return _DAYS_OF_A_YEAR * _DAY / self.step
+
+    def index(self, where: str, moment: Moment) -> int:
+        """Index of the first record at or after `moment`; len(dates) when it is after the last."""
+        self.require_same_kind(where, moment)
+        return int(np.searchsorted([seconds_of(d) for d in self.dates], seconds_of(moment) - 1e-6 * self.step))
+
+    def require_same_kind(self, where: str, moment: Moment) -> None:
+        """Refuse a date for records with plain seconds, and the other way round."""
+        if isinstance(moment, dt.date) != isinstance(self.dates[0], dt.date):
+            kinds = {True: "a date", False: "a number of seconds"}
+            here = isinstance(self.dates[0], dt.date)
+            raise refusal(where, f"{kinds[not here]} ({moment})", f"{kinds[here]}, as the records have")
+
+    def between(self, start: Moment | None, end: Moment | None) -> "Records":
+        """The records from `start` to `end`, both included (a date means the whole day).
+
+        Raises InvalidInput when there are less than two.
+        """
+        first = 0 if start is None else self.index("from", start)
+        last = len(self.dates)
+        if end is not None:
+            self.require_same_kind("to", end)
+            day = isinstance(end, dt.date) and not isinstance(end, dt.datetime)
+            limit = seconds_of(end) + (_DAY * (1 - 1e-9) if day else 1e-6 * self.step)
+            last = int(np.searchsorted([seconds_of(d) for d in self.dates], limit, side="right"))
+        if last - first < 2:
+            span = f"{self.dates[0]}..{self.dates[-1]}"
+            raise refusal(
+                f"dates {'' if start is None else start}..{'' if end is None else end}",
+                f"{max(last - first, 0)} records",
+                f"at least 2; the file has {span}",
+            )
+        rest = (self.step, self.units, self.notes)
+        return Records(self.dates[first:last], self.stations, self.values[first:last], *rest)
+
+    def of(self, stations: list[str]) -> "Records":
+        """The records of `stations`, matched by name. Raises InvalidInput where one is missing."""
+        missing = [s for s in stations if s not in self.stations]
+        if missing:
+            raise refusal("stations", ", ".join(self.stations), f"also {', '.join(missing)}, which the model has")
+        columns = [self.stations.index(s) for s in stations]
+        units = [self.units[c] for c in columns] if self.units else []
+        return Records(self.dates, stations, self.values[:, columns], self.step, units, self.notes)
+
+
+def read_records(path: str | Path) -> Records:
+    """Read regular records: a header `date,STATION,STATION,...`, then a row per period.
+
+    Any separator, decimal commas, dates or dates with times or seconds, any regular period; missing rows become missing
+    records. Raises IoError when the file cannot be read, InvalidInput with the line when its content does not fit.
+    """
+    table = read_table(path)
+    if table.clock is None:
+        raise refusal(
+            str(path), f"the first column {table.names[0]!r} without times", "dates or seconds in the first column"
+        )
+    units = [c.unit for c in table.columns]
+    return Records(table.clock.moments, table.names, table.values, table.clock.step, units, table.notes)

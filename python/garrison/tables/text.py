@@ -1,0 +1,130 @@
+"""From bytes to rows of cells: encoding, separators, comments, blank lines."""
+
+import csv
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from garrison import _core
+from garrison.words import count, refusal
+
+_SEPARATORS = (";", "\t", "|", ",")
+_NAMES = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas", " ": "blanks"}
+_BOMS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
+#: lines that the separator is guessed from
+_LOOK = 50
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The cells of a file, blank lines and comments (#) left out. lines: line number of each row, from 1.
+
+    comment: the last comment before the first row, which may be a header.
+    """
+
+    path: Path
+    cells: list[list[str]]
+    lines: list[int]
+    separator: str
+    comment: str = ""
+
+    @property
+    def separated_by(self) -> str:
+        """For messages."""
+        return _NAMES[self.separator]
+
+
+def read_rows(path: str | Path) -> Rows:
+    """Read a text file of cells. Raises IoError when it cannot be read, InvalidInput when it is no such text."""
+    path = Path(path)
+    text = _text(path)
+    numbered = [(k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
+    comment = ""
+    while numbered and numbered[0][1].lstrip().startswith("#"):
+        comment = numbered.pop(0)[1].lstrip().lstrip("#")
+    numbered = [(k, line) for k, line in numbered if not line.lstrip().startswith("#")]
+    if not numbered:
+        raise refusal(str(path), "an empty file", "rows of cells separated by commas, semicolons or tabs")
+    separator = _separator([line for _, line in numbered[:_LOOK]])
+    cells = _split([line for _, line in numbered], separator, path)
+    lines = [k for k, _ in numbered]
+    return Rows(path, _without_empty_end(cells), lines, separator, comment)
+
+
+def _text(path: Path) -> str:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise _core.IoError(f"{path}: got {error.strerror}, expected a readable CSV file") from error
+    encoding = next((name for bom, name in _BOMS if data.startswith(bom)), "utf-8")
+    try:
+        text = data.decode(encoding)
+    except UnicodeDecodeError as error:
+        where = f"byte {error.start}"
+        raise _core.IoError(
+            f"{path}: got a file that is no text in UTF-8 ({where}), expected a readable CSV file"
+        ) from None
+    if "\0" in text:
+        raise _core.IoError(f"{path}: got a file with zero bytes, expected a readable CSV file")
+    return text
+
+
+def _separator(lines: list[str]) -> str:
+    """The separator that splits most lines into the same number (> 1) of cells; blanks where none does."""
+    best, score = " ", 0
+    for separator in _SEPARATORS:
+        widths = [len(_cells(line, separator)) for line in lines]
+        usual = max(set(widths), key=widths.count)
+        if usual > 1 and widths.count(usual) > score:
+            best, score = separator, widths.count(usual)
+    if best == ",":  # decimal commas in columns separated by blanks
+        spaced = [line.split() for line in lines]
+        if all(len(row) == len(spaced[0]) > 1 for row in spaced) and all(
+            re.fullmatch(r"[+-]?\d+,\d+", cell) for row in spaced[1:] for cell in row
+        ):
+            return " "
+    if best == " " and all(len(line.split()) == 1 for line in lines):
+        return ","  # a single column
+    return best
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    if '"' not in line:
+        return line.split(separator)
+    try:
+        return next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+    except csv.Error:
+        return [line]
+
+
+def _split(lines: list[str], separator: str, path: Path) -> list[list[str]]:
+    if separator == " ":
+        return [line.split() for line in lines]
+    return [[cell.strip() for cell in _cells(line, separator)] for line in lines]
+
+
+def _without_empty_end(cells: list[list[str]]) -> list[list[str]]:
+    """Without the empty cell that a separator at the end of every line makes."""
+    body = cells[1:] or cells
+    while body and all(row and row[-1] == "" for row in body):
+        width = len(body[0])
+        head_too = len(cells[0]) == width and (cells[0][-1] == "" or body is cells)
+        longer = len(cells) > 1 and len(cells[0]) == width - 1
+        if width < 2 or any(len(row) != width for row in body) or not (head_too or longer):
+            break
+        cells = [row[:-1] if len(row) == width else row for row in cells]
+        body = cells[1:] or cells
+    return cells
+
+
+def require_widths(rows: Rows, first: int, width: int) -> None:
+    """Refuse rows (from index `first` on) that have not `width` cells."""
+    for line, row in zip(rows.lines[first:], rows.cells[first:], strict=True):
+        if len(row) != width:
+            more = ""
+            if len(row) > width and rows.separator == "," and any(re.fullmatch(r"\d+", c) for c in row):
+                more = "; a decimal comma needs semicolons or tabs between the columns"
+            raise _core.InvalidInput(
+                f"{rows.path}, line {line}: got {count(len(row), 'column')}, expected {width} "
+                f"(separated by {rows.separated_by}){more}"
+            )

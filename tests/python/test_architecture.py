@@ -1,0 +1,145 @@
+"""The layers of the Python package: who may import whom, read from the source."""
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+
+from conftest import ROOT
+
+PACKAGE = ROOT / "python" / "garrison"
+#: bottom first; a module imports modules of its own layer or below. Packages stand for all that is in them.
+LAYERS = (
+    ("_core",),
+    ("words", "verdict"),
+    ("numeric", "sizes", "storage", "objects", "filters"),
+    ("arguments", "parameters", "checks", "families", "tables", "longform"),
+    ("attacks", "record", "doubts"),
+    ("drivers", "fitting", "certificate"),
+    ("prepared",),
+    ("resilience", "mitigation", "lmi", "scenario"),
+    ("compare", "anatomy"),
+    ("figures", "report", "verify"),
+    ("_commands",),
+    ("cli",),
+    ("__main__",),
+)
+#: a run draws itself: the two places where a lower layer imports a higher one, inside functions
+UPWARD = {("record", "figures")}
+#: packages whose modules nobody below may import at all, but for UPWARD
+HEAVY = ("rich", "networkx", "matplotlib", "pandas", "xarray", "scipy")
+
+
+def modules() -> dict[str, ast.Module]:
+    """Name within garrison ("scenario.reader") -> its source; the package itself is left out."""
+    found = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE).with_suffix("").parts
+        name = ".".join(p for p in parts if p != "__init__")
+        if name:
+            found[name] = ast.parse(path.read_text(encoding="utf-8"))
+    return found
+
+
+def imports(name: str, tree: ast.Module, known: set[str]) -> Iterator[str]:
+    """Modules of garrison that a module imports when it runs (imports for type checking do not run)."""
+    for_types = {
+        id(inner)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+        for inner in ast.walk(node)
+    }
+    for node in ast.walk(tree):
+        if id(node) in for_types:
+            continue
+        if isinstance(node, ast.Import):
+            named = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{name}: a relative import"
+            base = node.module or ""
+            named = [f"{base}.{alias.name}" for alias in node.names] if base.split(".")[0] == "garrison" else []
+        else:
+            continue
+        for full in named:
+            if not full.startswith("garrison."):
+                continue
+            inside = full.removeprefix("garrison.")
+            while inside and inside not in known and not inside.startswith("_core"):
+                inside = inside.rpartition(".")[0]
+            if inside and inside != name:
+                yield inside
+
+
+def graph() -> dict[str, set[str]]:
+    """Module -> the modules that it imports, without the compiled core."""
+    sources = modules()
+    return {
+        name: {to for to in imports(name, tree, set(sources)) if not to.startswith("_core")}
+        for name, tree in sources.items()
+    }
+
+
+def layer(name: str) -> int:
+    """Number of the layer of a module, from below."""
+    top = name.split(".")[0]
+    return next(k for k, names in enumerate(LAYERS) if top in names)
+
+
+def test_every_module_has_a_layer() -> None:
+    known = {name for names in LAYERS for name in names}
+    assert {name.split(".")[0] for name in modules()} - known == set()
+
+
+def test_imports_go_down() -> None:
+    pairs = [(name, to) for name, found in graph().items() for to in found]
+    upward = {(name.split(".")[0], to.split(".")[0]) for name, to in pairs if layer(to) > layer(name)}
+    assert upward == UPWARD
+    assert len(UPWARD) <= 2
+
+
+def test_no_import_cycles() -> None:
+    edges = {
+        name: {to for to in found if (name.split(".")[0], to.split(".")[0]) not in UPWARD}
+        for name, found in graph().items()
+    }
+    done: set[str] = set()
+
+    def visit(name: str, path: tuple[str, ...]) -> None:
+        assert name not in path, " -> ".join((*path[path.index(name) :], name))
+        if name not in done:
+            for to in edges[name]:
+                visit(to, (*path, name))
+            done.add(name)
+
+    for name in edges:
+        visit(name, ())
+
+
+def test_importing_garrison_is_light() -> None:
+    code = f"import sys, garrison, garrison.cli; print([m for m in {HEAVY!r} if m in sys.modules])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
+
+
+def test_nobody_chooses_the_matplotlib_backend_or_uses_pyplot() -> None:
+    for name, tree in modules().items():
+        calls = [ast.unparse(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)]
+        assert "matplotlib.use" not in calls, name
+        used = [ast.unparse(n) for n in ast.walk(tree) if isinstance(n, (ast.Import, ast.ImportFrom))]
+        assert not any("pyplot" in line for line in used), name
+
+
+def test_only_families_ask_for_a_family() -> None:
+    """Names and parameters of families are asked for in families/ (and where a function is about one family)."""
+    about_one = {"attacks", "objects"}
+    for name, tree in modules().items():
+        if name.split(".")[0] in ("families", "verify") or name in about_one:
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant):
+                asked = ast.unparse(node.value).endswith(".params") and isinstance(node.slice.value, str)
+                assert not asked, f"{name}: {ast.unparse(node)}"
+            if isinstance(node, ast.Compare):
+                words = [c.value for c in node.comparators if isinstance(c, ast.Constant)]
+                families = {"saturation", "structural", "platoon", "partial_sharing", "rdkf"}
+                assert not (families & {w for w in words if isinstance(w, str)}), f"{name}: {ast.unparse(node)}"

@@ -1,0 +1,226 @@
+"""CSV files of the world: separators, decimals, times, gaps, units, names."""
+
+import datetime as dt
+from pathlib import Path
+
+import garrison as gr
+import numpy as np
+import pytest
+from garrison.tables import read_matrix, read_records, read_rows
+
+nan = float("nan")
+DAYS = [dt.date(2024, 1, 1), dt.date(2024, 1, 2), dt.date(2024, 1, 3)]
+HOURS = [dt.datetime(2024, 1, 1, h) for h in (0, 1, 2)]
+
+
+def write(folder: Path, text: str, encoding: str = "utf-8") -> Path:
+    path = folder / "x.csv"
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+SAME = {
+    "commas": "date,A,B\n2024-01-01,1.5,2\n2024-01-02,2.5,3\n2024-01-03,,4\n",
+    "semicolons": "date;A;B\n2024-01-01;1.5;2\n2024-01-02;2.5;3\n2024-01-03;;4\n",
+    "decimal commas": "date;A;B\n2024-01-01;1,5;2\n2024-01-02;2,5;3\n2024-01-03;;4\n",
+    "tabs": "date\tA\tB\n2024-01-01\t1,5\t2\n2024-01-02\t2,5\t3\n2024-01-03\t\t4\n",
+    "bars": "date|A|B\n2024-01-01|1.5|2\n2024-01-02|2.5|3\n2024-01-03|NA|4\n",
+    "carriage returns": "date,A,B\r\n2024-01-01,1.5,2\r\n2024-01-02,2.5,3\r\n2024-01-03,,4\r\n",
+    "blank last line": "date,A,B\n2024-01-01,1.5,2\n2024-01-02,2.5,3\n2024-01-03,,4\n\n  \n",
+    "trailing commas": "date,A,B,\n2024-01-01,1.5,2,\n2024-01-02,2.5,3,\n2024-01-03,,4,\n",
+    "trailing commas, not in the header": "date,A,B\n2024-01-01,1.5,2,\n2024-01-02,2.5,3,\n2024-01-03,,4,\n",
+    "comments": "# from a logger\ndate,A,B\n2024-01-01,1.5,2\n# pause\n2024-01-02,2.5,3\n2024-01-03,,4\n",
+    "header in a comment": "# logger 7\n#date,A,B\n2024-01-01,1.5,2\n2024-01-02,2.5,3\n2024-01-03,,4\n",
+    "quotes": '"date","A","B"\n"2024-01-01","1.5","2"\n"2024-01-02","2.5","3"\n"2024-01-03","","4"\n',
+    "blanks": "date , A , B\n 2024-01-01 , 1.5 , 2\n 2024-01-02 , 2.5 , 3\n 2024-01-03 ,  , 4\n",
+    "missing words": "date,A,B\n2024-01-01,1.5,2\n2024-01-02,2.5,3\n2024-01-03,n/a,4\n",
+    "no newline at the end": "date,A,B\n2024-01-01,1.5,2\n2024-01-02,2.5,3\n2024-01-03,null,4",
+    "slashes, day first": "date,A,B\n1/1/2024,1.5,2\n2/1/2024,2.5,3\n13/1/2024,,4\n",
+    "points": "Datum;A;B\n01.01.2024;1,5;2\n02.01.2024;2,5;3\n03.01.2024;;4\n",
+    "year first": "date,A,B\n2024/01/01,1.5,2\n2024/01/02,2.5,3\n2024/01/03,,4\n",
+    "midnight": "date,A,B\n2024-01-01 00:00,1.5,2\n2024-01-02 00:00,2.5,3\n2024-01-03 00:00,,4\n",
+    "exponents": "date,A,B\n2024-01-01,15e-1,2E0\n2024-01-02,+2.5,3.\n2024-01-03,-,.4e1\n",
+}
+
+
+@pytest.mark.parametrize("kind", SAME)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_one_table_in_many_forms(tmp_path: Path, kind: str, encoding: str) -> None:
+    text = SAME[kind]
+    found = read_records(write(tmp_path, text, encoding))
+    assert found.stations == ["A", "B"]
+    if kind == "slashes, day first":  # the 13th says which is the day
+        assert found.dates[0] == dt.date(2024, 1, 1) and found.dates[-1] == dt.date(2024, 1, 13)
+        assert np.isnan(found.values[2:12]).all() and "10 missing row(s)" in found.notes[0]
+        found = type(found)(DAYS, found.stations, found.values[[0, 1, 12]])
+    assert found.dates == DAYS
+    np.testing.assert_array_equal(found.values, [[1.5, 2], [2.5, 3], [nan, 4]])
+    assert found.step == 86400 and found.samples_per_year == 365.25
+
+
+CLOCKS = {
+    "hourly": ("2024-01-01 00:00", "2024-01-01 01:00", "2024-01-01 02:00", HOURS, 3600),
+    "T and seconds": ("2024-01-01T00:00:00", "2024-01-01T01:00:00", "2024-01-01T02:00:00", HOURS, 3600),
+    "UTC": ("2024-01-01T00:00Z", "2024-01-01T01:00Z", "2024-01-01T02:00Z", HOURS, 3600),
+    "time zone": ("2024-01-01T02:00+02:00", "2024-01-01T03:00+02:00", "2024-01-01T04:00+02:00", HOURS, 3600),
+    "zone that changes": ("2024-01-01T02:00+02:00", "2024-01-01T02:00+01:00", "2024-01-01T03:00+01:00", HOURS, 3600),
+    "points and time": ("01.01.2024 00:00", "01.01.2024 01:00", "01.01.2024 02:00", HOURS, 3600),
+    "seconds": ("0", "0.5", "1.0", [0.0, 0.5, 1.0], 0.5),
+    "rounded seconds": ("0.00", "0.33", "0.67", [0.0, 0.33, 0.67], 0.335),
+    "ends of months": (
+        "2024-01-31",
+        "2024-02-29",
+        "2024-03-31",
+        [dt.date(2024, *d) for d in ((1, 31), (2, 29), (3, 31))],
+        30.4375 * 86400,
+    ),
+    "weekly": ("2024-01-01", "2024-01-08", "2024-01-15", [dt.date(2024, 1, d) for d in (1, 8, 15)], 7 * 86400),
+    "monthly": ("2024-01-01", "2024-02-01", "2024-03-01", [dt.date(2024, m, 1) for m in (1, 2, 3)], 30.4375 * 86400),
+    "yearly": ("2022-07-01", "2023-07-01", "2024-07-01", [dt.date(y, 7, 1) for y in (2022, 2023, 2024)], 31557600),
+}
+
+
+@pytest.mark.parametrize("kind", CLOCKS)
+def test_any_regular_period(tmp_path: Path, kind: str) -> None:
+    *cells, dates, step = CLOCKS[kind]
+    rows = "".join(f"{cell},{k}\n" for k, cell in enumerate(cells))
+    found = read_records(write(tmp_path, f"time,A\n{rows}"))
+    assert found.dates == dates
+    assert found.step == pytest.approx(step)
+    assert found.values.ravel().tolist() == [0, 1, 2]
+
+
+def test_gaps_become_missing_records(tmp_path: Path) -> None:
+    found = read_records(write(tmp_path, "time,A\n2024-01-01,1\n2024-01-02,2\n2024-01-05,3\n"))
+    np.testing.assert_array_equal(found.values.ravel(), [1, 2, nan, nan, 3])
+    assert found.dates[3] == dt.date(2024, 1, 4)
+    assert found.notes == ["x.csv: 2 missing row(s) between the first and the last one, read as missing records"]
+
+
+def test_units_are_kept_and_are_no_part_of_the_name(tmp_path: Path) -> None:
+    found = read_records(write(tmp_path, "t [s],flow [/min],temp (degC),p\n0,1,2,3\n1,1,2,3\n"))
+    assert found.stations == ["flow", "temp", "p"]
+    assert found.units == ["/min", "degC", ""]
+
+
+REFUSED = {
+    "twice": ("date,A,A\n2024-01-01,1,2\n2024-01-02,1,2\n", ["line 1", "'A' twice (columns 1 and 2)"]),
+    "empty name": ("date,A,\n2024-01-01,1,2\n2024-01-02,1,2\n", ["line 1", "no name for column 2"]),
+    "duplicate": ("date,A\n2024-01-01,1\n2024-01-01,2\n", ["line 3", "the same time", "remove the duplicate"]),
+    "clocks go back": ("t,A\n2024-10-27 02:00,1\n2024-10-27 02:00,2\n", ["line 3", "where clocks change", "zone"]),
+    "backwards": ("date,A\n2024-01-02,1\n2024-01-01,2\n", ["line 3", "before", "sort"]),
+    "irregular": ("date,A\n2024-01-01,1\n2024-01-03,2\n2024-01-06,2\n", ["line 4", "whole number of periods of 2 day"]),
+    "mixed zones": ("t,A\n2024-01-01T00:00Z,1\n2024-01-01T01:00,2\n", ["line 3", "without a time zone"]),
+    "ambiguous": ("date,A\n1/2/2024,1\n1/3/2024,2\n", ["either order", "YYYY-MM-DD"]),
+    "text": ("date,A,B\n2024-01-01,1,2\n2024-01-02,x,y\n", ["line 3, column A", "'x'", "also in column(s) B"]),
+    "underscore": ("date,A\n2024-01-01,1_0.5\n2024-01-02,1\n", ["line 2, column A", "'1_0.5'"]),
+    "thousands": ("date;A\n2024-01-01;1.234,5\n2024-01-02;1\n", ["line 2, column A", "1.234,5"]),
+    "decimal comma between commas": ("date,A\n2024-01-01,51,93\n2024-01-02,1\n", ["line 2", "3 columns", "expected 2"]),
+    "no time": ("A,B\n1,2\n2,3\n", ["without times"]),
+    "empty time": ("date,A\n2024-01-01,1\n,2\n", ["line 3", "no time"]),
+    "not a date": ("date,A\n2024-01-01,1\nsoon,2\n", ["line 3", "'soon'"]),
+    "not a day": ("date,A\n2024-02-30,1\n2024-03-01,2\n", ["line 2", "2024-02-30"]),
+    "no header, but dates": ("2024-01-01,1\n2024-01-02,1\n2024-01-03,2\n", ["header"]),
+    "no header": ("1,2\n3,4\n5,6\n", ["header"]),
+    "one row": ("date,A\n2024-01-01,1\n", ["1 row(s)", "at least two"]),
+    "nothing": ("", ["an empty file"]),
+    "only the time": ("date\n2024-01-01\n2024-01-02\n", ["no column besides the time"]),
+    "few rows, long gap": ("t,A\n0,1\n1,2\n1000000,2\n", ["fewer gaps"]),
+}
+
+
+@pytest.mark.parametrize("kind", REFUSED)
+def test_what_is_refused(tmp_path: Path, kind: str) -> None:
+    text, words = REFUSED[kind]
+    with pytest.raises(gr.InvalidInput) as caught:
+        read_records(write(tmp_path, text))
+    for word in words:
+        assert word in str(caught.value), str(caught.value)
+
+
+@pytest.mark.parametrize("data", [b"\xff\xfe\x00", b"\x80\x81", b"date,A\n\x00\x00,1\n"])
+def test_what_is_no_text(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / "x.csv").write_bytes(data)
+    with pytest.raises(gr.IoError, match="readable CSV"):
+        read_records(tmp_path / "x.csv")
+
+
+@pytest.mark.parametrize(("value", "words"), [(-9999, "-9999"), (-999, "-999"), (1e6, "1e+06")])
+def test_suspicious_constants_are_named(tmp_path: Path, value: float, words: str) -> None:
+    cells = [str(10 + k % 7) for k in range(40)]
+    cells[5] = cells[9] = f"{value:g}"
+    rows = "".join(f"{k},{c}\n" for k, c in enumerate(cells))
+    (note,) = read_records(write(tmp_path, f"t,A\n{rows}")).notes
+    assert "column A: 2 value(s) such as " + words in note and "robust deviations off" in note
+    plain = "".join(f"{k},{10 + k % 7}\n" for k in range(40))
+    assert read_records(write(tmp_path, f"t,A\n{plain}")).notes == []
+
+
+def test_fit_says_so(tmp_path: Path, wind: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from garrison.cli import main
+
+    lines = (wind / "irish_wind.csv").read_text().splitlines()[:400]
+    lines[50] = lines[50].replace(lines[50].split(",")[1], "-9999", 1)
+    path = write(tmp_path, "\n".join(lines))
+    assert main(["fit", str(path), "-o", str(tmp_path / "m.json")]) == 0
+    assert "warning: x.csv: column RPT: 1 value(s) such as -9999" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1,2\n3,4\n",
+        "1;2\n3;4\n",
+        "1 2\n3 4\n",
+        "1\t2\n3\t4",
+        "a,b\n1,2\n3,4\n",
+        "1,2,\n3,4,\n",
+        "# A\n1,2\n\n3,4\n\n",
+        "1.0;2\n3;4",
+    ],
+)
+def test_matrices(tmp_path: Path, text: str) -> None:
+    np.testing.assert_array_equal(read_matrix(write(tmp_path, text)), [[1, 2], [3, 4]])
+
+
+def test_a_single_column_and_a_row_of_missing_values(tmp_path: Path) -> None:
+    np.testing.assert_array_equal(read_matrix(write(tmp_path, "1\n2\n3\n")), [[1], [2], [3]])
+    np.testing.assert_array_equal(read_matrix(write(tmp_path, "1,2\n,\n3,4\n")), [[1, 2], [nan, nan], [3, 4]])
+    assert read_rows(write(tmp_path, "1,2\n")).separator == ","
+
+
+def test_records_match_by_name_and_period(wind: Path) -> None:
+    records = read_records(wind / "irish_wind.csv").between(None, dt.date(1962, 12, 31))
+    found = gr.fit(records, factors=1)
+    turned = type(records)(records.dates, records.stations[::-1], records.values[:, ::-1])
+    np.testing.assert_array_equal(found.measurements(turned), found.measurements(records))
+    with pytest.raises(gr.InvalidInput, match="also RPT"):
+        found.measurements(records.of(records.stations[1:]))
+    hourly = type(records)(records.dates, records.stations, records.values, 3600.0)
+    with pytest.raises(gr.InvalidInput, match="a period of 3600 s"):
+        found.measurements(hourly)
+
+
+def test_hourly_records_have_a_year_of_hours(tmp_path: Path) -> None:
+    rng = np.random.default_rng(1)
+    start = dt.datetime(2024, 1, 1)
+    lines = [f"{start + dt.timedelta(hours=k)},{a:.3f},{b:.3f}" for k, (a, b) in enumerate(rng.normal(size=(400, 2)))]
+    records = read_records(write(tmp_path, "time,A,B\n" + "\n".join(lines)))
+    assert records.samples_per_year == 8766
+    assert gr.fit(records, factors=1, harmonics=1).model.states == 1
+    cut = records.between(dt.date(2024, 1, 2), dt.date(2024, 1, 3))
+    assert (cut.dates[0], cut.dates[-1]) == (dt.datetime(2024, 1, 2), dt.datetime(2024, 1, 3, 23))
+    with pytest.raises(gr.InvalidInput, match="a date, as the records have"):
+        records.between(5.0, None)
+
+
+def test_fit_speaks_of_stations_by_name(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    rows = [f"{k},{a:.3f},{a + b:.3f},7" for k, (a, b) in enumerate(rng.normal(size=(200, 2)))]
+    records = read_records(write(tmp_path, "t,north,south,dead\n" + "\n".join(rows)))
+    with pytest.raises(gr.InvalidInput, match=r"^station dead: got records without variation"):
+        gr.fit(records, period=20, harmonics=1)
+    values = records.values.copy()
+    values[3, 1] = np.inf
+    with pytest.raises(gr.InvalidInput, match=r"^station south, record of 3\.0: got inf"):
+        gr.fit(type(records)(records.dates, records.stations, values), period=20, harmonics=1)
