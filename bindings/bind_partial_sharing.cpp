@@ -12,20 +12,12 @@ using namespace garrison::partial_sharing;
 
 namespace {
 
-const Network& same_size(const Model& model, const Network& network) {
-  if (model.agents() != network.agents())
-    refuse("network", std::to_string(network.agents()) + " agents",
-           std::to_string(model.agents()) + ", because C has one matrix per agent");
-  return network;
-}
-
 /// A setting with its steady gains, which are computed when first needed.
 class Analysis {
  public:
   Analysis(const FilterHandle& f, const Model& model, const Network& network)
-      : setting(make_setting(
-            parse_params<PartialSharing::Params>(std::string(PartialSharing::name), f.filter->params()),
-            model, same_size(model, network))) {}
+      : setting(make_setting(params_of<PartialSharing>(f), model,
+                             (require_same_size(model, network), network))) {}
   const std::vector<LocalGains>& steady() const {
     if (gains_.empty()) gains_ = steady_gains(setting);
     return gains_;
@@ -74,6 +66,36 @@ struct WorstAttack : AnyAttack {
   WorstCovariance worst;
 };
 
+WorstAttack worst_attack(Schedule schedule, WorstCovariance worst) {
+  const Matrix rows = worst.covariance.transpose();  // an attack takes its matrix row by row
+  WorstAttack w;
+  static_cast<AnyAttack&>(w) =
+      make_attack("coordinated", std::move(schedule),
+                  {{"covariance", std::vector<double>(rows.data(), rows.data() + rows.size())}});
+  w.worst = std::move(worst);
+  return w;
+}
+
+py::dict state_of(const WorstAttack& w) {
+  const Schedule& schedule = w.schedule();
+  return py::dict(py::arg("start") = schedule.first(), py::arg("agents") = schedule.everyone(),
+                  py::arg("stop") = schedule.stop(), py::arg("covariance") = w.worst.covariance,
+                  py::arg("form") = w.worst.form, py::arg("direction") = w.worst.direction,
+                  py::arg("gain") = w.worst.gain);
+}
+
+WorstAttack worst_from(const py::dict& state) {
+  WorstCovariance worst;
+  worst.byzantine = state["agents"].cast<std::vector<int>>();
+  worst.covariance = state["covariance"].cast<Matrix>();
+  worst.form = state["form"].cast<Matrix>();
+  worst.direction = state["direction"].cast<Vector>();
+  worst.gain = state["gain"].cast<double>();
+  return worst_attack(Schedule(state["start"].cast<std::int64_t>(), worst.byzantine,
+                               state["stop"].cast<std::int64_t>()),
+                      std::move(worst));
+}
+
 using Sigma = std::optional<Matrix>;
 using Agents = std::optional<std::vector<int>>;
 
@@ -105,7 +127,8 @@ void bind_design(py::module_& s) {
           "Unit top eigenvector of the form, largest entry positive.")
       .def_property_readonly(
           "gain", [](const WorstAttack& w) { return w.worst.gain; },
-          "What it adds to the NMSE: in the mean of a cycle (steady), or in one step.");
+          "What it adds to the NMSE: in the mean of a cycle (steady), or in one step.")
+      .def(py::pickle(&state_of, &worst_from));
   s.def(
       "worst_covariance",
       [](const Analysis& a, const std::vector<int>& byzantine, double energy, const std::string& kind,
@@ -113,13 +136,10 @@ void bind_design(py::module_& s) {
         if (kind != "steady" && kind != "one_step")
           refuse("kind", "\"" + kind + "\"", "one of: steady, one_step");
         if (byzantine.empty()) refuse("agents", "none", "at least one Byzantine agent");
-        WorstAttack w;
-        w.name = "coordinated";
-        w.worst = kind == "steady" ? worst_steady(a.setting, a.steady(), byzantine, energy)
-                                   : worst_one_step(a.setting, a.steady(), byzantine, energy, start - 1);
-        w.message =
-            coordinated(Schedule(start, byzantine, stop.value_or(Schedule::kForever)), w.worst.covariance);
-        return w;
+        const WorstCovariance worst =
+            kind == "steady" ? worst_steady(a.setting, a.steady(), byzantine, energy)
+                             : worst_one_step(a.setting, a.steady(), byzantine, energy, start - 1);
+        return worst_attack(Schedule(start, byzantine, stop.value_or(Schedule::kForever)), worst);
       },
       py::arg("analysis"), py::arg("byzantine"), py::arg("energy"), py::arg("kind"), py::arg("start"),
       py::arg("stop"), "Use garrison.attacks.worst_covariance.");

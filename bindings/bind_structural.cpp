@@ -41,8 +41,8 @@ void bind_setting(py::module_& m) {
   m.def(
       "setting",
       [](const FilterHandle& f, const Model& model, const Network& network) {
-        return Structural::setting(parse_params<Structural::Params>("structural", f.filter->params()), model,
-                                   network);
+        require_same_size(model, network);
+        return Structural::setting(params_of<Structural>(f), model, network);
       },
       py::arg("filter"), py::arg("model"), py::arg("network"),
       "The setting that a Structural filter is designed for on this model and network.");

@@ -10,38 +10,33 @@ stop: first sample that is not attacked any more; probability: chance that an ag
 The other parameters are those of the attack. Raises InvalidInput when something does not fit.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 from garrison import _core
 from garrison._core import Attack
+from garrison._core.attacks import *  # noqa: F403  (what the core registers)
 
-Schedule = Iterable[tuple[int, Iterable[int]]]
+#: the name of every attack's function
+ATTACKS = tuple(name for name in vars(_core.attacks) if not name.startswith("_"))
+
+__all__ = ["ATTACKS", "Attack", "make", "worst_covariance", *ATTACKS]
 
 
-def make(
-    name: str,
-    agents: Iterable[int] | None = None,
-    *,
-    start: int = 1,
-    stop: int | None = None,
-    schedule: Schedule | None = None,
-    probability: float = 1.0,
-    **params: Any,
-) -> Attack:
+def make(name: str, agents: Iterable[int] | int | None = None, **arguments: Any) -> Attack:
     """Make the attack `name` (as in a scenario file); see the module's text for the arguments."""
-    if (agents is None) == (schedule is None):
-        got = "neither" if agents is None else "both"
-        raise _core.InvalidInput(f"attack {name}: got {got} of agents and schedule, expected exactly one")
-    phases = [(start, list(agents))] if agents is not None else [(t, list(a)) for t, a in schedule or ()]
-    return _core.make_attack(name, phases, stop, probability, params)
+    names = [info["name"] for info in _core.attack_infos()]
+    if not isinstance(name, str) or name not in names:
+        return _core.make_attack(name, [(1, [0])])  # refuses, with the nearest name
+    attack: Attack = getattr(_core.attacks, ATTACKS[names.index(name)])(agents, **arguments)
+    return attack
 
 
 def worst_covariance(
     filter: _core.Filter,
     model: _core.Model,
     network: _core.Network,
-    agents: Iterable[int],
+    agents: Iterable[int] | int,
     *,
     energy: float,
     kind: str = "steady",
@@ -54,34 +49,18 @@ def worst_covariance(
     alone, (37) of the paper. Attacks from sample `start` on, until `stop` (excluded). The result also has covariance,
     form, direction and gain. Raises InvalidInput for another filter, a bad agent or energy, or an unstable filter.
     """
-    if filter.name != "partial_sharing":
-        raise _core.InvalidInput(f"filter: got {filter.name}, expected partial_sharing; (37) is about its gains")
     analysis = _core.partial_sharing.Analysis(filter, model, network)
-    return _core.partial_sharing.worst_covariance(analysis, list(agents), energy, kind, start, stop)
+    return _core.partial_sharing.worst_covariance(
+        analysis,
+        agents,  # type: ignore[arg-type]
+        energy,
+        kind,
+        start,
+        stop,
+    )
 
 
-def _camel(name: str) -> str:
-    return "".join(part.capitalize() for part in name.split("_"))
-
-
-_INFOS = {_camel(info["name"]): info for info in _core.attack_infos()}
-
-
-def __getattr__(name: str) -> Callable[..., Attack]:
-    if name not in _INFOS:
-        near = _core.nearest_name(name, list(_INFOS))
-        hint = f"; did you mean {near}?" if near else ""
-        raise AttributeError(f"garrison.attacks has no {name}{hint} (it has {', '.join(_INFOS)})")
-    info = _INFOS[name]
-
-    def attack(agents: Iterable[int] | None = None, **arguments: Any) -> Attack:
-        return make(info["name"], agents, **arguments)
-
-    attack.__name__ = name
-    params = "\n".join(f"{p['name']}: {p['doc']} [{p['unit']}]" for p in info["params"])
-    attack.__doc__ = f"{info['doc']} ({info['target']} attack).\n\n{params}"
-    return attack
-
-
-def __dir__() -> list[str]:
-    return ["make", "worst_covariance", *_INFOS]
+def __getattr__(name: str) -> Any:
+    near = _core.nearest_name(name, list(ATTACKS))
+    hint = f"; did you mean {near}?" if near else ""
+    raise AttributeError(f"garrison.attacks has no {name}{hint} (it has {', '.join(ATTACKS)})")

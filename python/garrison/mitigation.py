@@ -77,7 +77,7 @@ def replay_mitigated(
             f"expected (samples + 1, n) and twice (samples, {len(measured)})"
         )
     system = structure.System(structure.Pattern.of(A_))
-    filter = _core.Structural(**params)
+    filter = _core.filters.Structural(**params)
     now: list[int | None] = list(measured)
     kinds = system.classes([[] if s is None else [s] for s in now])
     begin = np.zeros((len(now), len(A_))) if start is None else np.asarray(start, dtype=float)

@@ -211,6 +211,8 @@ class WorstAttack(garrison._core.Attack):
     """
     A coordinated attack of largest effect; usable wherever an attack is.
     """
+    def __getstate__(self) -> dict: ...
+    def __setstate__(self, arg0: dict) -> None: ...
     @property
     def covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects that can be kept: from the arguments of its constructor follow an object's code (repr), its pickle
+// and its copies.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+/// "garrison.Model(A=[[0.9]], C=[[[1.0]]])"; arrays as lists, numbers with all their digits.
+std::string as_code(const std::string& maker, const pybind11::dict& arguments);
+
+/// `arguments(object)` gives the constructor's arguments as a dict and `make(dict)` an equal object.
+template <class Class, class Arguments, class Make>
+void keep(Class& bound, Arguments arguments, Make make) {
+  bound.def(pybind11::pickle(arguments, make));
+  bound.def("__copy__", [](pybind11::object self) { return self; });  // immutable
+  bound.def(
+      "__deepcopy__", [](pybind11::object self, const pybind11::dict&) { return self; },
+      pybind11::arg("memo"));
+}
+
+/// Equality and hash by value.
+template <class T, class Class, class Same, class Hash>
+void compare(Class& bound, const Same& same, const Hash& hash) {
+  bound.def(
+      "__eq__",
+      [same](const T& self, const pybind11::object& other) -> pybind11::object {
+        if (!pybind11::isinstance<T>(other))
+          return pybind11::reinterpret_borrow<pybind11::object>(Py_NotImplemented);
+        return pybind11::bool_(same(self, other.cast<const T&>()));
+      },
+      pybind11::arg("other"));
+  bound.def("__hash__", [hash](const T& self) { return pybind11::hash(hash(self)); });
+}
