@@ -190,8 +190,19 @@ void bind_coordinates(py::module_& s) {
 
 void bind_analysis(py::module_& m) {
   bind_subsets(m);
-  m.def("chebyshev_contraction", &chebyshev_contraction, py::arg("gamma"), py::arg("rounds"),
-        "What `rounds` Chebyshev-filtered rounds leave of a disagreement.");
+  m.def(
+      "chebyshev_contraction",
+      [](double gamma, int rounds) {
+        constexpr int most = 1'000'000;  // as many as a filter takes
+        if (!(gamma >= 0.0 && gamma <= 1.0)) refuse("gamma", text(gamma), "a number in [0, 1]");
+        if (rounds < 0 || rounds > most)
+          refuse("rounds", std::to_string(rounds), "0.." + std::to_string(most));
+        return chebyshev_contraction(gamma, rounds);
+      },
+      py::arg("gamma"), py::arg("rounds"),
+      "What `rounds` Chebyshev-filtered rounds (0..1e6) leave of a disagreement that one plain round shrinks "
+      "to\n"
+      "`gamma`, in [0, 1].");
   auto s = m.def_submodule("saturation", "Theorems, conditions and design of the saturation filter.");
   bind_setting(s);
   bind_theorems(s);

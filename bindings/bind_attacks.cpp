@@ -145,7 +145,8 @@ void bind_attacks(py::module_& m) {
           "stop", [](const AnyAttack& a) { return py::object(arguments(a)["stop"]); },
           "First sample that is not attacked any more; None = never.")
       .def_property_readonly(
-          "schedule", [](const AnyAttack& a) { return py::list(arguments(a)["schedule"]); }, "(start, agents) phases.")
+          "schedule", [](const AnyAttack& a) { return py::list(arguments(a)["schedule"]); },
+          "(start, agents) phases.")
       .def_property_readonly("probability", [](const AnyAttack& a) { return a.schedule().probability(); })
       .def("__repr__", &code);
   keep(attack, arguments, attack_from);

@@ -46,7 +46,7 @@ Network build(std::int64_t agents, const std::vector<Edge>& edges, bool directed
 /// the diagonal says nothing (an agent always knows itself).
 Network from_adjacency(const py::object& given, bool directed, Names names) {
   const char* which = "adjacency";
-  if (names.empty() && py::hasattr(given, "columns")) {  // a DataFrame
+  if (names.empty() && py::hasattr(given, "columns") && py::hasattr(given, "to_numpy")) {  // a DataFrame
     const py::list columns(given.attr("columns"));
     if (columns.size() > 0 && py::isinstance<py::str>(columns[0]))
       names = convert::names("adjacency.columns", columns);
@@ -163,7 +163,7 @@ Network make_network(const py::object& source, const py::object& agents, bool di
   if (py::isinstance<py::str>(source) || py::isinstance<py::bytes>(source) ||
       py::isinstance<py::dict>(source) || convert::scalar(source))
     if (!py::hasattr(source, "tocoo")) refuse("edges", convert::shown(source), kSources);
-  const bool table = py::hasattr(source, "columns") && py::hasattr(source, "index");
+  const bool table = py::hasattr(source, "columns") && py::hasattr(source, "to_numpy");
   const py::list items = py::hasattr(source, "tocoo") || table ? py::list() : py::list(source);
   if (py::hasattr(source, "tocoo") || table || square(items)) {
     Network network = from_adjacency(source, directed, std::move(names));

@@ -12,6 +12,11 @@ using namespace garrison::partial_sharing;
 
 namespace {
 
+void require_steps(const char* which, int steps) {
+  constexpr int most = 1'000'000;  // minutes of matrix products; the steady states are there for the limit
+  if (steps < 0 || steps > most) refuse(which, std::to_string(steps), "0.." + std::to_string(most));
+}
+
 /// A setting with its steady gains, which are computed when first needed.
 class Analysis {
  public:
@@ -91,9 +96,8 @@ WorstAttack worst_from(const py::dict& state) {
   worst.form = state["form"].cast<Matrix>();
   worst.direction = state["direction"].cast<Vector>();
   worst.gain = state["gain"].cast<double>();
-  return worst_attack(Schedule(state["start"].cast<std::int64_t>(), worst.byzantine,
-                               state["stop"].cast<std::int64_t>()),
-                      std::move(worst));
+  Schedule schedule(state["start"].cast<std::int64_t>(), worst.byzantine, state["stop"].cast<std::int64_t>());
+  return worst_attack(std::move(schedule), std::move(worst));
 }
 
 using Sigma = std::optional<Matrix>;
@@ -207,6 +211,7 @@ void bind_partial_sharing(py::module_& m) {
       .def(
           "gains",
           [](const Analysis& a, int k) {
+            require_steps("k", k);
             std::vector<LocalGains> all;
             for (int i = 0; i < a.setting.agents(); ++i) {
               LocalRecursion recursion(a.setting, i);
@@ -220,6 +225,7 @@ void bind_partial_sharing(py::module_& m) {
           "error_covariance",
           [](const Analysis& a, int steps, const Sigma& S, std::int64_t k0, const Agents& b, bool common,
              bool iid) {
+            require_steps("steps", steps);
             const Matrix attack = a.attack(S, b);
             return trajectory_dict(iid ? error_covariance_iid(a.setting, steps, attack, k0, common)
                                        : error_covariance(a.setting, steps, attack, k0, common));
@@ -264,6 +270,7 @@ void bind_partial_sharing(py::module_& m) {
       .def(
           "recursion8",
           [](const Analysis& a, const Sigma& S, std::int64_t k0, int steps) {
+            require_steps("steps", steps);
             const auto all = recursion8(a.setting, a.steady(), a.attack(S, std::nullopt), k0, steps);
             return Vector(Eigen::Map<const Vector>(all.data(), static_cast<Eigen::Index>(all.size())));
           },
@@ -273,6 +280,7 @@ void bind_partial_sharing(py::module_& m) {
           "full_solution",
           [](const Analysis& a, int steps, const Matrix& start, const Matrix& y, const Matrix& delta,
              const Sigma& S, std::int64_t k0, bool common) {
+            require_steps("steps", steps);
             const FullSolution f =
                 full_solution(a.setting, steps, start, y, delta, a.attack(S, std::nullopt), k0, common);
             return py::dict(py::arg("estimate") = f.estimate, py::arg("trace") = f.trace, py::arg("K") = f.K,

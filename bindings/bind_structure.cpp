@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Structural analysis: patterns, matchings, components, classes of agents, substitutes.
 #include "bindings.hpp"
+#include "convert.hpp"
 #include "garrison/analysis/modes.hpp"
 #include "garrison/analysis/structure/strong_subgraph.hpp"
 #include "garrison/analysis/structure/substitution.hpp"
@@ -23,23 +24,32 @@ py::array_t<int> numbers(std::vector<int> v) {
   return owned(std::move(v), {size});
 }
 
+py::list list_of(const std::string& which, py::handle given) {
+  if (py::isinstance<py::str>(given) || py::isinstance<py::dict>(given))
+    refuse(which, convert::shown(given), "a state, None, or a list of states");
+  return py::list(py::reinterpret_borrow<py::object>(given));
+}
+
 /// measured: per agent a state, None, or a list of states.
 Sensors sensors_from(const py::iterable& measured) {
   Sensors all;
   for (const auto& one : measured) {
-    if (one.is_none())
-      all.emplace_back();
-    else if (py::isinstance<py::sequence>(one) || py::isinstance<py::array>(one))
-      all.push_back(one.cast<std::vector<int>>());
-    else
-      all.push_back({one.cast<int>()});
+    const std::string which = "measured[" + std::to_string(all.size()) + "]";
+    std::vector<int> states;
+    if (convert::scalar(one)) {
+      if (!one.is_none()) states.push_back(convert::small(which, one));
+    } else {
+      for (const auto& state : list_of(which, one)) states.push_back(convert::small(which, state));
+    }
+    all.push_back(std::move(states));
   }
   return all;
 }
 
 std::vector<int> states_from(const py::iterable& measured) {
   std::vector<int> all;
-  for (const auto& one : measured) all.push_back(one.is_none() ? -1 : one.cast<int>());
+  for (const auto& one : measured)
+    all.push_back(one.is_none() ? -1 : convert::small("measured[" + std::to_string(all.size()) + "]", one));
   return all;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <new>
+#include <set>
 #include <unordered_map>
 
 #include "convert.hpp"
@@ -33,6 +34,31 @@ std::unordered_map<PyObject*, Front>& fronts() {
 
 py::object read(const ArgumentType& type, const std::string& which, py::handle given);
 
+/// Arguments in which nan says that something is missing, or inf that something is impossible.
+bool may_be_missing(const std::string& which) {
+  static const std::set<std::string, std::less<>> names{
+      "cost", "delta", "disturbances", "measured", "measurements", "raw", "residuals", "truth", "y"};
+  const auto begin = which.find_last_of('.') + 1;
+  return names.count(which.substr(begin, which.find('[', begin) - begin)) != 0;
+}
+
+/// Refuses nan and what is so large that its square overflows.
+convert::Array usable(const std::string& which, convert::Array given) {
+  if (may_be_missing(which)) return given;
+  const double* end = given.data() + given.size();
+  const double* wrong =
+      std::find_if(given.data(), end, [](double x) { return !(std::abs(x) <= garrison::kHuge); });
+  if (wrong != end)
+    refuse(which, garrison::text(*wrong),
+           "finite numbers of size at most " + garrison::text(garrison::kHuge));
+  return given;
+}
+
+/// Whole numbers in lists are agents, states and the like.
+py::object read_entry(const ArgumentType& type, const std::string& which, py::handle given) {
+  return type.kind == Kind::whole ? py::int_(convert::small(which, given)) : read(type, which, given);
+}
+
 py::object read_list(const ArgumentType& type, const std::string& which, py::handle given) {
   const ArgumentType& inner = type.of.front();
   const bool text = PyUnicode_Check(given.ptr()) || PyBytes_Check(given.ptr());
@@ -43,7 +69,7 @@ py::object read_list(const ArgumentType& type, const std::string& which, py::han
                                                     : simple && !text && convert::scalar(given);
   py::list all;
   if (alone) {  // one agent, one name: a list of one
-    all.append(read(inner, which, given));
+    all.append(read_entry(inner, which, given));
     return all;
   }
   if (text || PyDict_Check(given.ptr()) || convert::scalar(given))
@@ -61,9 +87,7 @@ py::object read_list(const ArgumentType& type, const std::string& which, py::han
   }
   std::size_t k = 0;
   for (const auto& one : py::list(py::reinterpret_borrow<py::object>(given)))
-    all.append(inner.kind == Kind::whole
-                   ? py::int_(convert::small(which + "[" + std::to_string(k++) + "]", one))
-                   : read(inner, which + "[" + std::to_string(k++) + "]", one));
+    all.append(read_entry(inner, which + "[" + std::to_string(k++) + "]", one));
   return all;
 }
 
@@ -106,15 +130,20 @@ py::object read(const ArgumentType& type, const std::string& which, py::handle g
     case Kind::array:
       return convert::array(which, given);
     case Kind::matrix:
-      return convert::matrix(which, given);
+      return usable(which, convert::matrix(which, given));
     case Kind::vector:
-      return convert::vector(which, given);
+      return usable(which, convert::vector(which, given));
     case Kind::wholes:
       return read_wholes(which, given);
     case Kind::list:
       return read_list(type, which, given);
     case Kind::tuple:
       return read_tuple(type, which, given);
+    case Kind::many:
+      if (convert::scalar(given) || PyUnicode_Check(given.ptr()) || PyBytes_Check(given.ptr()) ||
+          PyDict_Check(given.ptr()))
+        refuse(which, convert::shown(given), type.expected());
+      return py::list(py::reinterpret_borrow<py::object>(given));
     case Kind::map:
       if (!PyMapping_Check(given.ptr()) || !py::hasattr(given, "keys"))
         refuse(which, convert::shown(given), type.expected());
@@ -333,6 +362,7 @@ void guard_function(py::handle object, const std::string& name, const Classes& c
   front.name = name;
   front.takes = std::move(*takes);
   front.method = method;
+  if (method && !front.takes.empty()) front.takes.front().name = "self";  // of a property: arg0
   front.original = function->m_ml->ml_meth;
   const bool fast = (function->m_ml->ml_flags & METH_FASTCALL) != 0;
   function->m_ml->ml_meth = fast ? reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(run_fast))
@@ -344,7 +374,9 @@ void guard_class(py::handle type, const Classes& classes) {
   const auto name = type.attr("__name__").cast<std::string>();
   const py::dict entries(type.attr("__dict__"));
   // Python fills in a wrapper of its own where there is no constructor.
-  if (!entries.contains("__init__") || Py_TYPE(entries["__init__"].cast<py::object>().ptr()) == &PyWrapperDescr_Type) reinterpret_cast<PyTypeObject*>(type.ptr())->tp_init = refuse_to_make;
+  if (!entries.contains("__init__") ||
+      Py_TYPE(entries["__init__"].cast<py::object>().ptr()) == &PyWrapperDescr_Type)
+    reinterpret_cast<PyTypeObject*>(type.ptr())->tp_init = refuse_to_make;
   for (const auto& [key, value] : entries) {
     const auto entry = key.cast<std::string>();
     const std::string full = entry == "__init__" ? name : name + "." + entry;

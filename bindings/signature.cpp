@@ -77,6 +77,7 @@ ArgumentType type_of_one(std::string_view text, const Classes& classes) {
   if (name == "Annotated" || name == "ndarray" || name == "NDArray" || name == "ArrayLike")
     return array_type(text);
   if (name == "dict" || name == "Dict" || name == "Mapping") return {Kind::map};
+  if (name == "Iterable") return {Kind::many};
   if (name == "Optional") {
     ArgumentType type = type_of(inside, classes);
     type.optional = true;
@@ -134,6 +135,8 @@ std::string ArgumentType::expected() const {
         return of.front().kind == Kind::anything ? "a list" : "a list, each entry " + of.front().expected();
       case Kind::tuple:
         return std::to_string(of.size()) + " values";
+      case Kind::many:
+        return "a list";
       case Kind::map:
         return "a dict";
       case Kind::instance:

@@ -14,6 +14,7 @@
 struct ArgumentType {
   enum class Kind {
     anything,
+    many,
     number,
     whole,
     flag,

@@ -508,7 +508,8 @@ def chebyshev_contraction(
     gamma: typing.SupportsFloat | typing.SupportsIndex, rounds: typing.SupportsInt | typing.SupportsIndex
 ) -> float:
     """
-    What `rounds` Chebyshev-filtered rounds leave of a disagreement.
+    What `rounds` Chebyshev-filtered rounds (0..1e6) leave of a disagreement that one plain round shrinks to
+    `gamma`, in [0, 1].
     """
 
 def check(filter: Filter, model: Model, network: Network) -> tuple[list, list]:

@@ -69,7 +69,10 @@ double power(double mean, double std, double threshold) {
 
 double chi_square_level(int degrees, double rate) {
   require_rate("false_alarm", rate);
-  if (degrees < 1) refuse("window", std::to_string(degrees), "at least 1");
+  // Beyond, e^(-x/2) is no number any more and the sum says nothing.
+  constexpr int most = 1000;
+  if (degrees < 1 || degrees > most)
+    refuse("degrees (window)", std::to_string(degrees), "1.." + std::to_string(most));
   double lo = 0.0;
   double hi = 10.0;
   while (chi_square_tail(degrees, hi) > rate) hi *= 2.0;
@@ -95,12 +98,14 @@ void require_bound(double Q1) {
 Vector thresholds_printed(const Setting& s, double Q1, double m) {
   require_level(m);
   require_bound(Q1);
+  require_valid(s);
   return m * (s.C.rowwise().norm() * Q1 + s.R.diagonal());
 }
 
 Vector thresholds_root(const Setting& s, double Q1, double m) {
   require_level(m);
   require_bound(Q1);
+  require_valid(s);
   return m * (s.C.rowwise().squaredNorm() * Q1 + s.R.diagonal()).cwiseSqrt();
 }
 
