@@ -31,6 +31,8 @@ void bind_subsets(py::module_& m) {
   m.def(
       "lambda0",
       [](const MatrixRef& C, int s, std::int64_t max_nodes, double max_seconds) {
+        require_range("max_nodes", static_cast<double>(max_nodes), 1.0);
+        require_range("max_seconds", max_seconds, 0.0, kInfinity);
         return lambda0(C, s, {max_nodes, max_seconds});
       },
       py::arg("C"), py::arg("s"), py::arg("max_nodes") = limits.max_nodes,
@@ -48,8 +50,13 @@ void bind_subsets(py::module_& m) {
   m.def("observable", &observable, py::arg("A"), py::arg("C"), "(A, C) is observable, C (m, n).");
   m.def("s_sparse_observable", &s_sparse_observable, py::arg("A"), py::arg("C"), py::arg("s"),
         "(A, kept rows) is observable whichever s rows of C are lost.");
-  m.def("one_step_sparse_observable", &one_step_sparse_observable, py::arg("C"), py::arg("s"),
-        "Any N - s rows of C span the state.");
+  m.def(
+      "one_step_sparse_observable",
+      [](const MatrixRef& C, int s) {
+        require_range("s", s, 0.0, static_cast<double>(C.rows()));
+        return one_step_sparse_observable(C, s);
+      },
+      py::arg("C"), py::arg("s"), "Any N - s rows of C span the state; s in 0..N.");
 }
 
 void bind_setting(py::module_& s) {
@@ -71,9 +78,21 @@ void bind_setting(py::module_& s) {
                         py::arg("cond9_margin") = c.cond9_margin, py::arg("cond9") = c.cond9);
       },
       py::arg("setting"), "(8) and (9).");
-  s.def("rho_sequence", &rho_sequence, py::arg("setting"), py::arg("T"), "rho_0 .. rho_T of (7).");
+  s.def(
+      "rho_sequence",
+      [](const Setting& x, int T) {
+        require_memory("T", std::to_string(T), 8.0 * T);
+        return rho_sequence(x, T);
+      },
+      py::arg("setting"), py::arg("T"), "rho_0 .. rho_T of (7).");
   s.def("p_at", &p_at, py::arg("setting"), py::arg("t"), "p(t) of (10).");
-  s.def("F", &F, py::arg("setting"), py::arg("rho"), "F of (8).");
+  s.def(
+      "F",
+      [](const Setting& x, double rho) {
+        require_range("rho", rho, 0.0);
+        return F(x, rho);
+      },
+      py::arg("setting"), py::arg("rho"), "F of (8); rho finite and >= 0.");
   s.def(
       "fixed_points",
       [](const Setting& x) {
@@ -102,6 +121,8 @@ void bind_theorems(py::module_& s) {
   s.def(
       "theorem_bounds",
       [](const Setting& x, double varpi_value, int T) {
+        require_range("varpi", varpi_value, 0.0);
+        require_memory("T", std::to_string(T), 32.0 * T);
         const auto b = theorem_bounds(x, varpi_value, T);
         return py::dict(py::arg("cond9") = b.cond9, py::arg("thm1_item1") = b.thm1_item1,
                         py::arg("thm1_item2") = b.thm1_item2, py::arg("thm1_item3") = b.thm1_item3,
@@ -113,6 +134,7 @@ void bind_theorems(py::module_& s) {
   s.def(
       "theorem4",
       [](const Setting& x, int T) {
+        require_memory("T", std::to_string(T), 8.0 * T);
         py::list all;
         for (const auto& b : theorem4(x, T))
           all.append(py::dict(py::arg("T") = T, py::arg("d") = b.d, py::arg("rho_T") = b.rho_T,
@@ -124,6 +146,8 @@ void bind_theorems(py::module_& s) {
   s.def(
       "theorem5",
       [](const Setting& x, double tau0_value, double varpi_value) {
+        require_range("tau0", tau0_value, 0.0);
+        require_range("varpi", varpi_value, 0.0);
         const auto g = theorem5(x, tau0_value, varpi_value);
         Matrix G(2, 2);
         G << g.g11, g.g12, g.g21, g.g22;

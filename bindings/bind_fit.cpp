@@ -31,7 +31,12 @@ void bind_fit(py::module_& m) {
   m.def(
       "identify",
       [](const MatrixRef& raw, std::int64_t first, int factors, int harmonics, double period, bool root,
-         double factor) { return identify(raw, first, {factors, harmonics, period, root, factor}); },
+         double factor) {
+        require_range("fit.harmonics", harmonics, 0.0,
+                      std::max(0.0, 0.5 * static_cast<double>(raw.rows()) - 1.0));
+        require_range("fit.period", period, std::numeric_limits<double>::min());
+        return identify(raw, first, {factors, harmonics, period, root, factor});
+      },
       py::arg("raw"), py::arg("first"), py::kw_only(), py::arg("factors") = standard.factors,
       py::arg("harmonics") = standard.harmonics, py::arg("period") = standard.period,
       py::arg("root") = standard.root, py::arg("factor") = standard.factor,
@@ -39,6 +44,7 @@ void bind_fit(py::module_& m) {
   m.def(
       "central_kalman",
       [](const Model& model, const MatrixRef& y, const VectorRef& x0, double start_variance) {
+        require_range("start_variance", start_variance, 0.0);
         return central_kalman(model, y, x0, start_variance);
       },
       py::arg("model"), py::arg("measurements"), py::arg("x0"), py::arg("start_variance"),

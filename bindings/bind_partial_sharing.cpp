@@ -29,6 +29,8 @@ class Analysis {
   }
   /// Checked attack covariance; empty for None.
   Matrix attack(const std::optional<Matrix>& Sigma, const std::optional<std::vector<int>>& byzantine) const {
+    for (const int agent : byzantine.value_or(std::vector<int>()))
+      require_range("byzantine", agent, 0.0, setting.agents() - 1.0);
     if (!Sigma) return {};
     std::vector<int> everybody;
     for (int i = 0; i < setting.agents(); ++i) everybody.push_back(i);
@@ -175,6 +177,7 @@ void bind_design(py::module_& s) {
       .def(
           "exact",
           [](const SelectionProblem& p, std::int64_t max_nodes) {
+            require_range("max_nodes", static_cast<double>(max_nodes), 1.0);
             const ExactSelection e = exact_selection(p, max_nodes);
             return py::dict(py::arg("s") = e.s, py::arg("objective") = e.objective,
                             py::arg("exact") = e.exact, py::arg("upper") = e.upper,
@@ -298,6 +301,7 @@ void bind_partial_sharing(py::module_& m) {
       .def(
           "gamma_star",
           [](const Analysis& a, std::optional<double> fraction) {
+            if (fraction) require_range("fraction", *fraction, 0.0, 1.0);
             return gamma_star(a.setting, a.steady(), fraction.value_or(a.setting.shared_fraction()));
           },
           py::arg("fraction") = py::none(), "(22), advisory: false as printed, vacuous when 0 (notes 7, 8).")
@@ -313,6 +317,8 @@ void bind_partial_sharing(py::module_& m) {
       .def(
           "decrease_matrix",
           [](const Analysis& a, double gamma, std::int64_t phase) {
+            require_range("gamma", gamma, 0.0);
+            require_range("phase", static_cast<double>(phase), 0.0, a.setting.selection.period() - 1.0);
             return decrease_matrix(a.setting, a.steady(), gamma, phase);
           },
           py::arg("gamma"), py::arg("phase") = 0, "M(gamma) of note 7 at a phase, (N m, N m).")
@@ -320,6 +326,8 @@ void bind_partial_sharing(py::module_& m) {
           "worst",
           [](const Analysis& a, const std::vector<int>& byzantine, double energy,
              std::optional<std::int64_t> k) {
+            if (byzantine.empty()) refuse("byzantine", "none", "at least one agent");
+            if (k) require_range("k", static_cast<double>(*k), 0.0);
             const WorstCovariance w = k ? worst_one_step(a.setting, a.steady(), byzantine, energy, *k)
                                         : worst_steady(a.setting, a.steady(), byzantine, energy);
             return py::dict(py::arg("form") = w.form, py::arg("direction") = w.direction,

@@ -85,10 +85,24 @@ void bind_detection(py::module_& m) {
   m.def("level_of_false_alarm", &level_of_false_alarm, py::arg("rate"), "m with this false-alarm rate.");
   m.def("false_alarm_of_level", &false_alarm_of_level, py::arg("ratio"),
         "False-alarm rate at which a residual of `ratio` standard deviations is just an alarm.");
-  m.def("power", &power, py::arg("mean"), py::arg("std"), py::arg("threshold"),
-        "P(|N(mean, std^2)| >= threshold).");
+  m.def(
+      "power",
+      [](double mean, double std, double threshold) {
+        require_range("mean", mean, -kHuge, kHuge);
+        require_range("std", std, 0.0);
+        require_range("threshold", threshold, 0.0, kInfinity);
+        return power(mean, std, threshold);
+      },
+      py::arg("mean"), py::arg("std"), py::arg("threshold"), "P(|N(mean, std^2)| >= threshold).");
   m.def("chi_square_level", &chi_square_level, py::arg("degrees"), py::arg("rate"));
-  m.def("thresholds", &thresholds, py::arg("residual_std"), py::arg("m"));
+  m.def(
+      "thresholds",
+      [](const Vector& residual_std, double level) {
+        for (Eigen::Index i = 0; i < residual_std.size(); ++i)
+          require_range("residual_std[" + std::to_string(i) + "]", residual_std(i), 0.0);
+        return thresholds(residual_std, level);
+      },
+      py::arg("residual_std"), py::arg("m"), "m standard deviations of every residual.");
   m.def("thresholds_printed", &thresholds_printed, py::arg("setting"), py::arg("Q1"), py::arg("m"),
         "The paper's (17), for comparison only.");
   m.def("thresholds_root", &thresholds_root, py::arg("setting"), py::arg("Q1"), py::arg("m"));
@@ -122,10 +136,16 @@ void bind_detection(py::module_& m) {
       "Fit of every full window to the response to an attack on each agent.");
 }
 
+void require_sweeps(int most_sweeps, double tolerance) {
+  require_range("most_sweeps", most_sweeps, 1.0, 1e7);
+  require_range("tolerance", tolerance, 0.0, 1.0);
+}
+
 void bind_gains(py::module_& m) {
   m.def(
       "coupled_riccati",
       [](const Setting& s, int most_sweeps, double tolerance) {
+        require_sweeps(most_sweeps, tolerance);
         RiccatiGains g;
         {
           const py::gil_scoped_release no_gil;
@@ -139,6 +159,7 @@ void bind_gains(py::module_& m) {
   m.def(
       "joint_kalman",
       [](const Setting& s, int most_sweeps, double tolerance) {
+        require_sweeps(most_sweeps, tolerance);
         JointGains g;
         {
           const py::gil_scoped_release no_gil;

@@ -85,12 +85,21 @@ py::object from_picks(const Picks& p) {
 
 void bind_pattern(py::module_& s) {
   py::class_<Pattern>(s, "Pattern", "Zero pattern of a matrix: which entries are not zero. Immutable.")
-      .def(py::init(
-               [](int rows, int columns, const Edges& entries) { return Pattern(rows, columns, entries); }),
+      .def(py::init([](int rows, int columns, const Edges& entries) {
+             require_memory("rows x columns", std::to_string(rows) + " x " + std::to_string(columns),
+                            4.0 * (static_cast<double>(rows) + columns));
+             return Pattern(rows, columns, entries);
+           }),
            py::arg("rows"), py::arg("columns"), py::arg("entries"),
            "entries: (column, row) pairs; of a system matrix, (j, i) is the link j -> i.")
-      .def_static("of", &Pattern::of, py::arg("matrix"), py::arg("tolerance") = 0.0,
-                  "Entries with |value| > tolerance of a dense matrix.")
+      .def_static(
+          "of",
+          [](const MatrixRef& matrix, double tolerance) {
+            require_range("tolerance", tolerance, 0.0);
+            return Pattern::of(matrix, tolerance);
+          },
+          py::arg("matrix"), py::arg("tolerance") = 0.0,
+          "Entries with |value| > tolerance of a dense matrix.")
       .def_static(
           "csc",
           [](int rows, const Ints& indptr, const Ints& indices) {
@@ -267,6 +276,8 @@ void bind_networks(py::module_& s) {
   s.def(
       "cheapest_strong_subgraph",
       [](int agents, const Edges& edges, const std::vector<double>& weights, long long max_nodes) {
+        require_range("max_nodes", static_cast<double>(max_nodes), 1.0);
+        require_memory("agents", std::to_string(agents), 100.0 * agents);
         const auto found = cheapest_strong_subgraph(agents, edges, weights, max_nodes);
         return py::dict(py::arg("exists") = found.exists, py::arg("edges") = found.edges,
                         py::arg("cost") = found.cost, py::arg("lower_bound") = found.lower_bound,

@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <limits>
 #include <memory>
 
 #include "garrison/attacks/registry.hpp"
@@ -56,6 +57,16 @@ inline void require_same_size(const garrison::Model& model, const garrison::Netw
   if (model.agents() != network.agents())
     garrison::refuse("network", std::to_string(network.agents()) + " agents",
                      std::to_string(model.agents()) + ", because C has one matrix per agent");
+}
+
+/// Refuses a number outside of [least, most], nan included.
+inline void require_range(const std::string& which, double value, double least,
+                          double most = std::numeric_limits<double>::max()) {
+  if (value >= least && value <= most) return;
+  const bool bounded = most < std::numeric_limits<double>::max();
+  garrison::refuse(which, garrison::text(value),
+                   bounded ? "a number in [" + garrison::text(least) + ", " + garrison::text(most) + "]"
+                           : "a finite number >= " + garrison::text(least));
 }
 
 /// A C-ordered array that owns its numbers.

@@ -598,7 +598,7 @@ def one_step_sparse_observable(
     s: typing.SupportsInt | typing.SupportsIndex,
 ) -> bool:
     """
-    Any N - s rows of C span the state.
+    Any N - s rows of C span the state; s in 0..N.
     """
 
 def replay(

@@ -97,12 +97,12 @@ def best_threshold(setting: Setting) -> float:
 
 def beta1_bar(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (20)
+    (20); omega > 0.
     """
 
 def beta2_bar(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (20)
+    (20); omega > 0.
     """
 
 def beta_interval(setting: Setting) -> tuple:
@@ -117,12 +117,12 @@ def beta_interval_safe(setting: Setting) -> tuple:
 
 def f3(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (24)
+    (24); omega > 0.
     """
 
 def f4(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (24)
+    (24); omega > 0.
     """
 
 def gain(
@@ -186,7 +186,7 @@ def omega_interval(setting: Setting) -> tuple:
 
 def proposition2(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> bool:
     """
-    (23)
+    (23); omega > 0.
     """
 
 def runs(labels: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> tuple[list[list[int]], int]:

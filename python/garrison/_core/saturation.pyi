@@ -51,7 +51,7 @@ class Setting:
 
 def F(setting: Setting, rho: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    F of (8).
+    F of (8); rho finite and >= 0.
     """
 
 def best_threshold(setting: Setting, margin: typing.SupportsFloat | typing.SupportsIndex = 1e-06) -> dict:

@@ -216,7 +216,11 @@ def template_statistics(
 def thresholds(
     residual_std: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     m: typing.SupportsFloat | typing.SupportsIndex,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    m standard deviations of every residual.
+    """
+
 def thresholds_printed(
     setting: Setting, Q1: typing.SupportsFloat | typing.SupportsIndex, m: typing.SupportsFloat | typing.SupportsIndex
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:

@@ -90,8 +90,9 @@ Vector thresholds(const Vector& residual_std, double m) {
 
 namespace {
 void require_bound(double Q1) {
-  if (!std::isfinite(Q1))
-    refuse("bound", text(Q1), "a finite Q1", "the bound needs |Ahat|_2 < 1; the exact thresholds do not");
+  if (!(Q1 >= 0.0 && std::isfinite(Q1)))
+    refuse("bound", text(Q1), "a finite Q1 >= 0",
+           "the bound needs |Ahat|_2 < 1; the exact thresholds do not");
 }
 }  // namespace
 
