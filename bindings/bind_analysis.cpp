@@ -7,17 +7,22 @@
 #include "garrison/filters/saturation/design.hpp"
 #include "garrison/filters/saturation/theorems.hpp"
 #include "garrison/kernel/chebyshev.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 
 namespace {
 
 void bind_subsets(py::module_& m) {
-  py::class_<SubsetBound>(
+  py::class_<SubsetBound> bound(
       m, "SubsetBound",
       "Result of a search over the s removed sensors; the true value lies in [lower, upper].\n"
-      "Safe in theorems: lower of lambda0, upper of varpi and tau0.")
-      .def_readonly("lower", &SubsetBound::lower)
+      "Safe in theorems: lower of lambda0, upper of varpi and tau0.");
+  using B = SubsetBound;
+  keep_fields<B>(bound, KeptField{"lower", &B::lower}, KeptField{"upper", &B::upper},
+                 KeptField{"exact", &B::exact}, KeptField{"removed", &B::removed},
+                 KeptField{"nodes", &B::nodes}, KeptField{"method", &B::method});
+  bound.def_readonly("lower", &SubsetBound::lower)
       .def_readonly("upper", &SubsetBound::upper)
       .def_readonly("exact", &SubsetBound::exact, "The search finished.")
       .def_readonly("removed", &SubsetBound::removed, "Worst set found, sorted.")
@@ -61,15 +66,21 @@ void bind_subsets(py::module_& m) {
 
 void bind_setting(py::module_& s) {
   using namespace saturation;
-  py::class_<Setting>(s, "Setting",
-                      "What the theorems of the saturation filter need to know; see the C++ header.")
-      .def(py::init([](int agents, double a, double lambda0_value, double contraction, int attacked,
-                       double beta, double eta0, double b_w, double b_v, bool sharp) {
-             return Setting{agents, a, lambda0_value, contraction, attacked, beta, eta0, b_w, b_v, sharp};
-           }),
-           py::kw_only(), py::arg("agents"), py::arg("a"), py::arg("lambda0"), py::arg("contraction"),
-           py::arg("attacked"), py::arg("beta") = kNaN, py::arg("eta0") = kNaN, py::arg("b_w") = kNaN,
-           py::arg("b_v") = kNaN, py::arg("sharp") = false);
+  py::class_<Setting> setting(s, "Setting",
+                              "What the theorems of the saturation filter need to know; see the C++ header.");
+  setting.def(py::init([](int agents, double a, double lambda0_value, double contraction, int attacked,
+                          double beta, double eta0, double b_w, double b_v, bool sharp) {
+                return Setting{agents, a, lambda0_value, contraction, attacked, beta, eta0, b_w, b_v, sharp};
+              }),
+              py::kw_only(), py::arg("agents"), py::arg("a"), py::arg("lambda0"), py::arg("contraction"),
+              py::arg("attacked"), py::arg("beta") = kNaN, py::arg("eta0") = kNaN, py::arg("b_w") = kNaN,
+              py::arg("b_v") = kNaN, py::arg("sharp") = false);
+  keep_as_code<Setting>(setting, "garrison.saturation.Setting", [](const Setting& x) {
+    return py::dict(py::arg("agents") = x.agents, py::arg("a") = x.a, py::arg("lambda0") = x.lambda0,
+                    py::arg("contraction") = x.contraction, py::arg("attacked") = x.attacked,
+                    py::arg("beta") = x.beta, py::arg("eta0") = x.eta0, py::arg("b_w") = x.b_w,
+                    py::arg("b_v") = x.b_v, py::arg("sharp") = x.sharp);
+  });
   s.def(
       "constants",
       [](const Setting& x) {

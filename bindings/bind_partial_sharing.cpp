@@ -6,6 +6,7 @@
 #include "garrison/filters/partial_sharing/moments.hpp"
 #include "garrison/filters/partial_sharing/selection_attack.hpp"
 #include "garrison/filters/partial_sharing/stability.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::partial_sharing;
@@ -106,7 +107,8 @@ using Sigma = std::optional<Matrix>;
 using Agents = std::optional<std::vector<int>>;
 
 void bind_selection(py::module_& s) {
-  py::class_<Selection>(s, "Selection", "Which entries every agent shares, and when.")
+  py::class_<Selection> selection(s, "Selection", "Which entries every agent shares, and when.");
+  selection
       .def(py::init([](const Matrix& start, std::int64_t shift) { return Selection(start, shift); }),
            py::arg("start"), py::arg("shift"), "start: (N, m) of zeros and ones; shift: tau.")
       .def_property_readonly("period", &Selection::period, "Samples until all selections repeat.")
@@ -117,6 +119,9 @@ void bind_selection(py::module_& s) {
       .def("moments_cycle", &Selection::moments_cycle, "Time mean of s s' over one period, (N m, N m).")
       .def("moments_uniform", &Selection::moments_uniform,
            "E{s s'} over independent uniform subsets, (N m, N m).");
+  keep_as_code<Selection>(selection, "garrison.partial_sharing.Selection", [](const Selection& x) {
+    return py::dict(py::arg("start") = x.at(0), py::arg("shift") = x.shift());
+  });
 }
 
 void bind_design(py::module_& s) {
@@ -149,10 +154,14 @@ void bind_design(py::module_& s) {
       },
       py::arg("analysis"), py::arg("byzantine"), py::arg("energy"), py::arg("kind"), py::arg("start"),
       py::arg("stop"), "Use garrison.attacks.worst_covariance.");
-  py::class_<SelectionProblem>(
+  py::class_<SelectionProblem> problem(
       s, "SelectionProblem",
-      "max s'Gs over 0/1 vectors of `blocks` blocks with at most `most` ones each (31)-(36).")
-      .def(py::init<Matrix, int, int>(), py::arg("G"), py::arg("blocks"), py::arg("most"))
+      "max s'Gs over 0/1 vectors of `blocks` blocks with at most `most` ones each (31)-(36).");
+  keep_as_code<SelectionProblem>(
+      problem, "garrison.partial_sharing.SelectionProblem", [](const SelectionProblem& x) {
+        return py::dict(py::arg("G") = x.G, py::arg("blocks") = x.blocks, py::arg("most") = x.most);
+      });
+  problem.def(py::init<Matrix, int, int>(), py::arg("G"), py::arg("blocks"), py::arg("most"))
       .def("objective", &SelectionProblem::objective, py::arg("s"), "s'Gs, s (B m,).")
       .def(
           "ascent",

@@ -7,6 +7,7 @@
 #include "garrison/filters/platoon/partition.hpp"
 #include "garrison/filters/platoon/theorems.hpp"
 #include "garrison/filters/platoon/world.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::platoon;
@@ -16,10 +17,11 @@ namespace {
 py::tuple pair(const Interval& i) { return py::make_tuple(i.lo, i.hi); }
 
 void bind_setting(py::module_& p) {
-  py::class_<Setting>(
+  py::class_<Setting> setting(
       p, "Setting",
       "What Assumptions 1 and 2 and the observer's tuning say: N vehicles, range L, period T,\n"
-      "b attacked sensors, noise bounds eps and mu, initial error q, threshold beta.")
+      "b attacked sensors, noise bounds eps and mu, initial error q, threshold beta.");
+  setting
       .def(py::init([](int vehicles, int range, double period, int attacked, double eps, double mu, double q,
                        double varpi, double beta, bool adaptive) {
              const Setting s{vehicles, range, period, attacked, eps, mu, q, varpi, beta, adaptive};
@@ -35,6 +37,12 @@ void bind_setting(py::module_& p) {
       .def_property_readonly(
           "beta0", [](const Setting& s) { return beta0(s); }, "(20), with mubar")
       .def_property_readonly("k0", [](const Setting& s) { return k0(s); }, "(25)");
+  keep_as_code<Setting>(setting, "garrison.platoon.Setting", [](const Setting& s) {
+    return py::dict(py::arg("vehicles") = s.vehicles, py::arg("range") = s.range,
+                    py::arg("period") = s.period, py::arg("attacked") = s.attacked, py::arg("eps") = s.eps,
+                    py::arg("mu") = s.mu, py::arg("q") = s.q, py::arg("varpi") = s.varpi,
+                    py::arg("beta") = s.beta, py::arg("adaptive") = s.adaptive);
+  });
 }
 
 template <auto function>

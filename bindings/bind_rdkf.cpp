@@ -5,6 +5,7 @@
 #include "garrison/filters/rdkf/box_step.hpp"
 #include "garrison/filters/rdkf/fresh_step.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::rdkf;
@@ -76,8 +77,11 @@ py::dict all_constants(const Setting& s, const SteadyState& steady, double weigh
 void bind_rdkf(py::module_& m) {
   auto r =
       m.def_submodule("rdkf", "Covariances, constants and step of the resilient distributed Kalman filter.");
-  py::class_<SteadyState>(r, "SteadyState", "Solution of (5): one matrix per agent each.")
-      .def_readonly("P", &SteadyState::P, "(5), (n, n) per agent")
+  py::class_<SteadyState> solution(r, "SteadyState", "Solution of (5): one matrix per agent each.");
+  using S = SteadyState;
+  keep_fields<S>(solution, KeptField{"P", &S::P}, KeptField{"Pbar", &S::Pbar}, KeptField{"Q", &S::Q},
+                 KeptField{"sweeps", &S::sweeps}, KeptField{"change", &S::change});
+  solution.def_readonly("P", &SteadyState::P, "(5), (n, n) per agent")
       .def_readonly("Pbar", &SteadyState::Pbar, "(6)")
       .def_readonly("Q", &SteadyState::Q, "(1/d_i) sum of Pbar_j^-1 over the agent and its neighbours")
       .def_readonly("sweeps", &SteadyState::sweeps)

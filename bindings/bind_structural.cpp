@@ -4,6 +4,7 @@
 #include "garrison/filters/structural/detection.hpp"
 #include "garrison/filters/structural/filter.hpp"
 #include "garrison/filters/structural/gains.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::structural;
@@ -21,9 +22,11 @@ Stationary stationary_of(const Setting& s, const GainMatrices& K, int lags) {
 }
 
 void bind_setting(py::module_& m) {
-  py::class_<Setting>(m, "Setting",
-                      "Model, graphs and noise of the structural filter's analysis; see the C++ header.\n"
-                      "A (n, n), C (N, n), W and U (N, N), E (n, n), R (N, N).")
+  py::class_<Setting> setting(
+      m, "Setting",
+      "Model, graphs and noise of the structural filter's analysis; see the C++ header.\n"
+      "A (n, n), C (N, n), W and U (N, N), E (n, n), R (N, N).");
+  setting
       .def(py::init([](const Matrix& A, const Matrix& C, const Matrix& W, const Matrix& U,
                        const std::optional<Matrix>& E, const std::optional<Matrix>& R) {
              Setting s{A, C, W, U, E.value_or(Matrix()), R.value_or(Matrix())};
@@ -38,6 +41,12 @@ void bind_setting(py::module_& m) {
       .def_readonly("U", &Setting::U)
       .def_readonly("E", &Setting::E)
       .def_readonly("R", &Setting::R);
+  keep_as_code<Setting>(setting, "garrison.structural.Setting", [](const Setting& s) {
+    py::dict all(py::arg("A") = s.A, py::arg("C") = s.C, py::arg("W") = s.W, py::arg("U") = s.U);
+    if (s.E.size() != 0) all["E"] = s.E;
+    if (s.R.size() != 0) all["R"] = s.R;
+    return all;
+  });
   m.def(
       "setting",
       [](const FilterHandle& f, const Model& model, const Network& network) {

@@ -5,6 +5,7 @@
 #include "garrison/analysis/modes.hpp"
 #include "garrison/analysis/structure/strong_subgraph.hpp"
 #include "garrison/analysis/structure/substitution.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::structure;
@@ -83,8 +84,19 @@ py::object from_picks(const Picks& p) {
   return py::dict(py::arg("cost") = p.cost, py::arg("picks") = picks);
 }
 
+/// The arguments of its constructor.
+py::dict arguments(const Pattern& pattern) {
+  Edges entries;
+  for (int j = 0; j < pattern.columns(); ++j)
+    for (const int i : pattern.column(j)) entries.emplace_back(j, i);
+  return py::dict(py::arg("rows") = pattern.rows(), py::arg("columns") = pattern.columns(),
+                  py::arg("entries") = entries);
+}
+
 void bind_pattern(py::module_& s) {
-  py::class_<Pattern>(s, "Pattern", "Zero pattern of a matrix: which entries are not zero. Immutable.")
+  py::class_<Pattern> pattern(s, "Pattern",
+                              "Zero pattern of a matrix: which entries are not zero. Immutable.");
+  pattern
       .def(py::init([](int rows, int columns, const Edges& entries) {
              require_memory("rows x columns", std::to_string(rows) + " x " + std::to_string(columns),
                             4.0 * (static_cast<double>(rows) + columns));
@@ -112,6 +124,7 @@ void bind_pattern(py::module_& s) {
       .def_property_readonly("columns", &Pattern::columns)
       .def_property_readonly("entries", &Pattern::entries)
       .def("transposed", &Pattern::transposed);
+  keep_as_code<Pattern>(pattern, "garrison.structure.Pattern", &arguments);
   s.def(
       "maximum_matching",
       [](const Pattern& p) {
@@ -153,11 +166,13 @@ void bind_pattern(py::module_& s) {
 }
 
 void bind_system(py::module_& s) {
-  py::class_<System>(
+  py::class_<System> system(
       s, "System",
       "Structure of a system matrix, worked out once. `measured`: per agent the state that it\n"
-      "measures, a list of states, or None. States from 0; a pattern entry (j, i) is j -> i.")
-      .def(py::init<Pattern>(), py::arg("pattern"))
+      "measures, a list of states, or None. States from 0; a pattern entry (j, i) is j -> i.");
+  keep_as_code<System>(system, "garrison.structure.System",
+                       [](const System& x) { return py::dict(py::arg("pattern") = x.pattern()); });
+  system.def(py::init<Pattern>(), py::arg("pattern"))
       .def_property_readonly("states", &System::states)
       .def_property_readonly("structural_rank", [](const System& x) { return x.parts().structural_rank(); })
       .def_property_readonly(

@@ -33,3 +33,41 @@ void compare(Class& bound, const Same& same, const Hash& hash) {
       pybind11::arg("other"));
   bound.def("__hash__", [hash](const T& self) { return pybind11::hash(hash(self)); });
 }
+
+/// All of it for a class whose constructor takes `arguments(object)` by name; `maker` is what Python calls
+/// it.
+template <class T, class Class, class Arguments>
+void keep_as_code(Class& bound, const std::string& maker, Arguments arguments) {
+  const pybind11::handle type = bound;
+  keep(bound, arguments, [type](const pybind11::dict& given) { return type(**given).template cast<T>(); });
+  const auto code = [maker, arguments](const T& x) { return as_code(maker, arguments(x)); };
+  bound.def("__repr__", code);
+  compare<T>(
+      bound, [code](const T& a, const T& b) { return code(a) == code(b); },
+      [code](const T& x) { return pybind11::str(code(x)); });
+}
+
+template <class T, class M>
+struct KeptField {
+  const char* name;
+  M T::* member;
+};
+
+/// Results without a constructor: pickled by their fields, equal when these are.
+template <class T, class Class, class... M>
+void keep_fields(Class& bound, KeptField<T, M>... fields) {
+  const auto state = [fields...](const T& x) {
+    pybind11::dict all;
+    ((all[fields.name] = x.*(fields.member)), ...);
+    return all;
+  };
+  keep(bound, state, [fields...](const pybind11::dict& given) {
+    T x;
+    ((x.*(fields.member) = given[fields.name].template cast<M>()), ...);
+    return x;
+  });
+  const auto code = [state](const T& x) { return as_code("", state(x)); };
+  compare<T>(
+      bound, [code](const T& a, const T& b) { return code(a) == code(b); },
+      [code](const T& x) { return pybind11::str(code(x)); });
+}

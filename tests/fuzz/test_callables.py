@@ -104,6 +104,7 @@ def samples() -> dict[str, list[Any]]:
         ],
         "weights": [weights],
     }
+    found["FitOptions"] = [found["Identified"][0].options]
     found["Agent"] = [gr.Agent(f, model, network, 0) for f in filters if f.name in ("saturation", "rdkf", "structural")]
     found["Message"] = [a.sense([0.1]) for a in (copy_agent(f, model, network) for f in filters[:3])]
     return found

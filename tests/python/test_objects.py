@@ -156,6 +156,33 @@ def test_a_worst_attack_is_kept() -> None:
     assert again.gain == worst.gain
 
 
+def test_settings_and_results_are_kept() -> None:
+    model = gr.Model(0.9 * np.eye(2), rows(2, 3), process_covariance=0.1, measurement_covariance=0.2)
+    ring = gr.Network.ring(3)
+    pattern = gr.structure.Pattern(2, 3, [(0, 1), (2, 0)])
+    with_constructor = [
+        gr.saturation.Setting(agents=3, a=0.9, lambda0=1 / 3, contraction=0.1, attacked=1),
+        gr.platoon.Setting(vehicles=6, range=2, period=0.1, attacked=1, eps=0.1, mu=0.1, q=1.0, beta=2.0),
+        gr.structural.setting(gr.filters.Structural(), model, ring),
+        gr.structural.Setting(A=np.eye(2), C=np.eye(2), W=np.eye(2), U=np.eye(2)),
+        pattern,
+        gr.structure.System(gr.structure.Pattern.of(np.eye(3))),
+        gr.partial_sharing.Selection([[1, 0, 0], [0, 1, 1]], 2),
+        gr.partial_sharing.SelectionProblem(np.eye(4) / 3, 2, 1),
+    ]
+    for x in with_constructor:
+        keeps(x)
+    assert pattern != gr.structure.Pattern(2, 3, [(0, 1)])
+    results = [
+        gr.lambda0(np.eye(2), 0),
+        _core.rdkf.Setting(model, ring).steady_state(),
+        _core.identify(np.random.default_rng(0).normal(size=(900, 3)), 1, factors=1),
+    ]
+    for x in results:
+        assert pickle.loads(pickle.dumps(x)) == x == copy.deepcopy(x)
+        assert hash(copy.copy(x)) == hash(x)
+
+
 def test_numbers_that_are_not_ambiguous_are_accepted() -> None:
     broad = gr.Model(0.9 * np.eye(2), rows(2, 3), process_covariance=0.2, measurement_covariance=0.3)
     assert broad == gr.Model(
