@@ -291,6 +291,13 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: gr.structural.best_scalar_gain(0.9, np.zeros((0, 0))), r"W: got 0 x 0"),
     (lambda: gr.partial_sharing.Selection(np.zeros((0, 0)), 1), r"start: got 0 x 0"),
     (lambda: gr.partial_sharing.SelectionProblem(np.eye(4), 2, 1).objective([]), r"s: got 0 numbers"),
+    (lambda: gr.saturation.whiten(np.zeros((0, 0)), np.zeros((0, 0)), 1.0, []), r"A: got 0 rows"),
+    (
+        lambda: _core.identify(np.random.default_rng(0).normal(size=(900, 3)), 1, factors=1).reference_states(
+            np.eye(7)
+        ),
+        r"measured: got 7 x 7, expected samples x 3",
+    ),
     (lambda: gr.structural.chi_square_level(2**31 - 1, 0.01), r"degrees .*got 2147483647"),
     (lambda: gr.platoon.grounded_eigenvalues(2**31 - 1), r"vehicles .*GB"),
     (lambda: gr.SubsetBound(), r"SubsetBound: got a call, expected none"),
