@@ -7,17 +7,22 @@
 #include "garrison/filters/saturation/design.hpp"
 #include "garrison/filters/saturation/theorems.hpp"
 #include "garrison/kernel/chebyshev.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 
 namespace {
 
 void bind_subsets(py::module_& m) {
-  py::class_<SubsetBound>(
+  py::class_<SubsetBound> bound(
       m, "SubsetBound",
       "Result of a search over the s removed sensors; the true value lies in [lower, upper].\n"
-      "Safe in theorems: lower of lambda0, upper of varpi and tau0.")
-      .def_readonly("lower", &SubsetBound::lower)
+      "Safe in theorems: lower of lambda0, upper of varpi and tau0.");
+  using B = SubsetBound;
+  keep_fields<B>(bound, KeptField{"lower", &B::lower}, KeptField{"upper", &B::upper},
+                 KeptField{"exact", &B::exact}, KeptField{"removed", &B::removed},
+                 KeptField{"nodes", &B::nodes}, KeptField{"method", &B::method});
+  bound.def_readonly("lower", &SubsetBound::lower)
       .def_readonly("upper", &SubsetBound::upper)
       .def_readonly("exact", &SubsetBound::exact, "The search finished.")
       .def_readonly("removed", &SubsetBound::removed, "Worst set found, sorted.")
@@ -31,6 +36,8 @@ void bind_subsets(py::module_& m) {
   m.def(
       "lambda0",
       [](const MatrixRef& C, int s, std::int64_t max_nodes, double max_seconds) {
+        require_range("max_nodes", static_cast<double>(max_nodes), 1.0);
+        require_range("max_seconds", max_seconds, 0.0, kInfinity);
         return lambda0(C, s, {max_nodes, max_seconds});
       },
       py::arg("C"), py::arg("s"), py::arg("max_nodes") = limits.max_nodes,
@@ -48,21 +55,32 @@ void bind_subsets(py::module_& m) {
   m.def("observable", &observable, py::arg("A"), py::arg("C"), "(A, C) is observable, C (m, n).");
   m.def("s_sparse_observable", &s_sparse_observable, py::arg("A"), py::arg("C"), py::arg("s"),
         "(A, kept rows) is observable whichever s rows of C are lost.");
-  m.def("one_step_sparse_observable", &one_step_sparse_observable, py::arg("C"), py::arg("s"),
-        "Any N - s rows of C span the state.");
+  m.def(
+      "one_step_sparse_observable",
+      [](const MatrixRef& C, int s) {
+        require_range("s", s, 0.0, static_cast<double>(C.rows()));
+        return one_step_sparse_observable(C, s);
+      },
+      py::arg("C"), py::arg("s"), "Any N - s rows of C span the state; s in 0..N.");
 }
 
 void bind_setting(py::module_& s) {
   using namespace saturation;
-  py::class_<Setting>(s, "Setting",
-                      "What the theorems of the saturation filter need to know; see the C++ header.")
-      .def(py::init([](int agents, double a, double lambda0_value, double contraction, int attacked,
-                       double beta, double eta0, double b_w, double b_v, bool sharp) {
-             return Setting{agents, a, lambda0_value, contraction, attacked, beta, eta0, b_w, b_v, sharp};
-           }),
-           py::kw_only(), py::arg("agents"), py::arg("a"), py::arg("lambda0"), py::arg("contraction"),
-           py::arg("attacked"), py::arg("beta") = kNaN, py::arg("eta0") = kNaN, py::arg("b_w") = kNaN,
-           py::arg("b_v") = kNaN, py::arg("sharp") = false);
+  py::class_<Setting> setting(s, "Setting",
+                              "What the theorems of the saturation filter need to know; see the C++ header.");
+  setting.def(py::init([](int agents, double a, double lambda0_value, double contraction, int attacked,
+                          double beta, double eta0, double b_w, double b_v, bool sharp) {
+                return Setting{agents, a, lambda0_value, contraction, attacked, beta, eta0, b_w, b_v, sharp};
+              }),
+              py::kw_only(), py::arg("agents"), py::arg("a"), py::arg("lambda0"), py::arg("contraction"),
+              py::arg("attacked"), py::arg("beta") = kNaN, py::arg("eta0") = kNaN, py::arg("b_w") = kNaN,
+              py::arg("b_v") = kNaN, py::arg("sharp") = false);
+  keep_as_code<Setting>(setting, "garrison.saturation.Setting", [](const Setting& x) {
+    return py::dict(py::arg("agents") = x.agents, py::arg("a") = x.a, py::arg("lambda0") = x.lambda0,
+                    py::arg("contraction") = x.contraction, py::arg("attacked") = x.attacked,
+                    py::arg("beta") = x.beta, py::arg("eta0") = x.eta0, py::arg("b_w") = x.b_w,
+                    py::arg("b_v") = x.b_v, py::arg("sharp") = x.sharp);
+  });
   s.def(
       "constants",
       [](const Setting& x) {
@@ -71,9 +89,21 @@ void bind_setting(py::module_& s) {
                         py::arg("cond9_margin") = c.cond9_margin, py::arg("cond9") = c.cond9);
       },
       py::arg("setting"), "(8) and (9).");
-  s.def("rho_sequence", &rho_sequence, py::arg("setting"), py::arg("T"), "rho_0 .. rho_T of (7).");
+  s.def(
+      "rho_sequence",
+      [](const Setting& x, int T) {
+        require_memory("T", std::to_string(T), 8.0 * T);
+        return rho_sequence(x, T);
+      },
+      py::arg("setting"), py::arg("T"), "rho_0 .. rho_T of (7).");
   s.def("p_at", &p_at, py::arg("setting"), py::arg("t"), "p(t) of (10).");
-  s.def("F", &F, py::arg("setting"), py::arg("rho"), "F of (8).");
+  s.def(
+      "F",
+      [](const Setting& x, double rho) {
+        require_range("rho", rho, 0.0);
+        return F(x, rho);
+      },
+      py::arg("setting"), py::arg("rho"), "F of (8); rho finite and >= 0.");
   s.def(
       "fixed_points",
       [](const Setting& x) {
@@ -102,6 +132,8 @@ void bind_theorems(py::module_& s) {
   s.def(
       "theorem_bounds",
       [](const Setting& x, double varpi_value, int T) {
+        require_range("varpi", varpi_value, 0.0);
+        require_memory("T", std::to_string(T), 32.0 * T);
         const auto b = theorem_bounds(x, varpi_value, T);
         return py::dict(py::arg("cond9") = b.cond9, py::arg("thm1_item1") = b.thm1_item1,
                         py::arg("thm1_item2") = b.thm1_item2, py::arg("thm1_item3") = b.thm1_item3,
@@ -113,6 +145,7 @@ void bind_theorems(py::module_& s) {
   s.def(
       "theorem4",
       [](const Setting& x, int T) {
+        require_memory("T", std::to_string(T), 8.0 * T);
         py::list all;
         for (const auto& b : theorem4(x, T))
           all.append(py::dict(py::arg("T") = T, py::arg("d") = b.d, py::arg("rho_T") = b.rho_T,
@@ -124,6 +157,8 @@ void bind_theorems(py::module_& s) {
   s.def(
       "theorem5",
       [](const Setting& x, double tau0_value, double varpi_value) {
+        require_range("tau0", tau0_value, 0.0);
+        require_range("varpi", varpi_value, 0.0);
         const auto g = theorem5(x, tau0_value, varpi_value);
         Matrix G(2, 2);
         G << g.g11, g.g12, g.g21, g.g22;
@@ -190,8 +225,19 @@ void bind_coordinates(py::module_& s) {
 
 void bind_analysis(py::module_& m) {
   bind_subsets(m);
-  m.def("chebyshev_contraction", &chebyshev_contraction, py::arg("gamma"), py::arg("rounds"),
-        "What `rounds` Chebyshev-filtered rounds leave of a disagreement.");
+  m.def(
+      "chebyshev_contraction",
+      [](double gamma, int rounds) {
+        constexpr int most = 1'000'000;  // as many as a filter takes
+        if (!(gamma >= 0.0 && gamma <= 1.0)) refuse("gamma", text(gamma), "a number in [0, 1]");
+        if (rounds < 0 || rounds > most)
+          refuse("rounds", std::to_string(rounds), "0.." + std::to_string(most));
+        return chebyshev_contraction(gamma, rounds);
+      },
+      py::arg("gamma"), py::arg("rounds"),
+      "What `rounds` Chebyshev-filtered rounds (0..1e6) leave of a disagreement that one plain round shrinks "
+      "to\n"
+      "`gamma`, in [0, 1].");
   auto s = m.def_submodule("saturation", "Theorems, conditions and design of the saturation filter.");
   bind_setting(s);
   bind_theorems(s);

@@ -3,14 +3,8 @@
 #include <tuple>
 
 #include "bindings.hpp"
-#include "garrison/filters/lfre.hpp"
-#include "garrison/filters/partial_sharing/filter.hpp"
-#include "garrison/filters/platoon/baseline.hpp"
-#include "garrison/filters/platoon/filter.hpp"
-#include "garrison/filters/rdkf/filter.hpp"
-#include "garrison/filters/saturation/filter.hpp"
-#include "garrison/filters/scalar_gain.hpp"
-#include "garrison/filters/structural/filter.hpp"
+#include "garrison/filters/families.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 
@@ -35,18 +29,24 @@ std::string class_doc() {
 template <class F>
 struct HandleOf : FilterHandle {};
 
+template <class F>
+HandleOf<F> handle(const ParamMap& params) {
+  HandleOf<F> made;
+  made.filter = make_filter(std::string(F::name), params);
+  return made;
+}
+
 template <class F, class... P, class... T, std::size_t... I>
-void bind_filter(py::module_& m, const char* name, [[maybe_unused]] const std::tuple<Field<P, T>...>& fields,
+void bind_filter(py::module_& m, [[maybe_unused]] const std::tuple<Field<P, T>...>& fields,
                  std::index_sequence<I...>) {
+  const static std::string name = class_name(F::name);
   const static std::string doc = class_doc<F>();
-  py::class_<HandleOf<F>, FilterHandle> bound(m, name, doc.c_str());
+  py::class_<HandleOf<F>, FilterHandle> bound(m, name.c_str(), doc.c_str());
   const auto make = [](T... given) {
     typename F::Params p;
     [[maybe_unused]] const auto all = F::Params::fields();
     ((p.*(std::get<I>(all).member) = std::move(given)), ...);
-    HandleOf<F> handle;
-    handle.filter = make_filter(std::string(F::name), values(p));
-    return handle;
+    return handle<F>(values(p));
   };
   if constexpr (sizeof...(T) == 0)
     bound.def(py::init(make));
@@ -54,20 +54,41 @@ void bind_filter(py::module_& m, const char* name, [[maybe_unused]] const std::t
     bound.def(py::init(make), py::kw_only(),
               (py::arg(std::get<I>(fields).info.name.c_str()) =
                    typename F::Params{}.*(std::get<I>(fields).member))...);
+  keep(
+      bound, [](const HandleOf<F>& f) { return from_params(f.filter->params()); },
+      [](const py::dict& params) { return handle<F>(to_params(std::string(F::name), params)); });
 }
 
 template <class F>
-void bind_family(py::module_& m, const char* name) {
+void bind_family(py::module_& m) {
   static const auto fields = F::Params::fields();
-  bind_filter<F>(m, name, fields,
-                 std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(fields)>>>());
+  bind_filter<F>(m, fields, std::make_index_sequence<std::tuple_size_v<std::decay_t<decltype(fields)>>>());
+}
+
+/// A filter as an object of its family's class.
+std::unique_ptr<FilterHandle> named_filter(const std::string& name, const py::dict& params) {
+  std::unique_ptr<FilterHandle> made;
+  Families::each([&]<class F> {
+    if (name == F::name) made = std::make_unique<HandleOf<F>>(handle<F>(to_params(name, params)));
+  });
+  if (!made) make_filter(name, {});  // refuses, with the nearest name
+  return made;
+}
+
+std::string code(const FilterHandle& f) {
+  const std::string name = f.filter->name();
+  for (const FamilyInfo& family : families())
+    if (family.name == name)
+      return as_code("garrison.filters." + class_name(name),
+                     changed_params(f.filter->params(), family.params));
+  return name;
 }
 
 }  // namespace
 
 void bind_filters(py::module_& m) {
-  py::class_<FilterHandle>(m, "Filter", "A filter family with its parameters.")
-      .def_property_readonly("name", [](const FilterHandle& f) { return f.filter->name(); })
+  py::class_<FilterHandle> filter(m, "Filter", "A filter family with its parameters. Immutable.");
+  filter.def_property_readonly("name", [](const FilterHandle& f) { return f.filter->name(); })
       .def_property_readonly("params", [](const FilterHandle& f) { return from_params(f.filter->params()); })
       .def_property_readonly(
           "signal_names", [](const FilterHandle& f) { return f.filter->signal_names(); },
@@ -75,32 +96,22 @@ void bind_filters(py::module_& m) {
       .def_property_readonly(
           "detail_names", [](const FilterHandle& f) { return f.filter->detail_names(); },
           "Names of the lists (sets, gains) that a run can keep.")
-      .def("__repr__", [](const FilterHandle& f) {
-        return f.filter->name() + py::repr(from_params(f.filter->params())).cast<std::string>();
-      });
-  bind_family<Saturation>(m, "Saturation");
-  bind_family<ScalarGain>(m, "ScalarGain");
-  bind_family<Lfre>(m, "Lfre");
-  bind_family<Rdkf>(m, "Rdkf");
-  bind_family<Dkf>(m, "Dkf");
-  bind_family<Structural>(m, "Structural");
-  bind_family<PartialSharing>(m, "PartialSharing");
-  bind_family<Platoon>(m, "Platoon");
-  bind_family<PlatoonBaseline>(m, "PlatoonBaseline");
+      .def("__repr__", &code);
+  compare<FilterHandle>(
+      filter, [](const FilterHandle& a, const FilterHandle& b) { return code(a) == code(b); },
+      [](const FilterHandle& f) { return py::str(code(f)); });
+  auto classes = m.def_submodule("filters", "One class per filter family.");
+  Families::each([&]<class F> { bind_family<F>(classes); });
 
   m.def(
       "lfre_parents",
       [](const FilterHandle& f, const Model& model, const Network& network) {
-        return Lfre::design(parse_params<Lfre::Params>("lfre", f.filter->params()), model, network).parents;
+        require_same_size(model, network);
+        return Lfre::design(params_of<Lfre>(f), model, network).parents;
       },
       py::arg("filter"), py::arg("model"), py::arg("network"), "Parents of every agent in an Lfre filter.");
-  m.def(
-      "make_filter",
-      [](const std::string& name, const py::dict& params) {
-        return FilterHandle{make_filter(name, to_params(params))};
-      },
-      py::arg("name"), py::arg("params"),
-      "The filter `name`; unknown names are refused with the nearest one.");
+  m.def("make_filter", &named_filter, py::arg("name"), py::arg("params") = py::dict(),
+        "The filter `name`; unknown names are refused with the nearest one.");
   m.def(
       "filter_infos",
       [] {

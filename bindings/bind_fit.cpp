@@ -3,12 +3,38 @@
 #include "bindings.hpp"
 #include "garrison/analysis/identify.hpp"
 #include "garrison/filters/central_kalman.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 
 void bind_fit(py::module_& m) {
   const FitOptions standard;
-  py::class_<Identified>(m, "Identified", "A model identified from clean records; use garrison.fit.")
+  py::class_<FitOptions> options(m, "FitOptions", "What a model was identified with; see garrison.fit.");
+  using O = FitOptions;
+  keep_fields<O>(options, KeptField{"factors", &O::factors}, KeptField{"harmonics", &O::harmonics},
+                 KeptField{"period", &O::period}, KeptField{"root", &O::root},
+                 KeptField{"factor", &O::factor});
+  options.def_readonly("factors", &O::factors)
+      .def_readonly("harmonics", &O::harmonics)
+      .def_readonly("period", &O::period, "samples")
+      .def_readonly("root", &O::root)
+      .def_readonly("factor", &O::factor)
+      .def("__repr__", [](const O& o) {
+        return as_code(
+            "FitOptions",
+            py::dict(py::arg("factors") = o.factors, py::arg("harmonics") = o.harmonics,
+                     py::arg("period") = o.period, py::arg("root") = o.root, py::arg("factor") = o.factor));
+      });
+  py::class_<Identified> identified(m, "Identified",
+                                    "A model identified from clean records; use garrison.fit.");
+  using I = Identified;
+  keep_fields<I>(identified, KeptField{"options", &I::options}, KeptField{"season", &I::season},
+                 KeptField{"scale", &I::scale}, KeptField{"A", &I::A}, KeptField{"C", &I::C},
+                 KeptField{"share", &I::share}, KeptField{"process_covariance", &I::process_covariance},
+                 KeptField{"measurement_variance", &I::measurement_variance},
+                 KeptField{"process_bound", &I::process_bound},
+                 KeptField{"measurement_bound", &I::measurement_bound});
+  identified.def_readonly("options", &I::options)
       .def_readonly("season", &Identified::season, "(1 + 2 harmonics, N)")
       .def_readonly("scale", &Identified::scale, "(N,): anomaly / scale = measurement")
       .def_readonly("A", &Identified::A, "(n, n)")
@@ -31,7 +57,12 @@ void bind_fit(py::module_& m) {
   m.def(
       "identify",
       [](const MatrixRef& raw, std::int64_t first, int factors, int harmonics, double period, bool root,
-         double factor) { return identify(raw, first, {factors, harmonics, period, root, factor}); },
+         double factor) {
+        require_range("fit.harmonics", harmonics, 0.0,
+                      std::max(0.0, 0.5 * static_cast<double>(raw.rows()) - 1.0));
+        require_range("fit.period", period, std::numeric_limits<double>::min());
+        return identify(raw, first, {factors, harmonics, period, root, factor});
+      },
       py::arg("raw"), py::arg("first"), py::kw_only(), py::arg("factors") = standard.factors,
       py::arg("harmonics") = standard.harmonics, py::arg("period") = standard.period,
       py::arg("root") = standard.root, py::arg("factor") = standard.factor,
@@ -39,6 +70,7 @@ void bind_fit(py::module_& m) {
   m.def(
       "central_kalman",
       [](const Model& model, const MatrixRef& y, const VectorRef& x0, double start_variance) {
+        require_range("start_variance", start_variance, 0.0);
         return central_kalman(model, y, x0, start_variance);
       },
       py::arg("model"), py::arg("measurements"), py::arg("x0"), py::arg("start_variance"),

@@ -6,32 +6,32 @@
 #include "garrison/filters/partial_sharing/moments.hpp"
 #include "garrison/filters/partial_sharing/selection_attack.hpp"
 #include "garrison/filters/partial_sharing/stability.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::partial_sharing;
 
 namespace {
 
-const Network& same_size(const Model& model, const Network& network) {
-  if (model.agents() != network.agents())
-    refuse("network", std::to_string(network.agents()) + " agents",
-           std::to_string(model.agents()) + ", because C has one matrix per agent");
-  return network;
+void require_steps(const char* which, int steps) {
+  constexpr int most = 1'000'000;  // minutes of matrix products; the steady states are there for the limit
+  if (steps < 0 || steps > most) refuse(which, std::to_string(steps), "0.." + std::to_string(most));
 }
 
 /// A setting with its steady gains, which are computed when first needed.
 class Analysis {
  public:
   Analysis(const FilterHandle& f, const Model& model, const Network& network)
-      : setting(make_setting(
-            parse_params<PartialSharing::Params>(std::string(PartialSharing::name), f.filter->params()),
-            model, same_size(model, network))) {}
+      : setting(make_setting(params_of<PartialSharing>(f), model,
+                             (require_same_size(model, network), network))) {}
   const std::vector<LocalGains>& steady() const {
     if (gains_.empty()) gains_ = steady_gains(setting);
     return gains_;
   }
   /// Checked attack covariance; empty for None.
   Matrix attack(const std::optional<Matrix>& Sigma, const std::optional<std::vector<int>>& byzantine) const {
+    for (const int agent : byzantine.value_or(std::vector<int>()))
+      require_range("byzantine", agent, 0.0, setting.agents() - 1.0);
     if (!Sigma) return {};
     std::vector<int> everybody;
     for (int i = 0; i < setting.agents(); ++i) everybody.push_back(i);
@@ -74,11 +74,41 @@ struct WorstAttack : AnyAttack {
   WorstCovariance worst;
 };
 
+WorstAttack worst_attack(Schedule schedule, WorstCovariance worst) {
+  const Matrix rows = worst.covariance.transpose();  // an attack takes its matrix row by row
+  WorstAttack w;
+  static_cast<AnyAttack&>(w) =
+      make_attack("coordinated", std::move(schedule),
+                  {{"covariance", std::vector<double>(rows.data(), rows.data() + rows.size())}});
+  w.worst = std::move(worst);
+  return w;
+}
+
+py::dict state_of(const WorstAttack& w) {
+  const Schedule& schedule = w.schedule();
+  return py::dict(py::arg("start") = schedule.first(), py::arg("agents") = schedule.everyone(),
+                  py::arg("stop") = schedule.stop(), py::arg("covariance") = w.worst.covariance,
+                  py::arg("form") = w.worst.form, py::arg("direction") = w.worst.direction,
+                  py::arg("gain") = w.worst.gain);
+}
+
+WorstAttack worst_from(const py::dict& state) {
+  WorstCovariance worst;
+  worst.byzantine = state["agents"].cast<std::vector<int>>();
+  worst.covariance = state["covariance"].cast<Matrix>();
+  worst.form = state["form"].cast<Matrix>();
+  worst.direction = state["direction"].cast<Vector>();
+  worst.gain = state["gain"].cast<double>();
+  Schedule schedule(state["start"].cast<std::int64_t>(), worst.byzantine, state["stop"].cast<std::int64_t>());
+  return worst_attack(std::move(schedule), std::move(worst));
+}
+
 using Sigma = std::optional<Matrix>;
 using Agents = std::optional<std::vector<int>>;
 
 void bind_selection(py::module_& s) {
-  py::class_<Selection>(s, "Selection", "Which entries every agent shares, and when.")
+  py::class_<Selection> selection(s, "Selection", "Which entries every agent shares, and when.");
+  selection
       .def(py::init([](const Matrix& start, std::int64_t shift) { return Selection(start, shift); }),
            py::arg("start"), py::arg("shift"), "start: (N, m) of zeros and ones; shift: tau.")
       .def_property_readonly("period", &Selection::period, "Samples until all selections repeat.")
@@ -89,6 +119,9 @@ void bind_selection(py::module_& s) {
       .def("moments_cycle", &Selection::moments_cycle, "Time mean of s s' over one period, (N m, N m).")
       .def("moments_uniform", &Selection::moments_uniform,
            "E{s s'} over independent uniform subsets, (N m, N m).");
+  keep_as_code<Selection>(selection, "garrison.partial_sharing.Selection", [](const Selection& x) {
+    return py::dict(py::arg("start") = x.at(0), py::arg("shift") = x.shift());
+  });
 }
 
 void bind_design(py::module_& s) {
@@ -105,7 +138,8 @@ void bind_design(py::module_& s) {
           "Unit top eigenvector of the form, largest entry positive.")
       .def_property_readonly(
           "gain", [](const WorstAttack& w) { return w.worst.gain; },
-          "What it adds to the NMSE: in the mean of a cycle (steady), or in one step.");
+          "What it adds to the NMSE: in the mean of a cycle (steady), or in one step.")
+      .def(py::pickle(&state_of, &worst_from));
   s.def(
       "worst_covariance",
       [](const Analysis& a, const std::vector<int>& byzantine, double energy, const std::string& kind,
@@ -113,20 +147,21 @@ void bind_design(py::module_& s) {
         if (kind != "steady" && kind != "one_step")
           refuse("kind", "\"" + kind + "\"", "one of: steady, one_step");
         if (byzantine.empty()) refuse("agents", "none", "at least one Byzantine agent");
-        WorstAttack w;
-        w.name = "coordinated";
-        w.worst = kind == "steady" ? worst_steady(a.setting, a.steady(), byzantine, energy)
-                                   : worst_one_step(a.setting, a.steady(), byzantine, energy, start - 1);
-        w.message =
-            coordinated(Schedule(start, byzantine, stop.value_or(Schedule::kForever)), w.worst.covariance);
-        return w;
+        const WorstCovariance worst =
+            kind == "steady" ? worst_steady(a.setting, a.steady(), byzantine, energy)
+                             : worst_one_step(a.setting, a.steady(), byzantine, energy, start - 1);
+        return worst_attack(Schedule(start, byzantine, stop.value_or(Schedule::kForever)), worst);
       },
       py::arg("analysis"), py::arg("byzantine"), py::arg("energy"), py::arg("kind"), py::arg("start"),
       py::arg("stop"), "Use garrison.attacks.worst_covariance.");
-  py::class_<SelectionProblem>(
+  py::class_<SelectionProblem> problem(
       s, "SelectionProblem",
-      "max s'Gs over 0/1 vectors of `blocks` blocks with at most `most` ones each (31)-(36).")
-      .def(py::init<Matrix, int, int>(), py::arg("G"), py::arg("blocks"), py::arg("most"))
+      "max s'Gs over 0/1 vectors of `blocks` blocks with at most `most` ones each (31)-(36).");
+  keep_as_code<SelectionProblem>(
+      problem, "garrison.partial_sharing.SelectionProblem", [](const SelectionProblem& x) {
+        return py::dict(py::arg("G") = x.G, py::arg("blocks") = x.blocks, py::arg("most") = x.most);
+      });
+  problem.def(py::init<Matrix, int, int>(), py::arg("G"), py::arg("blocks"), py::arg("most"))
       .def("objective", &SelectionProblem::objective, py::arg("s"), "s'Gs, s (B m,).")
       .def(
           "ascent",
@@ -151,6 +186,7 @@ void bind_design(py::module_& s) {
       .def(
           "exact",
           [](const SelectionProblem& p, std::int64_t max_nodes) {
+            require_range("max_nodes", static_cast<double>(max_nodes), 1.0);
             const ExactSelection e = exact_selection(p, max_nodes);
             return py::dict(py::arg("s") = e.s, py::arg("objective") = e.objective,
                             py::arg("exact") = e.exact, py::arg("upper") = e.upper,
@@ -187,6 +223,7 @@ void bind_partial_sharing(py::module_& m) {
       .def(
           "gains",
           [](const Analysis& a, int k) {
+            require_steps("k", k);
             std::vector<LocalGains> all;
             for (int i = 0; i < a.setting.agents(); ++i) {
               LocalRecursion recursion(a.setting, i);
@@ -200,6 +237,7 @@ void bind_partial_sharing(py::module_& m) {
           "error_covariance",
           [](const Analysis& a, int steps, const Sigma& S, std::int64_t k0, const Agents& b, bool common,
              bool iid) {
+            require_steps("steps", steps);
             const Matrix attack = a.attack(S, b);
             return trajectory_dict(iid ? error_covariance_iid(a.setting, steps, attack, k0, common)
                                        : error_covariance(a.setting, steps, attack, k0, common));
@@ -244,6 +282,7 @@ void bind_partial_sharing(py::module_& m) {
       .def(
           "recursion8",
           [](const Analysis& a, const Sigma& S, std::int64_t k0, int steps) {
+            require_steps("steps", steps);
             const auto all = recursion8(a.setting, a.steady(), a.attack(S, std::nullopt), k0, steps);
             return Vector(Eigen::Map<const Vector>(all.data(), static_cast<Eigen::Index>(all.size())));
           },
@@ -253,6 +292,7 @@ void bind_partial_sharing(py::module_& m) {
           "full_solution",
           [](const Analysis& a, int steps, const Matrix& start, const Matrix& y, const Matrix& delta,
              const Sigma& S, std::int64_t k0, bool common) {
+            require_steps("steps", steps);
             const FullSolution f =
                 full_solution(a.setting, steps, start, y, delta, a.attack(S, std::nullopt), k0, common);
             return py::dict(py::arg("estimate") = f.estimate, py::arg("trace") = f.trace, py::arg("K") = f.K,
@@ -270,6 +310,7 @@ void bind_partial_sharing(py::module_& m) {
       .def(
           "gamma_star",
           [](const Analysis& a, std::optional<double> fraction) {
+            if (fraction) require_range("fraction", *fraction, 0.0, 1.0);
             return gamma_star(a.setting, a.steady(), fraction.value_or(a.setting.shared_fraction()));
           },
           py::arg("fraction") = py::none(), "(22), advisory: false as printed, vacuous when 0 (notes 7, 8).")
@@ -285,6 +326,8 @@ void bind_partial_sharing(py::module_& m) {
       .def(
           "decrease_matrix",
           [](const Analysis& a, double gamma, std::int64_t phase) {
+            require_range("gamma", gamma, 0.0);
+            require_range("phase", static_cast<double>(phase), 0.0, a.setting.selection.period() - 1.0);
             return decrease_matrix(a.setting, a.steady(), gamma, phase);
           },
           py::arg("gamma"), py::arg("phase") = 0, "M(gamma) of note 7 at a phase, (N m, N m).")
@@ -292,6 +335,8 @@ void bind_partial_sharing(py::module_& m) {
           "worst",
           [](const Analysis& a, const std::vector<int>& byzantine, double energy,
              std::optional<std::int64_t> k) {
+            if (byzantine.empty()) refuse("byzantine", "none", "at least one agent");
+            if (k) require_range("k", static_cast<double>(*k), 0.0);
             const WorstCovariance w = k ? worst_one_step(a.setting, a.steady(), byzantine, energy, *k)
                                         : worst_steady(a.setting, a.steady(), byzantine, energy);
             return py::dict(py::arg("form") = w.form, py::arg("direction") = w.direction,

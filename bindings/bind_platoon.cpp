@@ -7,6 +7,7 @@
 #include "garrison/filters/platoon/partition.hpp"
 #include "garrison/filters/platoon/theorems.hpp"
 #include "garrison/filters/platoon/world.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::platoon;
@@ -16,10 +17,11 @@ namespace {
 py::tuple pair(const Interval& i) { return py::make_tuple(i.lo, i.hi); }
 
 void bind_setting(py::module_& p) {
-  py::class_<Setting>(
+  py::class_<Setting> setting(
       p, "Setting",
       "What Assumptions 1 and 2 and the observer's tuning say: N vehicles, range L, period T,\n"
-      "b attacked sensors, noise bounds eps and mu, initial error q, threshold beta.")
+      "b attacked sensors, noise bounds eps and mu, initial error q, threshold beta.");
+  setting
       .def(py::init([](int vehicles, int range, double period, int attacked, double eps, double mu, double q,
                        double varpi, double beta, bool adaptive) {
              const Setting s{vehicles, range, period, attacked, eps, mu, q, varpi, beta, adaptive};
@@ -35,14 +37,39 @@ void bind_setting(py::module_& p) {
       .def_property_readonly(
           "beta0", [](const Setting& s) { return beta0(s); }, "(20), with mubar")
       .def_property_readonly("k0", [](const Setting& s) { return k0(s); }, "(25)");
+  keep_as_code<Setting>(setting, "garrison.platoon.Setting", [](const Setting& s) {
+    return py::dict(py::arg("vehicles") = s.vehicles, py::arg("range") = s.range,
+                    py::arg("period") = s.period, py::arg("attacked") = s.attacked, py::arg("eps") = s.eps,
+                    py::arg("mu") = s.mu, py::arg("q") = s.q, py::arg("varpi") = s.varpi,
+                    py::arg("beta") = s.beta, py::arg("adaptive") = s.adaptive);
+  });
+}
+
+template <auto function>
+void bind_of_omega(py::module_& p, const char* name, const char* doc) {
+  p.def(
+      name,
+      [](const Setting& s, double omega) {
+        require_range("omega", omega, std::numeric_limits<double>::min());
+        return function(s, omega);
+      },
+      py::arg("setting"), py::arg("omega"), doc);
+}
+
+/// What theorems 1 and 2 know of a vehicle: counts of sensors, and the distance to the next vehicle of V_1.
+Known known(const Setting& s, int free_in_reach, int proved, int distance) {
+  require_range("free_in_reach", free_in_reach, 0.0, 2.0 * s.range);
+  require_range("proved", proved, 0.0, s.attacked);
+  require_range("distance", distance, 1.0, s.vehicles);
+  return {free_in_reach, proved, distance};
 }
 
 void bind_theorems(py::module_& p) {
-  p.def("beta1_bar", &beta1_bar, py::arg("setting"), py::arg("omega"), "(20)");
-  p.def("beta2_bar", &beta2_bar, py::arg("setting"), py::arg("omega"), "(20)");
-  p.def("proposition2", &proposition2, py::arg("setting"), py::arg("omega"), "(23)");
-  p.def("f3", &f3, py::arg("setting"), py::arg("omega"), "(24)");
-  p.def("f4", &f4, py::arg("setting"), py::arg("omega"), "(24)");
+  bind_of_omega<&beta1_bar>(p, "beta1_bar", "(20); omega > 0.");
+  bind_of_omega<&beta2_bar>(p, "beta2_bar", "(20); omega > 0.");
+  bind_of_omega<&proposition2>(p, "proposition2", "(23); omega > 0.");
+  bind_of_omega<&f3>(p, "f3", "(24); omega > 0.");
+  bind_of_omega<&f4>(p, "f4", "(24); omega > 0.");
   p.def(
       "omega_interval", [](const Setting& s) { return pair(omega_interval(s)); }, py::arg("setting"),
       "All omega with 0 < beta1_bar < beta2_bar; (nan, nan) when there is none.");
@@ -59,7 +86,7 @@ void bind_theorems(py::module_& p) {
   p.def(
       "theorem1",
       [](const Setting& s, int free_in_reach, int proved, int distance) {
-        const auto b = theorem1(s, {free_in_reach, proved, distance});
+        const auto b = theorem1(s, known(s, free_in_reach, proved, distance));
         return py::dict(py::arg("k_star") = b.k_star, py::arg("Q") = b.Q, py::arg("m") = b.m,
                         py::arg("alpha1") = b.alpha1, py::arg("alpha2") = b.alpha2,
                         py::arg("alpha3") = b.alpha3);
@@ -69,7 +96,7 @@ void bind_theorems(py::module_& p) {
   p.def(
       "theorem2",
       [](const Setting& s, int free_in_reach, int proved, int distance) {
-        const auto b = theorem2(s, {free_in_reach, proved, distance});
+        const auto b = theorem2(s, known(s, free_in_reach, proved, distance));
         return py::dict(py::arg("k0") = b.k0, py::arg("h1") = b.h1, py::arg("h2") = b.h2,
                         py::arg("alpha1") = b.alpha1, py::arg("alpha2") = b.alpha2,
                         py::arg("alpha3") = b.alpha3);
@@ -102,8 +129,20 @@ void bind_loop(py::module_& p) {
       "Limsup of (4): as printed, with the corrected (31), and with the sharper factor.");
 }
 
+void require_vehicle(int vehicle, int vehicles) {
+  require_range("vehicles", vehicles, 1.0);
+  require_range("vehicle", vehicle, 0.0, vehicles - 1.0);
+}
+
 void bind_pieces(py::module_& p) {
-  p.def("in_V1", &in_V1, py::arg("vehicle"), py::arg("vehicles"), py::arg("range"), "(5): hears 2L others.");
+  p.def(
+      "in_V1",
+      [](int vehicle, int vehicles, int range) {
+        require_vehicle(vehicle, vehicles);
+        require_range("range", range, 1.0);
+        return in_V1(vehicle, vehicles, range);
+      },
+      py::arg("vehicle"), py::arg("vehicles"), py::arg("range"), "(5): hears 2L others.");
   p.def("nearest", &nearest, py::arg("vehicle"), py::arg("vehicles"),
         "(30): the next ones; -1 stands for the reference, on both sides.");
   p.def(
@@ -116,6 +155,9 @@ void bind_pieces(py::module_& p) {
   p.def(
       "gain",
       [](double beta, double eta_s, double eta_v, bool attacked, bool free) {
+        require_range("beta", beta, std::numeric_limits<double>::min(), kInfinity);
+        require_range("eta_s", std::abs(eta_s), 0.0);
+        require_range("eta_v", std::abs(eta_v), 0.0);
         return gain(beta, std::hypot(eta_s, eta_v), attacked, free);
       },
       py::arg("beta"), py::arg("eta_s"), py::arg("eta_v"), py::kw_only(), py::arg("attacked") = false,
@@ -124,6 +166,9 @@ void bind_pieces(py::module_& p) {
       "best_source",
       [](int vehicle, int vehicles, int range, const std::vector<int>& free, bool by_bound,
          const std::vector<double>& alpha) {
+        require_vehicle(vehicle, vehicles);
+        require_range("range", range, 1.0);
+        for (const int id : free) require_range("free", id, 0.0, vehicles - 1.0);
         if (alpha.size() != static_cast<std::size_t>(vehicles))
           refuse("alpha", std::to_string(alpha.size()) + " numbers", "one per vehicle");
         BestSource best(by_bound);

@@ -5,6 +5,7 @@
 #include "garrison/filters/rdkf/box_step.hpp"
 #include "garrison/filters/rdkf/fresh_step.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::rdkf;
@@ -30,7 +31,8 @@ py::dict one_step(const MatrixRef& Q, const MatrixRef& M, const VectorRef& b, co
                " x " + std::to_string(M.cols()) + ", b " + std::to_string(b.size()) + ", x0 " +
                std::to_string(x0.size()),
            "Q n x n, M q x n, b q, x0 n");
-  if (!(weight >= 0.0)) refuse("weight (lambda, lam)", text(weight), "a number >= 0");
+  require_range("weight (lambda)", weight, 0.0, kInfinity);
+  require_range("smoothing", smoothing, 0.0);
   if (!Q.allFinite() || !M.allFinite() || !b.allFinite() || !x0.allFinite())
     refuse("step", "a number that is not finite", "finite numbers");
   const Matrix root = Matrix::Identity(M.rows(), M.rows());
@@ -75,8 +77,11 @@ py::dict all_constants(const Setting& s, const SteadyState& steady, double weigh
 void bind_rdkf(py::module_& m) {
   auto r =
       m.def_submodule("rdkf", "Covariances, constants and step of the resilient distributed Kalman filter.");
-  py::class_<SteadyState>(r, "SteadyState", "Solution of (5): one matrix per agent each.")
-      .def_readonly("P", &SteadyState::P, "(5), (n, n) per agent")
+  py::class_<SteadyState> solution(r, "SteadyState", "Solution of (5): one matrix per agent each.");
+  using S = SteadyState;
+  keep_fields<S>(solution, KeptField{"P", &S::P}, KeptField{"Pbar", &S::Pbar}, KeptField{"Q", &S::Q},
+                 KeptField{"sweeps", &S::sweeps}, KeptField{"change", &S::change});
+  solution.def_readonly("P", &SteadyState::P, "(5), (n, n) per agent")
       .def_readonly("Pbar", &SteadyState::Pbar, "(6)")
       .def_readonly("Q", &SteadyState::Q, "(1/d_i) sum of Pbar_j^-1 over the agent and its neighbours")
       .def_readonly("sweeps", &SteadyState::sweeps)
@@ -89,6 +94,8 @@ void bind_rdkf(py::module_& m) {
       .def(
           "steady_state",
           [](const Setting& s, const std::vector<Matrix>& start, double tolerance, int most_sweeps) {
+            require_range("tolerance", tolerance, 0.0, 1.0);
+            require_range("most_sweeps", most_sweeps, 1.0, 1e7);
             return steady_state(s, {start, tolerance, most_sweeps});
           },
           py::arg("start") = std::vector<Matrix>(), py::arg("tolerance") = SteadyOptions{}.tolerance,
@@ -102,8 +109,14 @@ void bind_rdkf(py::module_& m) {
       "lyapunov",
       [](const SteadyState& s, const MatrixRef& errors) { return lyapunov(s, errors.transpose()); },
       py::arg("steady"), py::arg("errors"), "max e_i' P_i^-1 e_i for errors (N, n).");
-  r.def("scalar_basin", &scalar_basin, py::arg("setting"), py::arg("steady"), py::arg("weight"),
-        "One agent, one state: exact radius of convergence without attack.");
+  r.def(
+      "scalar_basin",
+      [](const Setting& s, const SteadyState& steady, double weight) {
+        require_range("weight (lambda)", weight, 0.0, kInfinity);
+        return scalar_basin(s, steady, weight);
+      },
+      py::arg("setting"), py::arg("steady"), py::arg("weight"),
+      "One agent, one state: exact radius of convergence without attack.");
   r.def("detectable", &detectable, py::arg("A"), py::arg("C"),
         "Every mode of A that does not decay is seen by some row of C, (m, n).");
   r.def("ipopt_available", &ipopt_available, "This build has the solver \"ipopt\".");

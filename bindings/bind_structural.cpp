@@ -4,6 +4,7 @@
 #include "garrison/filters/structural/detection.hpp"
 #include "garrison/filters/structural/filter.hpp"
 #include "garrison/filters/structural/gains.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::structural;
@@ -21,9 +22,11 @@ Stationary stationary_of(const Setting& s, const GainMatrices& K, int lags) {
 }
 
 void bind_setting(py::module_& m) {
-  py::class_<Setting>(m, "Setting",
-                      "Model, graphs and noise of the structural filter's analysis; see the C++ header.\n"
-                      "A (n, n), C (N, n), W and U (N, N), E (n, n), R (N, N).")
+  py::class_<Setting> setting(
+      m, "Setting",
+      "Model, graphs and noise of the structural filter's analysis; see the C++ header.\n"
+      "A (n, n), C (N, n), W and U (N, N), E (n, n), R (N, N).");
+  setting
       .def(py::init([](const Matrix& A, const Matrix& C, const Matrix& W, const Matrix& U,
                        const std::optional<Matrix>& E, const std::optional<Matrix>& R) {
              Setting s{A, C, W, U, E.value_or(Matrix()), R.value_or(Matrix())};
@@ -38,11 +41,17 @@ void bind_setting(py::module_& m) {
       .def_readonly("U", &Setting::U)
       .def_readonly("E", &Setting::E)
       .def_readonly("R", &Setting::R);
+  keep_as_code<Setting>(setting, "garrison.structural.Setting", [](const Setting& s) {
+    py::dict all(py::arg("A") = s.A, py::arg("C") = s.C, py::arg("W") = s.W, py::arg("U") = s.U);
+    if (s.E.size() != 0) all["E"] = s.E;
+    if (s.R.size() != 0) all["R"] = s.R;
+    return all;
+  });
   m.def(
       "setting",
       [](const FilterHandle& f, const Model& model, const Network& network) {
-        return Structural::setting(parse_params<Structural::Params>("structural", f.filter->params()), model,
-                                   network);
+        require_same_size(model, network);
+        return Structural::setting(params_of<Structural>(f), model, network);
       },
       py::arg("filter"), py::arg("model"), py::arg("network"),
       "The setting that a Structural filter is designed for on this model and network.");
@@ -85,10 +94,24 @@ void bind_detection(py::module_& m) {
   m.def("level_of_false_alarm", &level_of_false_alarm, py::arg("rate"), "m with this false-alarm rate.");
   m.def("false_alarm_of_level", &false_alarm_of_level, py::arg("ratio"),
         "False-alarm rate at which a residual of `ratio` standard deviations is just an alarm.");
-  m.def("power", &power, py::arg("mean"), py::arg("std"), py::arg("threshold"),
-        "P(|N(mean, std^2)| >= threshold).");
+  m.def(
+      "power",
+      [](double mean, double std, double threshold) {
+        require_range("mean", mean, -kHuge, kHuge);
+        require_range("std", std, 0.0);
+        require_range("threshold", threshold, 0.0, kInfinity);
+        return power(mean, std, threshold);
+      },
+      py::arg("mean"), py::arg("std"), py::arg("threshold"), "P(|N(mean, std^2)| >= threshold).");
   m.def("chi_square_level", &chi_square_level, py::arg("degrees"), py::arg("rate"));
-  m.def("thresholds", &thresholds, py::arg("residual_std"), py::arg("m"));
+  m.def(
+      "thresholds",
+      [](const Vector& residual_std, double level) {
+        for (Eigen::Index i = 0; i < residual_std.size(); ++i)
+          require_range("residual_std[" + std::to_string(i) + "]", residual_std(i), 0.0);
+        return thresholds(residual_std, level);
+      },
+      py::arg("residual_std"), py::arg("m"), "m standard deviations of every residual.");
   m.def("thresholds_printed", &thresholds_printed, py::arg("setting"), py::arg("Q1"), py::arg("m"),
         "The paper's (17), for comparison only.");
   m.def("thresholds_root", &thresholds_root, py::arg("setting"), py::arg("Q1"), py::arg("m"));
@@ -122,10 +145,16 @@ void bind_detection(py::module_& m) {
       "Fit of every full window to the response to an attack on each agent.");
 }
 
+void require_sweeps(int most_sweeps, double tolerance) {
+  require_range("most_sweeps", most_sweeps, 1.0, 1e7);
+  require_range("tolerance", tolerance, 0.0, 1.0);
+}
+
 void bind_gains(py::module_& m) {
   m.def(
       "coupled_riccati",
       [](const Setting& s, int most_sweeps, double tolerance) {
+        require_sweeps(most_sweeps, tolerance);
         RiccatiGains g;
         {
           const py::gil_scoped_release no_gil;
@@ -139,6 +168,7 @@ void bind_gains(py::module_& m) {
   m.def(
       "joint_kalman",
       [](const Setting& s, int most_sweeps, double tolerance) {
+        require_sweeps(most_sweeps, tolerance);
         JointGains g;
         {
           const py::gil_scoped_release no_gil;

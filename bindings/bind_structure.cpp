@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Structural analysis: patterns, matchings, components, classes of agents, substitutes.
 #include "bindings.hpp"
+#include "convert.hpp"
 #include "garrison/analysis/modes.hpp"
 #include "garrison/analysis/structure/strong_subgraph.hpp"
 #include "garrison/analysis/structure/substitution.hpp"
+#include "kept.hpp"
 
 using namespace garrison;
 using namespace garrison::structure;
@@ -23,23 +25,32 @@ py::array_t<int> numbers(std::vector<int> v) {
   return owned(std::move(v), {size});
 }
 
+py::list list_of(const std::string& which, py::handle given) {
+  if (py::isinstance<py::str>(given) || py::isinstance<py::dict>(given))
+    refuse(which, convert::shown(given), "a state, None, or a list of states");
+  return py::list(py::reinterpret_borrow<py::object>(given));
+}
+
 /// measured: per agent a state, None, or a list of states.
 Sensors sensors_from(const py::iterable& measured) {
   Sensors all;
   for (const auto& one : measured) {
-    if (one.is_none())
-      all.emplace_back();
-    else if (py::isinstance<py::sequence>(one) || py::isinstance<py::array>(one))
-      all.push_back(one.cast<std::vector<int>>());
-    else
-      all.push_back({one.cast<int>()});
+    const std::string which = "measured[" + std::to_string(all.size()) + "]";
+    std::vector<int> states;
+    if (convert::scalar(one)) {
+      if (!one.is_none()) states.push_back(convert::small(which, one));
+    } else {
+      for (const auto& state : list_of(which, one)) states.push_back(convert::small(which, state));
+    }
+    all.push_back(std::move(states));
   }
   return all;
 }
 
 std::vector<int> states_from(const py::iterable& measured) {
   std::vector<int> all;
-  for (const auto& one : measured) all.push_back(one.is_none() ? -1 : one.cast<int>());
+  for (const auto& one : measured)
+    all.push_back(one.is_none() ? -1 : convert::small("measured[" + std::to_string(all.size()) + "]", one));
   return all;
 }
 
@@ -73,14 +84,34 @@ py::object from_picks(const Picks& p) {
   return py::dict(py::arg("cost") = p.cost, py::arg("picks") = picks);
 }
 
+/// The arguments of its constructor.
+py::dict arguments(const Pattern& pattern) {
+  Edges entries;
+  for (int j = 0; j < pattern.columns(); ++j)
+    for (const int i : pattern.column(j)) entries.emplace_back(j, i);
+  return py::dict(py::arg("rows") = pattern.rows(), py::arg("columns") = pattern.columns(),
+                  py::arg("entries") = entries);
+}
+
 void bind_pattern(py::module_& s) {
-  py::class_<Pattern>(s, "Pattern", "Zero pattern of a matrix: which entries are not zero. Immutable.")
-      .def(py::init(
-               [](int rows, int columns, const Edges& entries) { return Pattern(rows, columns, entries); }),
+  py::class_<Pattern> pattern(s, "Pattern",
+                              "Zero pattern of a matrix: which entries are not zero. Immutable.");
+  pattern
+      .def(py::init([](int rows, int columns, const Edges& entries) {
+             require_memory("rows x columns", std::to_string(rows) + " x " + std::to_string(columns),
+                            4.0 * (static_cast<double>(rows) + columns));
+             return Pattern(rows, columns, entries);
+           }),
            py::arg("rows"), py::arg("columns"), py::arg("entries"),
            "entries: (column, row) pairs; of a system matrix, (j, i) is the link j -> i.")
-      .def_static("of", &Pattern::of, py::arg("matrix"), py::arg("tolerance") = 0.0,
-                  "Entries with |value| > tolerance of a dense matrix.")
+      .def_static(
+          "of",
+          [](const MatrixRef& matrix, double tolerance) {
+            require_range("tolerance", tolerance, 0.0);
+            return Pattern::of(matrix, tolerance);
+          },
+          py::arg("matrix"), py::arg("tolerance") = 0.0,
+          "Entries with |value| > tolerance of a dense matrix.")
       .def_static(
           "csc",
           [](int rows, const Ints& indptr, const Ints& indices) {
@@ -93,6 +124,7 @@ void bind_pattern(py::module_& s) {
       .def_property_readonly("columns", &Pattern::columns)
       .def_property_readonly("entries", &Pattern::entries)
       .def("transposed", &Pattern::transposed);
+  keep_as_code<Pattern>(pattern, "garrison.structure.Pattern", &arguments);
   s.def(
       "maximum_matching",
       [](const Pattern& p) {
@@ -134,11 +166,13 @@ void bind_pattern(py::module_& s) {
 }
 
 void bind_system(py::module_& s) {
-  py::class_<System>(
+  py::class_<System> system(
       s, "System",
       "Structure of a system matrix, worked out once. `measured`: per agent the state that it\n"
-      "measures, a list of states, or None. States from 0; a pattern entry (j, i) is j -> i.")
-      .def(py::init<Pattern>(), py::arg("pattern"))
+      "measures, a list of states, or None. States from 0; a pattern entry (j, i) is j -> i.");
+  keep_as_code<System>(system, "garrison.structure.System",
+                       [](const System& x) { return py::dict(py::arg("pattern") = x.pattern()); });
+  system.def(py::init<Pattern>(), py::arg("pattern"))
       .def_property_readonly("states", &System::states)
       .def_property_readonly("structural_rank", [](const System& x) { return x.parts().structural_rank(); })
       .def_property_readonly(
@@ -257,6 +291,8 @@ void bind_networks(py::module_& s) {
   s.def(
       "cheapest_strong_subgraph",
       [](int agents, const Edges& edges, const std::vector<double>& weights, long long max_nodes) {
+        require_range("max_nodes", static_cast<double>(max_nodes), 1.0);
+        require_memory("agents", std::to_string(agents), 100.0 * agents);
         const auto found = cheapest_strong_subgraph(agents, edges, weights, max_nodes);
         return py::dict(py::arg("exists") = found.exists, py::arg("edges") = found.edges,
                         py::arg("cost") = found.cost, py::arg("lower_bound") = found.lower_bound,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bindings.hpp"
+#include "guard.hpp"
 
 PYBIND11_MODULE(_core, m) {
   m.doc() = "Compiled core of garrison. Use it through the garrison package.";
@@ -18,4 +19,5 @@ PYBIND11_MODULE(_core, m) {
   bind_partial_sharing(m);
   bind_platoon(m);
   bind_certificate(m);
+  guard(m);  // in front of everything above
 }

@@ -1,25 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// All filter families. A new one is declared and listed here.
-#include <array>
-
+// The families by name, for those who do not know their types.
 #include "garrison/engine/any_filter.hpp"
+#include "garrison/filters/families.hpp"
 
 namespace garrison {
 
-FamilyInfo saturation_family();
-FamilyInfo scalar_gain_family();
-FamilyInfo lfre_family();
-FamilyInfo rdkf_family();
-FamilyInfo dkf_family();
-FamilyInfo partial_sharing_family();
-FamilyInfo structural_family();
-FamilyInfo platoon_family();
-FamilyInfo platoon_baseline_family();
-
 std::span<const FamilyInfo> families() {
-  static const std::array all{saturation_family(), scalar_gain_family(), lfre_family(),
-                              rdkf_family(),       dkf_family(),         partial_sharing_family(),
-                              structural_family(), platoon_family(),     platoon_baseline_family()};
+  static const std::vector<FamilyInfo> all = [] {
+    std::vector<FamilyInfo> list;
+    Families::each([&]<class F> { list.push_back(family_info<F>()); });
+    return list;
+  }();
   return all;
 }
 

@@ -1,29 +1,9 @@
-"""The filter families. `garrison list filters` shows their parameters."""
+"""The filter families, one class each. `garrison list filters` shows their parameters."""
 
-from garrison._core import (
-    Dkf,
-    Filter,
-    Lfre,
-    PartialSharing,
-    Platoon,
-    PlatoonBaseline,
-    Rdkf,
-    Saturation,
-    ScalarGain,
-    Structural,
-    make_filter,
-)
+from garrison._core import Filter, filters, make_filter
+from garrison._core.filters import *  # noqa: F403  (what the core registers)
 
-__all__ = [
-    "Dkf",
-    "Filter",
-    "Lfre",
-    "PartialSharing",
-    "Platoon",
-    "PlatoonBaseline",
-    "Rdkf",
-    "Saturation",
-    "ScalarGain",
-    "Structural",
-    "make_filter",
-]
+#: the name of every family's class
+FAMILIES = tuple(name for name, value in vars(filters).items() if isinstance(value, type))
+
+__all__ = ["FAMILIES", "Filter", "make_filter", *FAMILIES]

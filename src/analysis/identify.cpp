@@ -178,6 +178,8 @@ Matrix measurements(const Identified& model, const MatrixRef& raw, std::int64_t 
 
 Matrix reference_states(const Identified& model, const MatrixRef& measured) {
   const auto n = model.C.cols();
+  if (measured.cols() != model.C.rows())
+    refuse("measured", shape(measured), "samples x " + std::to_string(model.C.rows()));
   Matrix x = Matrix::Constant(measured.rows(), n, kNaN);
   for (Eigen::Index r = 0; r < measured.rows(); ++r) {
     // Weighted by scale^2: least squares of the anomalies themselves, the projection that defined the

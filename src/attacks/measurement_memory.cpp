@@ -57,8 +57,7 @@ class Replayed final : public Stateful<Delay> {
  public:
   Replayed(const Schedule& schedule, const Delay& delay, const Model& model, const Random& random,
            std::uint32_t salt)
-      : Stateful(schedule, delay, model, random, salt),
-        past_(static_cast<std::size_t>(delay.samples) * static_cast<std::size_t>(model.total_outputs())) {}
+      : Stateful(schedule, delay, model, random, salt), past_(room(delay, model)) {}
   void apply(const Sample& s) override {
     const auto row = static_cast<std::size_t>(model_.total_outputs());
     const auto slot = static_cast<std::size_t>(seen_ % settings_.samples);
@@ -70,6 +69,12 @@ class Replayed final : public Stateful<Delay> {
   }
 
  private:
+  static std::size_t room(const Delay& delay, const Model& model) {
+    const auto samples = static_cast<std::size_t>(delay.samples);
+    const auto numbers = samples * static_cast<std::size_t>(model.total_outputs());
+    require_memory("replay.delay", std::to_string(delay.samples), 8.0 * static_cast<double>(numbers));
+    return numbers;
+  }
   std::vector<double> past_;
   std::vector<double> present_;
   std::int64_t seen_ = 0;

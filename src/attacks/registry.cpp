@@ -272,13 +272,15 @@ std::shared_ptr<const MessageAttack> build(Schedule s, const PerturbParams& p) {
 template <class P>
 AttackInfo on_measurements(const char* name, const char* doc) {
   return {name, "measurement", doc, describe<P>(), [](Schedule s, const ParamMap& given) -> AnyAttack {
-            return {"", build(std::move(s), parse_params<P>("attack", given)), nullptr};
+            const P p = parse_params<P>("attack", given);
+            return {"", values(p), build(std::move(s), p), nullptr};
           }};
 }
 template <class P>
 AttackInfo on_messages(const char* name, const char* doc) {
   return {name, "message", doc, describe<P>(), [](Schedule s, const ParamMap& given) -> AnyAttack {
-            return {"", nullptr, build(std::move(s), parse_params<P>("attack", given))};
+            const P p = parse_params<P>("attack", given);
+            return {"", values(p), nullptr, build(std::move(s), p)};
           }};
 }
 
@@ -312,7 +314,7 @@ std::span<const AttackInfo> attack_infos() {
                  {},
                  [](Schedule s, const ParamMap& given) -> AnyAttack {
                    parse_params<NoParams>("attack", given);
-                   return {"", nullptr, silence(std::move(s))};
+                   return {"", {}, nullptr, silence(std::move(s))};
                  }},
   };
   return all;

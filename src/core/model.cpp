@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/core/model.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/solvers.hpp"
+#include "garrison/core/params.hpp"
 
 namespace garrison {
 namespace {
@@ -36,10 +38,37 @@ void require_bound(const std::string& which, double value) {
     refuse(which, text(value), "a finite number >= 0", "leave it out when it is not known");
 }
 
+void require_labels(const Labels& labels, const Model& model) {
+  const auto outputs = static_cast<std::size_t>(model.total_outputs());
+  require_names("states", labels.states, static_cast<std::size_t>(model.states()), "state");
+  require_names("outputs", labels.outputs, outputs, "measurement of the whole network");
+  if (!labels.sources.empty() && labels.sources.size() != outputs)
+    refuse("sources", std::to_string(labels.sources.size()) + " names",
+           std::to_string(outputs) + ", one per measurement of the whole network");
+  std::vector<std::string> known = model.state_names();
+  known.insert(known.end(), labels.outputs.begin(), labels.outputs.end());
+  for (const auto& [name, unit] : labels.units)
+    if (std::find(known.begin(), known.end(), name) == known.end()) refuse_unknown("units", name, known);
+}
+
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+template <class M>
+bool same(const M& a, const M& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
+}
+bool same(const std::vector<Matrix>& a, const std::vector<Matrix>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Matrix& x, const Matrix& y) { return same(x, y); });
+}
+
 }  // namespace
 
-Model::Model(Matrix A, std::vector<Matrix> C, Noise noise, std::vector<int> exposed)
-    : A_(std::move(A)), C_(std::move(C)), noise_(std::move(noise)), exposed_(std::move(exposed)) {
+Model::Model(Matrix A, std::vector<Matrix> C, Noise noise, std::vector<int> exposed, Labels labels)
+    : A_(std::move(A)),
+      C_(std::move(C)),
+      noise_(std::move(noise)),
+      exposed_(std::move(exposed)),
+      labels_(std::move(labels)) {
   const auto n = A_.rows();
   if (n < 1 || A_.cols() != n) refuse("A", shape(A_), "a square matrix with at least one row");
   require_finite("A", A_);
@@ -80,6 +109,24 @@ Model::Model(Matrix A, std::vector<Matrix> C, Noise noise, std::vector<int> expo
            "one per agent (" + std::to_string(agents()) + ")");
   for (std::size_t i = 0; i < Sv.size(); ++i)
     require_covariance("measurement_covariance[" + std::to_string(i) + "]", Sv[i], C_[i].rows());
+  require_labels(labels_, *this);
+}
+
+std::vector<std::string> Model::state_names() const {
+  if (!labels_.states.empty()) return labels_.states;
+  std::vector<std::string> names;
+  for (int i = 1; i <= states(); ++i) names.push_back("x" + std::to_string(i));
+  return names;
+}
+
+bool operator==(const Model& a, const Model& b) {
+  const Noise& p = a.noise_;
+  const Noise& q = b.noise_;
+  return same(a.A_, b.A_) && same(a.C_, b.C_) && same(p.process_bound, q.process_bound) &&
+         same(p.measurement_bound, q.measurement_bound) && same(p.process_covariance, q.process_covariance) &&
+         same(p.measurement_covariance, q.measurement_covariance) &&
+         same(p.agent_process_covariance, q.agent_process_covariance) && a.exposed_ == b.exposed_ &&
+         a.labels_ == b.labels_;
 }
 
 double Model::measurement_bound() const {

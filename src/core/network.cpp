@@ -42,10 +42,18 @@ void build_lists(int agents, std::vector<Edge> pairs, std::vector<int>& offsets,
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
 }
 
+/// Room for a dense N x N matrix.
+void require_square(const Network& network) {
+  const double N = network.agents();
+  require_memory("network", std::to_string(network.agents()) + " agents", 8.0 * N * N);
+}
+
 }  // namespace
 
-Network::Network(int agents, std::span<const Edge> edges, bool directed) : directed_(directed) {
+Network::Network(int agents, std::span<const Edge> edges, bool directed, std::vector<std::string> names)
+    : directed_(directed), names_(std::move(names)) {
   if (agents < 1) refuse("agents", std::to_string(agents), "at least 1");
+  require_memory("agents", std::to_string(agents), 4.0 * agents);
   std::vector<Edge> pairs;
   pairs.reserve(edges.size() * (directed ? 1 : 2));
   for (std::size_t k = 0; k < edges.size(); ++k) {
@@ -60,6 +68,7 @@ Network::Network(int agents, std::span<const Edge> edges, bool directed) : direc
     if (!directed) pairs.emplace_back(from, to);
   }
   build_lists(agents, std::move(pairs), offsets_, lists_);
+  require_names("names", names_, static_cast<std::size_t>(agents), "agent");
 }
 
 std::span<const int> Network::neighbours(int agent) const {
@@ -110,6 +119,7 @@ void Network::require_connected() const {
 }
 
 Matrix Network::laplacian() const {
+  require_square(*this);
   Matrix lap = Matrix::Zero(agents(), agents());
   for (int i = 0; i < agents(); ++i) {
     lap(i, i) = degree(i);
@@ -124,6 +134,7 @@ Matrix Network::laplacian_weights(double step) const {
 }
 
 Matrix Network::metropolis_weights() const {
+  require_square(*this);
   if (directed_) refuse("network", "a directed one", "an undirected one", "use max_degree_weights");
   Matrix w = Matrix::Zero(agents(), agents());
   for (int i = 0; i < agents(); ++i) {

@@ -2,14 +2,29 @@
 // Named and random networks.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "garrison/core/network.hpp"
 #include "garrison/core/random.hpp"
 
 namespace garrison {
+namespace {
+
+/// Refuses more agents or edges than fit into memory before any of them is made.
+void require_room(const std::string& which, double agents, double edges) {
+  constexpr double agent_bytes = 8.0;
+  constexpr double edge_bytes = 40.0;  // as a pair, sorted in both directions, and in the lists
+  require_memory(which, text(agents) + " agents with " + text(edges) + " edges",
+                 agent_bytes * agents + edge_bytes * edges);
+}
+
+double pairs_of(int agents) { return 0.5 * agents * (agents - 1.0); }
+
+}  // namespace
 
 Network Network::ring(int agents) {
+  require_room("agents", agents, agents);
   std::vector<Edge> edges;
   for (int i = 0; i + 1 < agents; ++i) edges.emplace_back(i, i + 1);
   if (agents > 2) edges.emplace_back(agents - 1, 0);
@@ -17,6 +32,7 @@ Network Network::ring(int agents) {
 }
 
 Network Network::path(int agents) {
+  require_room("agents", agents, agents);
   std::vector<Edge> edges;
   for (int i = 0; i + 1 < agents; ++i) edges.emplace_back(i, i + 1);
   return {agents, edges};
@@ -24,6 +40,7 @@ Network Network::path(int agents) {
 
 Network Network::band(int agents, int range) {
   if (range < 1) refuse("range", std::to_string(range), "at least 1");
+  require_room("agents", agents, std::min(pairs_of(agents), static_cast<double>(agents) * range));
   std::vector<Edge> edges;
   for (int i = 0; i < agents; ++i)
     for (int j = i + 1; j < agents && j - i <= range; ++j) edges.emplace_back(i, j);
@@ -31,12 +48,14 @@ Network Network::band(int agents, int range) {
 }
 
 Network Network::star(int agents) {
+  require_room("agents", agents, agents);
   std::vector<Edge> edges;
   for (int i = 1; i < agents; ++i) edges.emplace_back(0, i);
   return {agents, edges};
 }
 
 Network Network::complete(int agents) {
+  require_room("agents", agents, pairs_of(agents));
   std::vector<Edge> edges;
   for (int i = 0; i < agents; ++i)
     for (int j = i + 1; j < agents; ++j) edges.emplace_back(i, j);
@@ -46,6 +65,10 @@ Network Network::complete(int agents) {
 Network Network::grid(int rows, int columns) {
   if (rows < 1) refuse("rows", std::to_string(rows), "at least 1");
   if (columns < 1) refuse("columns", std::to_string(columns), "at least 1");
+  const double all = static_cast<double>(rows) * columns;
+  if (all > std::numeric_limits<int>::max())
+    refuse("rows x columns", text(all), "at most " + std::to_string(std::numeric_limits<int>::max()));
+  require_room("rows x columns", all, 2.0 * all);
   std::vector<Edge> edges;
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
@@ -59,6 +82,8 @@ Network Network::grid(int rows, int columns) {
 Network Network::random_geometric(int agents, double radius, std::uint64_t seed, Matrix* positions) {
   if (agents < 1) refuse("agents", std::to_string(agents), "at least 1");
   if (!(radius > 0.0) || !std::isfinite(radius)) refuse("radius", text(radius), "a finite number > 0");
+  constexpr double pi = 3.141592653589793;
+  require_room("agents", agents, pairs_of(agents) * std::min(1.0, pi * radius * radius));
   const Random random(seed, 0, Purpose::position);
   Matrix points(agents, 2);
   for (int i = 0; i < agents; ++i)
@@ -88,6 +113,10 @@ Network Network::random_geometric(int agents, double radius, std::uint64_t seed,
 Network Network::erdos_renyi(int agents, double probability, std::uint64_t seed) {
   if (!(probability >= 0.0 && probability <= 1.0))
     refuse("probability", text(probability), "a number in [0, 1]");
+  require_room("agents", agents, probability * pairs_of(agents));
+  constexpr double most_draws = 1e11;  // minutes
+  if (pairs_of(agents) > most_draws)
+    refuse("agents", std::to_string(agents), "at most 447214: chance decides on every pair");
   const Random random(seed, 0, Purpose::graph);
   std::vector<Edge> edges;
   for (int i = 0; i < agents; ++i)

@@ -4,6 +4,27 @@
 #include <algorithm>
 
 namespace garrison {
+namespace {
+
+/// The old name, and after a colon the output where an agent has several.
+std::vector<std::string> part_names(const Model& model, const Network& network, const std::vector<int>& owner,
+                                    const std::vector<int>& first) {
+  std::vector<std::string> names;
+  if (network.names().empty()) return names;
+  const auto& outputs = model.labels().outputs;
+  for (std::size_t k = 0; k < owner.size(); ++k) {
+    const int i = owner[k];
+    const int r = static_cast<int>(k) - first[static_cast<std::size_t>(i)];
+    std::string name = network.names()[static_cast<std::size_t>(i)];
+    if (model.outputs(i) > 1)
+      name += ":" + (outputs.empty() ? std::to_string(r + 1)
+                                     : outputs[static_cast<std::size_t>(model.offset(i) + r)]);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+}  // namespace
 
 SplitSystem split_outputs(const Model& model, const Network& network) {
   if (model.agents() != network.agents())
@@ -45,7 +66,9 @@ SplitSystem split_outputs(const Model& model, const Network& network) {
   for (const auto& [from, to] : network.edges()) join(from, to);
   for (int i = 0; i < model.agents(); ++i) join(i, i);
   const int parts = static_cast<int>(owner.size());
-  return {Model(model.A(), std::move(C), std::move(noise)), Network(parts, edges, network.directed()),
+  // Measurements keep their order, and with it their names, sources and units.
+  return {Model(model.A(), std::move(C), std::move(noise), {}, model.labels()),
+          Network(parts, edges, network.directed(), part_names(model, network, owner, first)),
           std::move(owner)};
 }
 

@@ -91,11 +91,22 @@ struct Head {
   }
 };
 
+struct Unit {
+  std::string name, unit;
+
+  template <class V>
+  void visit(V& v) {
+    v("name", name);
+    v("unit", unit);
+  }
+};
+
 struct ModelData {
   Matrix A;
   std::vector<Matrix> C;
   Noise noise;
   std::vector<int> exposed;
+  Labels labels;
 
   template <class V>
   void visit(V& v) {
@@ -107,10 +118,17 @@ struct ModelData {
     v("measurement_covariance", noise.measurement_covariance);
     v("agent_process_covariance", noise.agent_process_covariance);
     v("exposed", exposed);
+    v("states", labels.states);
+    v("outputs", labels.outputs);
+    v("sources", labels.sources);
+    std::vector<Unit> units;
+    for (const auto& [name, unit] : labels.units) units.push_back({name, unit});
+    v("units", units);
+    for (const Unit& one : units) labels.units[one.name] = one.unit;
   }
 };
 ModelData data_of(const Model& model) {
-  ModelData data{model.A(), {}, model.noise(), {}};
+  ModelData data{model.A(), {}, model.noise(), {}, model.labels()};
   for (int i = 0; i < model.agents(); ++i) {
     data.C.push_back(model.C(i));
     data.exposed.push_back(model.exposed(i));
@@ -121,16 +139,18 @@ ModelData data_of(const Model& model) {
 struct NetworkData {
   bool directed = false;
   std::vector<int> senders, receivers;
+  std::vector<std::string> names;
 
   template <class V>
   void visit(V& v) {
     v("directed", directed);
     v("senders", senders);
     v("receivers", receivers);
+    v("names", names);
   }
 };
 NetworkData data_of(const Network& network) {
-  NetworkData data{network.directed(), {}, {}};
+  NetworkData data{network.directed(), {}, {}, network.names()};
   for (const auto& [a, b] : network.edges()) {
     data.senders.push_back(a);
     data.receivers.push_back(b);
@@ -226,8 +246,9 @@ std::shared_ptr<const Prepared> read_design(std::span<const std::byte> file) {
   std::vector<Edge> edges;
   for (std::size_t k = 0; k < std::min(design.network.senders.size(), design.network.receivers.size()); ++k)
     edges.emplace_back(design.network.senders[k], design.network.receivers[k]);
-  const Model model(design.model.A, design.model.C, design.model.noise, design.model.exposed);
-  const Network network(head.agents, edges, design.network.directed);
+  const Model model(design.model.A, design.model.C, design.model.noise, design.model.exposed,
+                    design.model.labels);
+  const Network network(head.agents, edges, design.network.directed, design.network.names);
   return make_filter(head.filter, to_map(head.params))->restore(model, network, bytes_of(design.gains));
 }
 

@@ -95,6 +95,6 @@ Check Lfre::check(const Params& params, const Model& model, const Network& netwo
   return c;
 }
 
-FamilyInfo lfre_family() { return family_info<Lfre>(); }
+template FamilyInfo family_info<Lfre>();
 
 }  // namespace garrison

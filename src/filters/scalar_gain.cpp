@@ -4,5 +4,5 @@
 #include "garrison/engine/filter_of.hpp"
 
 namespace garrison {
-FamilyInfo scalar_gain_family() { return family_info<ScalarGain>(); }
+template FamilyInfo family_info<ScalarGain>();
 }  // namespace garrison

@@ -12,11 +12,14 @@
 
 namespace garrison {
 
-/// An attack on measurements or on messages; exactly one member is set.
+/// An attack on measurements or on messages (exactly one of the two is set), and what it was made from.
 struct GARRISON_EXPORT AnyAttack {
   std::string name;
+  ParamMap params;  ///< all of them, defaults included
   Attack measurement;
   std::shared_ptr<const MessageAttack> message;
+
+  const Schedule& schedule() const { return message ? message->schedule() : measurement->schedule(); }
 };
 
 struct GARRISON_EXPORT AttackInfo {

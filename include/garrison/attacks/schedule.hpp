@@ -40,6 +40,10 @@ class GARRISON_EXPORT Schedule {
   bool strikes(const Random& random, std::int64_t t, int agent, std::uint32_t salt) const;
   /// Start of the first phase.
   std::int64_t first() const { return phases_.front().start; }
+  /// As given, with the agents of every phase sorted.
+  const std::vector<Phase>& phases() const { return phases_; }
+  std::int64_t stop() const { return stop_; }
+  double probability() const { return probability_; }
   /// Every agent that occurs in some phase, sorted.
   std::vector<int> everyone() const;
   /// Refuses an agent id that the network does not have.

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #if defined(__GNUC__)
 #define GARRISON_EXPORT __attribute__((visibility("default")))
@@ -40,6 +41,16 @@ class GARRISON_EXPORT IoError : public Error {
 /// Raises InvalidInput in one form: "<which>: got <got>, expected <expected>; <what to do>".
 [[noreturn]] GARRISON_EXPORT void refuse(const std::string& which, const std::string& got,
                                          const std::string& expected, const std::string& advice = "");
+
+/// Refuses an empty name or one that occurs twice, and another number of names than `count` (none at all is
+/// fine); `owners` says what has them.
+GARRISON_EXPORT void require_names(const std::string& which, const std::vector<std::string>& names,
+                                   std::size_t count, const std::string& owners);
+/// Refuses a result of more than memory_limit() bytes before anything is allocated; `size` is what the caller
+/// asked for.
+GARRISON_EXPORT void require_memory(const std::string& which, const std::string& size, double bytes);
+/// Half of the machine's memory, or $GARRISON_MEMORY_GB.
+GARRISON_EXPORT double memory_limit();
 
 /// A double as a person would type it: shortest form that reads back the same.
 GARRISON_EXPORT std::string text(double value);

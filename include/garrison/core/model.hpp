@@ -2,7 +2,9 @@
 // The plant and what each agent sees of it.
 #pragma once
 
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "garrison/core/error.hpp"
@@ -25,6 +27,17 @@ struct GARRISON_EXPORT Noise {
   std::vector<Matrix> agent_process_covariance = {};
 };
 
+/// What people call states and measurements. Every part is optional, and no filter reads any.
+struct GARRISON_EXPORT Labels {
+  std::vector<std::string> states = {};   ///< n names; empty: x1, x2, ..
+  std::vector<std::string> outputs = {};  ///< one name per measurement of the whole network, agent by agent
+  /// Who can falsify each measurement: several outputs of one receiver have one source.
+  std::vector<std::string> sources = {};
+  std::map<std::string, std::string> units = {};  ///< by the name of a state or output
+
+  bool operator==(const Labels&) const = default;
+};
+
 /// x(t+1) = A x(t) + w(t),  y_i(t) = C_i x(t) + v_i(t) for agents i = 0..N-1.
 ///
 /// Immutable once built. C_i may have any number of rows; an agent without sensors (a relay) has none.
@@ -35,8 +48,9 @@ class GARRISON_EXPORT Model {
   /// `A`: n x n, finite. `C`: one m_i x n matrix per agent, finite (m_i = 0 allowed), at least one agent.
   /// `exposed`: how many of an agent's first outputs an attacker can reach, one number per agent; empty =
   /// all.
-  /// @throws InvalidInput on a wrong shape, a number that is not finite or an impossible noise.
-  Model(Matrix A, std::vector<Matrix> C, Noise noise = {}, std::vector<int> exposed = {});
+  /// @throws InvalidInput on a wrong shape, a number that is not finite, an impossible noise, or names that
+  /// are empty, occur twice or do not fit in number.
+  Model(Matrix A, std::vector<Matrix> C, Noise noise = {}, std::vector<int> exposed = {}, Labels labels = {});
 
   int states() const { return static_cast<int>(A_.rows()); }
   int agents() const { return static_cast<int>(C_.size()); }
@@ -53,6 +67,12 @@ class GARRISON_EXPORT Model {
   const Noise& noise() const { return noise_; }
   /// Largest entry of noise().measurement_bound, the common b_v of the papers; NaN when not known.
   double measurement_bound() const;
+  /// As given; `state_names` fills in x1, x2, .. where there are none.
+  const Labels& labels() const { return labels_; }
+  std::vector<std::string> state_names() const;
+  /// Same numbers and names; two unknown bounds are equal.
+  friend GARRISON_EXPORT bool operator==(const Model& a, const Model& b);
+
   /// All C_i on top of each other, total_outputs() x n.
   Matrix stacked() const;
 
@@ -62,6 +82,7 @@ class GARRISON_EXPORT Model {
   Noise noise_;
   std::vector<int> offsets_;
   std::vector<int> exposed_;  // empty = all
+  Labels labels_;
 };
 
 }  // namespace garrison

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,11 +25,16 @@ struct LaplacianSpectrum {
 /// An edge given twice counts once.
 class GARRISON_EXPORT Network {
  public:
-  /// @throws InvalidInput when agents < 1, an index is outside 0..agents-1, or an edge is a self-loop.
-  Network(int agents, std::span<const Edge> edges, bool directed = false);
+  /// `names`: what people call the agents, one each; empty = no names. No filter reads them.
+  /// @throws InvalidInput when agents < 1, an index is outside 0..agents-1, an edge is a self-loop, or names
+  /// are empty, occur twice or do not fit in number.
+  Network(int agents, std::span<const Edge> edges, bool directed = false,
+          std::vector<std::string> names = {});
 
   int agents() const { return static_cast<int>(offsets_.size()) - 1; }
   bool directed() const { return directed_; }
+  const std::vector<std::string>& names() const { return names_; }
+  bool operator==(const Network&) const = default;
   /// The agents that `agent` hears, without itself.
   std::span<const int> neighbours(int agent) const;
   int degree(int agent) const { return static_cast<int>(neighbours(agent).size()); }
@@ -72,6 +78,7 @@ class GARRISON_EXPORT Network {
   std::vector<int> offsets_;
   std::vector<int> lists_;
   bool directed_;
+  std::vector<std::string> names_;
 };
 
 }  // namespace garrison

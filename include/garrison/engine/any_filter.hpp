@@ -83,7 +83,11 @@ struct GARRISON_EXPORT FamilyInfo {
   std::shared_ptr<const AnyFilter> (*make)(const ParamMap&);
 };
 
-/// All families, in the order of registration (src/registry.cpp).
+/// The description of family F; instantiated by the source file that compiles it.
+template <class F>
+FamilyInfo family_info();
+
+/// All families, in the order of filters/families.hpp.
 GARRISON_EXPORT std::span<const FamilyInfo> families();
 /// The filter `name` with the given parameters; refuses unknown names with the nearest one.
 GARRISON_EXPORT std::shared_ptr<const AnyFilter> make_filter(const std::string& name, const ParamMap& params);

@@ -208,7 +208,6 @@ class FilterOf final : public AnyFilter {
   typename F::Params params_;
 };
 
-/// The registry line of family F.
 template <class F>
 FamilyInfo family_info() {
   return {

@@ -7,6 +7,8 @@ import collections.abc
 import numpy
 import numpy.typing
 import typing
+from . import filters
+from . import attacks
 from . import saturation
 from . import rdkf
 from . import structure
@@ -19,30 +21,24 @@ __all__: list[str] = [
     "Agent",
     "Attack",
     "DesignInfeasible",
-    "Dkf",
     "Error",
     "Filter",
+    "FitOptions",
     "Identified",
     "InvalidInput",
     "IoError",
-    "Lfre",
     "Message",
     "Model",
     "Network",
-    "PartialSharing",
-    "Platoon",
-    "PlatoonBaseline",
-    "Rdkf",
-    "Saturation",
-    "ScalarGain",
-    "Structural",
     "SubsetBound",
     "attack_infos",
+    "attacks",
     "central_kalman",
     "certificate",
     "chebyshev_contraction",
     "check",
     "filter_infos",
+    "filters",
     "identify",
     "lambda0",
     "lambda0_orthogonal",
@@ -83,22 +79,39 @@ class Model:
     The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.
 
     A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.
-    process_bound: ||w|| <= it, >= 0, nan = not known. measurement_bound: |v_i| <= it, a number or
-    one per agent. Covariances: (n, n), or (N, n, n) where each agent takes another one for w (no noise is
-    simulated from those), and one (m_i, m_i) array per agent.
-    Raises InvalidInput when shapes do not fit or a number is not finite.
+    process_bound: ||w|| <= it, >= 0, None or nan = not known. measurement_bound: |v_i| <= it, a number or
+    one per agent. process_covariance: (n, n), a number (times the identity), or (N, n, n) where each agent
+    takes another one for w (no noise is simulated from those). measurement_covariance: a number, or one
+    (m_i, m_i) array or number per agent.
+    states: n names (default x1, x2, ..). outputs: one name per measurement of the whole network, agent by
+    agent. sources: who can falsify each measurement; several outputs of one receiver have one source.
+    units: a dict from names of states and outputs to units, or one unit for all. exposed: per agent, how
+    many of its first outputs an attacker can reach (default: all).
+    Raises InvalidInput when shapes or names do not fit or a number is not finite.
     """
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
     def __init__(
         self,
-        A: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        A: typing.Any,
         C: typing.Any,
         *,
-        process_bound: typing.SupportsFloat | typing.SupportsIndex = ...,
+        process_bound: typing.Any = None,
         measurement_bound: typing.Any = None,
         process_covariance: typing.Any = None,
-        measurement_covariance: typing.Any | None = None,
+        measurement_covariance: typing.Any = None,
+        states: typing.Any = None,
+        outputs: typing.Any = None,
+        sources: typing.Any = None,
+        units: typing.Any = None,
+        exposed: typing.Any = None,
     ) -> None: ...
     def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    def __str__(self) -> str: ...
     @property
     def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
@@ -117,6 +130,16 @@ class Model:
     @property
     def measurement_bound(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
+    def measurement_covariance(self) -> typing.Any:
+        """
+        One (m_i, m_i) array per agent, or None = not known.
+        """
+    @property
+    def output_names(self) -> list[str]:
+        """
+        One name per measurement of the whole network; empty where none were given.
+        """
+    @property
     def outputs(self) -> int:
         """
         Scalar measurements per sample of the whole network.
@@ -124,18 +147,41 @@ class Model:
     @property
     def process_bound(self) -> float: ...
     @property
+    def process_covariance(self) -> typing.Any:
+        """
+        (n, n), one (n, n) array per agent, or None = not known.
+        """
+    @property
+    def sources(self) -> list[str]:
+        """
+        Who can falsify each measurement; empty where none were given.
+        """
+    @property
+    def state_names(self) -> list[str]:
+        """
+        n names; x1, x2, .. where none were given.
+        """
+    @property
     def states(self) -> int:
         """
         n
+        """
+    @property
+    def units(self) -> dict[str, str]:
+        """
+        Unit by the name of a state or output.
         """
 
 class Network:
     """
     Who hears whom. Immutable.
 
-    edges: (sender, receiver) pairs, a networkx graph, or a sparse
-    matrix whose entry (i, j) says that i hears j. agents: needed when the last ones have no edge.
-    Pairs given twice count once. Raises InvalidInput on a self-loop or an index out of range.
+    edges: (sender, receiver) pairs of numbers or names, a networkx graph, or an adjacency matrix (sparse,
+    or dense with more than two rows; see from_adjacency). agents: needed when the last ones have no edge.
+    names: one per agent. Of a graph, labels 0..N-1 are the numbers of the agents; other whole numbers are
+    sorted, other labels keep their order, and the labels become the names.
+    Pairs given twice count once. Raises InvalidInput on a self-loop, a weight, an unknown name or an index
+    out of range.
     """
     @staticmethod
     def band(
@@ -152,6 +198,13 @@ class Network:
         probability: typing.SupportsFloat | typing.SupportsIndex,
         seed: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> Network: ...
+    @staticmethod
+    def from_adjacency(matrix: typing.Any, directed: bool = False, names: typing.Any = None) -> Network:
+        """
+        From a square matrix of zeros and ones, dense or sparse: entry (i, j) says that i hears j. Explicit
+        zeros are no links; the diagonal is ignored. Names of a DataFrame's columns become the agents'.
+        Raises InvalidInput when it is not square, not symmetric (unless directed) or holds another number.
+        """
     @staticmethod
     def grid(
         rows: typing.SupportsInt | typing.SupportsIndex, columns: typing.SupportsInt | typing.SupportsIndex
@@ -171,10 +224,21 @@ class Network:
     def ring(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
     @staticmethod
     def star(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
     def __init__(
-        self, edges: typing.Any, agents: typing.SupportsInt | typing.SupportsIndex | None = None, directed: bool = False
+        self, edges: typing.Any, agents: typing.Any = None, directed: bool = False, names: typing.Any = None
     ) -> None: ...
     def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    def __str__(self) -> str: ...
+    def index(self, agent: typing.Any) -> int:
+        """
+        The number of the agent with this name (or number).
+        """
     def laplacian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def laplacian_spectrum(self) -> tuple[float, float]:
         """
@@ -194,9 +258,9 @@ class Network:
         """
         Doubly stochastic (N, N) weights; undirected only.
         """
-    def neighbours(self, agent: typing.SupportsInt | typing.SupportsIndex) -> list[int]:
+    def neighbours(self, agent: typing.Any) -> list[int]:
         """
-        Sorted ids of the agents that `agent` hears.
+        Sorted ids of the agents that `agent` (a number or name) hears.
         """
     @property
     def agents(self) -> int: ...
@@ -206,11 +270,18 @@ class Network:
     def directed(self) -> bool: ...
     @property
     def edges(self) -> list[tuple[int, int]]: ...
+    @property
+    def names(self) -> list[str]:
+        """
+        One per agent; empty where none were given.
+        """
 
 class Filter:
     """
-    A filter family with its parameters.
+    A filter family with its parameters. Immutable.
     """
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __hash__(self) -> int: ...
     def __repr__(self) -> str: ...
     @property
     def detail_names(self) -> list[str]:
@@ -227,268 +298,17 @@ class Filter:
         Names of the signals that a run can keep.
         """
 
-class Saturation(Filter):
-    """
-    Saturated consensus filter, with attack detector.
-
-    Source: He, Ren, Sandberg, Johansson, IEEE TAC 2022, Algorithms 1 and 2
-
-    threshold: largest innovation that is used in full; inf = never saturate. May be left out with adaptive = true [measurement], > 0
-    rounds: consensus rounds per sample [1], >= 0, <= 1e+06
-    step: consensus step; left out: 2/(lambda_2 + lambda_max) [1], >= 0
-    chebyshev: Chebyshev-filtered rounds: stronger contraction from the same messages
-    attacked: most sensors attacked (or missing) at a time; enters bound and detector [agents], >= 0
-    initial_error: bound on the distance of the common initial estimate from the state; giving it asks for run-time error bounds [state], > 0
-    detector: Algorithm 2: prove and isolate attacked sensors (their set must not change over time)
-    detector_index: which count of proved sensors enters rhobar(t): "t" = d_i(t-1) as printed, "t+1" = d_i(t), sharper and as sound
-    adaptive: let the threshold follow the known bound on honest innovations (our notes; needs initial_error)
-    accuse_missing: detector: a missing (NaN) measurement counts as proof of attack
-    """
-    def __init__(
-        self,
-        *,
-        threshold: typing.SupportsFloat | typing.SupportsIndex = ...,
-        rounds: typing.SupportsInt | typing.SupportsIndex = 3,
-        step: typing.SupportsFloat | typing.SupportsIndex = ...,
-        chebyshev: bool = False,
-        attacked: typing.SupportsInt | typing.SupportsIndex = 0,
-        initial_error: typing.SupportsFloat | typing.SupportsIndex = ...,
-        detector: bool = False,
-        detector_index: str = "t",
-        adaptive: bool = False,
-        accuse_missing: bool = False,
-    ) -> None: ...
-
-class ScalarGain(Filter):
-    """
-    Scalar-gain consensus filter (no protection).
-
-    Source: Khan, Jadbabaie, Automatica 2014; baseline of the saturation paper
-
-    rounds: consensus rounds per sample [1], >= 0, <= 1e+06
-    step: consensus step; left out: 2/(lambda_2 + lambda_max) [1], >= 0
-    chebyshev: Chebyshev-filtered rounds: stronger contraction from the same messages
-    """
-    def __init__(
-        self,
-        *,
-        rounds: typing.SupportsInt | typing.SupportsIndex = 3,
-        step: typing.SupportsFloat | typing.SupportsIndex = ...,
-        chebyshev: bool = False,
-    ) -> None: ...
-
-class Lfre(Filter):
-    """
-    Local-filtering-based resilient estimation.
-
-    Source: Mitra, Sundaram, Automatica 2019; baseline of the saturation paper
-
-    faulty: values trimmed from each end of the parents' estimates [agents], >= 0
-    poles: real poles of the sources' observers, one per state; left out: equally spaced from 0.3 to 0.4 [1], >= -1, <= 1
-    """
-    def __init__(
-        self,
-        *,
-        faulty: typing.SupportsInt | typing.SupportsIndex = 1,
-        poles: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-    ) -> None: ...
-
-class Rdkf(Filter):
-    """
-    Resilient distributed Kalman filter.
-
-    Source: Dutta, Zhang, Jin, CDC 2019
-
-    weight: lambda of (8), the pull of a measurement at most; its estimate moves by at most half of (10), which is proportional to it; 0 ignores all measurements [1], >= 0, <= 1e+100
-    penalty: of the whitened residual: "norm" = the paper's; "huber" = the same pull, but a Kalman step as long as it is not reached; "l1" = sensor by sensor; "group" = the neighbours' measurements too, which then travel
-    solver: of the step: "exact", or "ipopt" as a slow cross-check of penalty "norm" in builds that have it
-    smoothing: penalty "norm" only: lambda sqrt(|r|^2 + epsilon^2); solver "ipopt" takes 1e-6 for 0 [1], >= 0, <= 1e+100
-    initial_error: bound on the distance of every initial estimate from the state; giving it asks for run-time error bounds (needs the model's process_bound) [state], >= 0
-    """
-    def __init__(
-        self,
-        *,
-        weight: typing.SupportsFloat | typing.SupportsIndex = 1.0,
-        penalty: str = "norm",
-        solver: str = "exact",
-        smoothing: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        initial_error: typing.SupportsFloat | typing.SupportsIndex = ...,
-    ) -> None: ...
-
-class Dkf(Filter):
-    """
-    Distributed Kalman filter, steady state (no protection).
-
-    Source: (7) of Dutta, Zhang, Jin, CDC 2019
-
-    """
-    def __init__(self) -> None: ...
-
-class Structural(Filter):
-    """
-    Single-time-scale estimator with exact residual tests.
-
-    Source: Doostmohammadian et al., IEEE TNSE 2022
-
-    design: how the gains are found; auto: riccati, else kalman, else h2
-    share: whose measurements an agent uses besides its own
-    self_weight: weight of an agent's own estimate, the rest spread evenly over its neighbours; left out: 1/(degree + 1). Small ones stabilise more [1], >= 0, <= 1
-    weights: N*N mixing weights row by row, instead of self_weight [1], >= 0
-    sharing: N*N numbers 0 or 1 row by row, instead of share [1], >= 0, <= 1
-    gain: N*n*n numbers, K_i row by row, agent by agent, instead of design [1]
-    false_alarm: probability per sample of an alarm without an attack [1], > 0, <= 1
-    test: what is tested: y - c'x after the update, or before it (innovation)
-    window: 1: a test per sample; more: chi-square over so many residuals, exact covariance [samples], >= 1, <= 1000
-    alarm_after: tests in a row above the threshold before the verdict [samples], >= 1, <= 1e+06
-    clear_after: tests in a row below it before the verdict is taken back [samples], >= 1, <= 1e+06
-    settle: samples without a test after the start or a loss; -1: until rho^k < 0.01 [samples], >= -1, <= 1e+06
-    isolate: leave the own measurement out while the alarm lasts
-    accuse_missing: a missing own measurement counts as an alarm
-    """
-    def __init__(
-        self,
-        *,
-        design: str = "auto",
-        share: str = "neighbours",
-        self_weight: typing.SupportsFloat | typing.SupportsIndex = ...,
-        weights: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        sharing: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        gain: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        false_alarm: typing.SupportsFloat | typing.SupportsIndex = 0.01,
-        test: str = "residual",
-        window: typing.SupportsInt | typing.SupportsIndex = 1,
-        alarm_after: typing.SupportsInt | typing.SupportsIndex = 1,
-        clear_after: typing.SupportsInt | typing.SupportsIndex = 5,
-        settle: typing.SupportsInt | typing.SupportsIndex = -1,
-        isolate: bool = False,
-        accuse_missing: bool = False,
-    ) -> None: ...
-
-class PartialSharing(Filter):
-    """
-    Consensus Kalman filter with partial sharing (BR-CDF).
-
-    Source: Moradi, Gogineni, Venkategowda, Werner, 2023, Algorithm 1
-
-    gain: factor of the consensus gain C_i = gamma (A - K_i H_i) P_i; see the stability tests of check [1], >= 0, <= 1e+06
-    shared: entries of the estimate that every agent sends per sample; 0 = all [entries], >= 0
-    shared_each: the same, one number per agent; overrides shared [entries], >= 1
-    selection: which entries every agent sends first: zeros and ones, agent by agent, one per state; overrides shared, shared_each and starts, >= 0, <= 1
-    starts: first selections: "random" subsets (uncoordinated, the paper), or "coordinated": everybody begins with the first entries
-    selection_seed: seed of the random first selections, >= 0
-    shift: circular shift of all selections per sample; any whole number. Without a common factor with the number of states every entry has its turn [entries]
-    start_variance: P_0 = start_variance I [state^2], >= 0, <= 1e+100
-    start_covariance: P_0 row by row, symmetric positive semidefinite; overrides start_variance [state^2]
-    start_is_prediction: the initial estimate and P_0 belong to the first measurement (xhat(0) of the paper), not to the sample before it
-    gains: "frozen" once (11) has converged, "varying" for ever (same values but for rounding), or "steady": the limits from the start
-    """
-    def __init__(
-        self,
-        *,
-        gain: typing.SupportsFloat | typing.SupportsIndex = ...,
-        shared: typing.SupportsInt | typing.SupportsIndex = 0,
-        shared_each: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        selection: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        starts: str = "random",
-        selection_seed: typing.SupportsInt | typing.SupportsIndex = 0,
-        shift: typing.SupportsInt | typing.SupportsIndex = 1,
-        start_variance: typing.SupportsFloat | typing.SupportsIndex = 1.0,
-        start_covariance: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        start_is_prediction: bool = False,
-        gains: str = "frozen",
-    ) -> None: ...
-
-class Platoon(Filter):
-    """
-    Observer, detector and controller of a string of vehicles.
-
-    Source: He, Hashemi, Johansson, Automatica 2021, Algorithms 1, 2 and 3
-
-    threshold: saturation threshold: beta_{i,0} of (25), or the static one; left out: the one with the least certified limit under the adaptive threshold [m, m/s], > 0
-    adaptive: the threshold follows the error bound (25); false: static
-    attacked: most absolute sensors attacked, 1..L [sensors]
-    process_noise: ||d_i(t)|| <= eps [m, m/s], >= 0
-    measurement_noise: length of the noise vector of every absolute and relative sensor is at most mu [m, m/s], >= 0
-    initial_error: ||xhat_i(0) - x_i(0)|| <= q [m, m/s], > 0
-    varpi: 1/varpi is the observer gain of vehicles that hear fewer than 2L others [1], > 1
-    reference: position and velocity of the reference at time 0, or at times 0, 1, ...; constant velocity after the last pair [m, m/s]
-    spacing: desired gap between vehicles [m]
-    gs: controller gain on positions, > 0 [1/s^2]
-    gv: controller gain on velocities, > T g_s [1/s]
-    detector: Algorithm 2; false: the sets stay as given
-    bound: "safe" (valid), "tight" (valid, smaller, more work) or "printed": (17) as printed, which is false (counterexamples: cases process_noise_counterexample and lemma1_counterexample) and is therefore never reported as a bound
-    tie: (13), two sources equally near: lower label or smaller error bound
-    count: (29): "runs" of suspects as printed, or "cover": send the pairs that fired and count the least number of sensors that explains them; never weaker
-    pairs: test (27) for all pairs in range and conclude from all explanations by at most b attackers (our notes, S4)
-    neighbours: test (28) for the measurements of all neighbours (our notes, S6)
-    median: take the median of the reconstructed measurements where its bound is smaller (our notes, S3)
-    accuse_missing: a missing (NaN) absolute measurement counts as proof of attack
-    prior_attacked: what vehicles are told before the start: pairs vehicle, sensor proved attacked
-    prior_suspected: the same for suspected sensors
-    prior_free: the same for sensors that are known to be free
-    """
-    def __init__(
-        self,
-        *,
-        threshold: typing.SupportsFloat | typing.SupportsIndex = ...,
-        adaptive: bool = True,
-        attacked: typing.SupportsInt | typing.SupportsIndex = 1,
-        process_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
-        measurement_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
-        initial_error: typing.SupportsFloat | typing.SupportsIndex = ...,
-        varpi: typing.SupportsFloat | typing.SupportsIndex = 2.0,
-        reference: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        spacing: typing.SupportsFloat | typing.SupportsIndex = 20.0,
-        gs: typing.SupportsFloat | typing.SupportsIndex = ...,
-        gv: typing.SupportsFloat | typing.SupportsIndex = ...,
-        detector: bool = True,
-        bound: str = "safe",
-        tie: str = "low",
-        count: str = "runs",
-        pairs: bool = False,
-        neighbours: bool = False,
-        median: bool = False,
-        accuse_missing: bool = False,
-        prior_attacked: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        prior_suspected: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        prior_free: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-    ) -> None: ...
-
-class PlatoonBaseline(Filter):
-    """
-    Unprotected and trimmed-mean control of a string of vehicles.
-
-    Source: baselines PWM, PTD (Lin, Jia 2009), PBE (Mitra, Sundaram 2019) of the platoon paper; our definitions
-
-    kind: which one
-    attacked: pbe: values trimmed from each end [sensors], >= 0
-    varpi: pbe: 1/varpi is the gain of the local update [1], >= 1
-    reference: position and velocity of the reference at time 0, or at times 0, 1, ... [m, m/s]
-    spacing: desired gap between vehicles [m]
-    gs: controller gain on positions, > 0 [1/s^2]
-    gv: controller gain on velocities, > T g_s [1/s]
-    process_noise: of the simulated vehicles [m, m/s], >= 0
-    measurement_noise: of the simulated sensors [m, m/s], >= 0
-    """
-    def __init__(
-        self,
-        *,
-        kind: str = "",
-        attacked: typing.SupportsInt | typing.SupportsIndex = 1,
-        varpi: typing.SupportsFloat | typing.SupportsIndex = 2.0,
-        reference: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
-        spacing: typing.SupportsFloat | typing.SupportsIndex = 20.0,
-        gs: typing.SupportsFloat | typing.SupportsIndex = ...,
-        gv: typing.SupportsFloat | typing.SupportsIndex = ...,
-        process_noise: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-        measurement_noise: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-    ) -> None: ...
-
 class Attack:
     """
-    An attack with its schedule; made by the functions of garrison.attacks.
+    An attack with its schedule; made by the functions of garrison.attacks. Immutable.
     """
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
     def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
     @property
     def agents(self) -> list[int]:
         """
@@ -497,9 +317,23 @@ class Attack:
     @property
     def name(self) -> str: ...
     @property
+    def params(self) -> dict: ...
+    @property
+    def probability(self) -> float: ...
+    @property
+    def schedule(self) -> list:
+        """
+        (start, agents) phases.
+        """
+    @property
     def start(self) -> int:
         """
         First sample that may be attacked.
+        """
+    @property
+    def stop(self) -> typing.Any:
+        """
+        First sample that is not attacked any more; None = never.
         """
     @property
     def target(self) -> str: ...
@@ -577,7 +411,13 @@ class SubsetBound:
     Result of a search over the s removed sensors; the true value lies in [lower, upper].
     Safe in theorems: lower of lambda0, upper of varpi and tau0.
     """
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
     def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
     @property
     def exact(self) -> bool:
         """
@@ -597,10 +437,41 @@ class SubsetBound:
     @property
     def upper(self) -> float: ...
 
+class FitOptions:
+    """
+    What a model was identified with; see garrison.fit.
+    """
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def factor(self) -> float: ...
+    @property
+    def factors(self) -> int: ...
+    @property
+    def harmonics(self) -> int: ...
+    @property
+    def period(self) -> float:
+        """
+        samples
+        """
+    @property
+    def root(self) -> bool: ...
+
 class Identified:
     """
     A model identified from clean records; use garrison.fit.
     """
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
+    def __setstate__(self, arg0: dict) -> None: ...
     def measurements(
         self,
         raw: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
@@ -635,6 +506,8 @@ class Identified:
         """
         (N,)
         """
+    @property
+    def options(self) -> FitOptions: ...
     @property
     def process_bound(self) -> float: ...
     @property
@@ -677,7 +550,8 @@ def chebyshev_contraction(
     gamma: typing.SupportsFloat | typing.SupportsIndex, rounds: typing.SupportsInt | typing.SupportsIndex
 ) -> float:
     """
-    What `rounds` Chebyshev-filtered rounds leave of a disagreement.
+    What `rounds` Chebyshev-filtered rounds (0..1e6) leave of a disagreement that one plain round shrinks to
+    `gamma`, in [0, 1].
     """
 
 def check(filter: Filter, model: Model, network: Network) -> tuple[list, list]:
@@ -735,15 +609,15 @@ def make_attack(
             collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
         ]
     ],
-    stop: typing.SupportsInt | typing.SupportsIndex | None,
-    probability: typing.SupportsFloat | typing.SupportsIndex,
-    params: dict,
+    stop: typing.SupportsInt | typing.SupportsIndex | None = None,
+    probability: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+    params: dict = {},
 ) -> Attack:
     """
     The attack `name`. schedule: (start, agents) phases in order of time.
     """
 
-def make_filter(name: str, params: dict) -> Filter:
+def make_filter(name: str, params: dict = {}) -> Filter:
     """
     The filter `name`; unknown names are refused with the nearest one.
     """
@@ -766,7 +640,7 @@ def one_step_sparse_observable(
     s: typing.SupportsInt | typing.SupportsIndex,
 ) -> bool:
     """
-    Any N - s rows of C span the state.
+    Any N - s rows of C span the state; s in 0..N.
     """
 
 def replay(

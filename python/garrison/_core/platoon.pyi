@@ -39,6 +39,11 @@ class Setting:
     What Assumptions 1 and 2 and the observer's tuning say: N vehicles, range L, period T,
     b attacked sensors, noise bounds eps and mu, initial error q, threshold beta.
     """
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
     def __init__(
         self,
         *,
@@ -53,6 +58,8 @@ class Setting:
         beta: typing.SupportsFloat | typing.SupportsIndex,
         adaptive: bool = True,
     ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
     @property
     def beta0(self) -> float:
         """
@@ -97,12 +104,12 @@ def best_threshold(setting: Setting) -> float:
 
 def beta1_bar(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (20)
+    (20); omega > 0.
     """
 
 def beta2_bar(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (20)
+    (20); omega > 0.
     """
 
 def beta_interval(setting: Setting) -> tuple:
@@ -117,12 +124,12 @@ def beta_interval_safe(setting: Setting) -> tuple:
 
 def f3(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (24)
+    (24); omega > 0.
     """
 
 def f4(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (24)
+    (24); omega > 0.
     """
 
 def gain(
@@ -186,7 +193,7 @@ def omega_interval(setting: Setting) -> tuple:
 
 def proposition2(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> bool:
     """
-    (23)
+    (23); omega > 0.
     """
 
 def runs(labels: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> tuple[list[list[int]], int]:

@@ -44,6 +44,11 @@ class Setting:
     Model, graphs and noise of the structural filter's analysis; see the C++ header.
     A (n, n), C (N, n), W and U (N, N), E (n, n), R (N, N).
     """
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
     def __init__(
         self,
         *,
@@ -54,6 +59,8 @@ class Setting:
         E: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
         R: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
     ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
     @property
     def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     @property
@@ -216,7 +223,11 @@ def template_statistics(
 def thresholds(
     residual_std: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     m: typing.SupportsFloat | typing.SupportsIndex,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    m standard deviations of every residual.
+    """
+
 def thresholds_printed(
     setting: Setting, Q1: typing.SupportsFloat | typing.SupportsIndex, m: typing.SupportsFloat | typing.SupportsIndex
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:

@@ -4,5 +4,5 @@
 #include "garrison/filters/partial_sharing/together.hpp"
 
 namespace garrison {
-FamilyInfo partial_sharing_family() { return family_info<PartialSharing>(); }
+template FamilyInfo family_info<PartialSharing>();
 }  // namespace garrison

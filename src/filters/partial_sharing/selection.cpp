@@ -14,6 +14,13 @@ int wrapped(std::int64_t shift, int states) {
   return static_cast<int>(rest < 0 ? rest + states : rest);
 }
 
+int columns_of(const MatrixRef& start) {
+  if (start.rows() < 1 || start.cols() < 1)
+    refuse("start", std::to_string(start.rows()) + " x " + std::to_string(start.cols()),
+           "agents x states, at least one of each");
+  return static_cast<int>(start.cols());
+}
+
 void require_shared(std::span<const int> shared, int states) {
   for (std::size_t i = 0; i < shared.size(); ++i)
     if (shared[i] < 1 || shared[i] > states)
@@ -24,8 +31,8 @@ void require_shared(std::span<const int> shared, int states) {
 }  // namespace
 
 Selection::Selection(const MatrixRef& start, std::int64_t shift)
-    : states_(static_cast<int>(start.cols())),
-      shift_(wrapped(shift, static_cast<int>(start.cols()))),
+    : states_(columns_of(start)),
+      shift_(wrapped(shift, states_)),
       period_(shift_ == 0 ? 1 : states_ / std::gcd(states_, shift_)) {
   for (Eigen::Index i = 0; i < start.rows(); ++i) {
     for (Eigen::Index a = 0; a < start.cols(); ++a) {

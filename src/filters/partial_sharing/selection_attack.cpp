@@ -76,6 +76,12 @@ SelectionProblem::SelectionProblem(Matrix form, int count, int limit)
            "at most " + text(kMostSubsets) + " subsets per agent", "every subset of a block is tried");
 }
 
+double SelectionProblem::objective(const Vector& s) const {
+  if (s.size() != G.rows())
+    refuse("s", std::to_string(s.size()) + " numbers", std::to_string(G.rows()) + ", as G has rows");
+  return s.dot(G * s);
+}
+
 Vector SelectionProblem::best_block(int i, const Vector& s, double factor) const {
   const auto own = static_cast<Eigen::Index>(i) * size;
   const Matrix D = G.block(own, own, size, size);
@@ -99,6 +105,9 @@ Ascent ascent(const SelectionProblem& p, const Vector& start, int sweeps, double
               bool rounding) {
   if (start.size() != p.G.rows())
     refuse("start", std::to_string(start.size()) + " numbers", std::to_string(p.G.rows()));
+  constexpr int most_sweeps = 1'000'000;
+  if (sweeps < 0 || sweeps > most_sweeps)
+    refuse("sweeps", std::to_string(sweeps), "0.." + std::to_string(most_sweeps));
   Ascent out;
   out.s = start;
   out.objective.push_back(p.objective(out.s));
@@ -122,6 +131,9 @@ Ascent ascent(const SelectionProblem& p, const Vector& start, int sweeps, double
 }
 
 Vector best_of_starts(const SelectionProblem& p, int starts, std::uint64_t seed) {
+  constexpr int most_starts = 100'000;
+  if (starts < 1 || starts > most_starts)
+    refuse("starts", std::to_string(starts), "1.." + std::to_string(most_starts));
   const Random chance(seed, 0, Purpose::start, 3);
   Vector best = Vector::Zero(p.G.rows());
   double record = p.objective(best);

@@ -4,6 +4,6 @@
 #include "garrison/filters/platoon/filter.hpp"
 
 namespace garrison {
-FamilyInfo platoon_family() { return family_info<Platoon>(); }
-FamilyInfo platoon_baseline_family() { return family_info<PlatoonBaseline>(); }
+template FamilyInfo family_info<Platoon>();
+template FamilyInfo family_info<PlatoonBaseline>();
 }  // namespace garrison

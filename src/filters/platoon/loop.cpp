@@ -12,8 +12,13 @@
 namespace garrison::platoon {
 namespace {
 
-void require_loop(int vehicles, double period, double gs, double gv) {
+void require_vehicles(int vehicles) {
   if (vehicles < 1) refuse("vehicles (N)", std::to_string(vehicles), "at least 1");
+  require_memory("vehicles (N)", std::to_string(vehicles), 100.0 * vehicles);  // some 2 x 2 matrices each
+}
+
+void require_loop(int vehicles, double period, double gs, double gv) {
+  require_vehicles(vehicles);
   if (!(period > 0.0) || !std::isfinite(period)) refuse("period (T)", text(period), "a finite number > 0");
   if (!std::isfinite(gs)) refuse("gs", text(gs), "a finite gain");
   if (!std::isfinite(gv)) refuse("gv", text(gv), "a finite gain");
@@ -73,7 +78,7 @@ double summed_powers(std::vector<Mat<2>> Q) {
 }  // namespace
 
 std::vector<double> grounded_eigenvalues(int vehicles) {
-  if (vehicles < 1) refuse("vehicles (N)", std::to_string(vehicles), "at least 1");
+  require_vehicles(vehicles);
   std::vector<double> all;
   for (int l = 1; l <= vehicles; ++l) all.push_back(eigenvalue(l, vehicles));
   return all;

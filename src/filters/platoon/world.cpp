@@ -132,6 +132,7 @@ class Vehicles final : public World {
 
 Model model(int vehicles, double period, bool inputs) {
   if (vehicles < 3) refuse("vehicles (N)", std::to_string(vehicles), "at least 3");
+  require_memory("vehicles (N)", std::to_string(vehicles), 300.0 * vehicles);  // C_i and what belongs to it
   if (!(period > 0.0) || !std::isfinite(period)) refuse("period (T)", text(period), "a finite number > 0");
   Matrix A(2, 2);
   A << 1.0, period, 0.0, 1.0;

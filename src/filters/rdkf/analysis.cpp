@@ -93,6 +93,15 @@ Vector series(const Matrix& T, const std::vector<Matrix>& B, int N, int n) {
   return Vector::Constant(N, kInfinity);
 }
 
+/// Refuses the covariances of another network.
+void require_same(const Setting& s, const SteadyState& steady) {
+  const auto agents = static_cast<int>(steady.P.size());
+  const auto n = agents == 0 ? 0 : static_cast<int>(steady.P.front().rows());
+  if (agents != s.agents() || n != s.states())
+    refuse("steady", std::to_string(agents) + " agents with " + std::to_string(n) + " states",
+           std::to_string(s.agents()) + " with " + std::to_string(s.states()) + ", as the setting has");
+}
+
 }  // namespace
 
 double deviation_bound(const Setting& s, const SteadyState& steady, int i, double lambda, Penalty penalty) {
@@ -125,12 +134,19 @@ std::vector<double> prior_error_norms(const Setting& s, const SteadyState& stead
 }
 
 double scalar_basin(const Setting& s, const SteadyState& steady, double lambda) {
+  require_same(s, steady);
   if (s.agents() != 1 || s.states() != 1) return kNaN;
   const double a = std::abs(s.A(0, 0));
   return a > 1.0 ? deviation_bound(s, steady, 0, lambda, Penalty::norm) / (a - 1.0) : kInfinity;
 }
 
 double lyapunov(const SteadyState& steady, const MatrixRef& errors) {
+  const auto agents = static_cast<Eigen::Index>(steady.P.size());
+  const Eigen::Index n = agents == 0 ? 0 : steady.P.front().rows();
+  if (errors.rows() != n || errors.cols() != agents)
+    refuse("errors",
+           std::to_string(errors.cols()) + " agents with " + std::to_string(errors.rows()) + " states",
+           std::to_string(agents) + " agents with " + std::to_string(n) + " states");
   double largest = 0.0;
   for (std::size_t i = 0; i < steady.P.size(); ++i) {
     const Vector e = errors.col(static_cast<Eigen::Index>(i));
@@ -141,6 +157,8 @@ double lyapunov(const SteadyState& steady, const MatrixRef& errors) {
 
 Constants constants(const Setting& s, const SteadyState& steady, double lambda, Penalty penalty) {
   const int N = s.agents();
+  require_same(s, steady);
+  if (!(lambda >= 0.0)) refuse("weight (lambda)", text(lambda), "a number >= 0");
   Constants c;
   c.resiliency_bound = c.prior_deviation_bound = c.refined_threshold = Vector::Zero(N);
   c.level = {kInfinity, kInfinity, kInfinity};

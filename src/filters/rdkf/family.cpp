@@ -4,6 +4,6 @@
 
 namespace garrison {
 // In one place: both run the same engine.
-FamilyInfo rdkf_family() { return family_info<Rdkf>(); }
-FamilyInfo dkf_family() { return family_info<Dkf>(); }
+template FamilyInfo family_info<Rdkf>();
+template FamilyInfo family_info<Dkf>();
 }  // namespace garrison

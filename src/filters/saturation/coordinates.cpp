@@ -12,6 +12,12 @@ namespace {
 /// T is refused, and a direction counts as not measured, below this ratio of extreme singular values.
 constexpr double kSingular = 1e-13;
 
+/// A and C of a plant with at least one state and one sensor.
+void require_plant(MatrixRef A, MatrixRef C) {
+  if (A.rows() < 1) refuse("A", "0 rows", "a square matrix with at least one row");
+  if (C.rows() < 1) refuse("C", "0 rows", "one row per sensor, at least one");
+}
+
 void require_shape(const char* which, MatrixRef M, Eigen::Index rows, Eigen::Index columns) {
   const auto shape = [](Eigen::Index r, Eigen::Index c) {
     return std::to_string(r) + " x " + std::to_string(c);
@@ -44,6 +50,7 @@ UnitRows normalise_rows(MatrixRef C, VectorRef b_v) {
 }
 
 Coordinates transform(MatrixRef A, MatrixRef C, double b_w, VectorRef b_v, MatrixRef T) {
+  require_plant(A, C);
   const Eigen::Index n = A.rows();
   require_shape("A", A, n, n);
   require_shape("C", C, C.rows(), n);
@@ -68,6 +75,7 @@ Coordinates scale_states(MatrixRef A, MatrixRef C, double b_w, VectorRef b_v, Ve
 }
 
 Coordinates whiten(MatrixRef A, MatrixRef C, double b_w, VectorRef b_v) {
+  require_plant(A, C);
   require_shape("C", C, C.rows(), A.cols());
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(C.transpose() * C));
   const Vector& values = eigen.eigenvalues();

@@ -3,5 +3,5 @@
 #include "garrison/filters/saturation/filter.hpp"
 
 namespace garrison {
-FamilyInfo saturation_family() { return family_info<Saturation>(); }
+template FamilyInfo family_info<Saturation>();
 }  // namespace garrison

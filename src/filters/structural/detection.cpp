@@ -20,7 +20,13 @@ void require_columns(const MatrixRef& residuals, Index agents) {
 }
 
 int window_of(std::span<const Matrix> covariances) {
-  if (covariances.empty()) refuse("window", "0", "at least 1");
+  if (covariances.empty()) refuse("covariances", "none", "one (N, N) matrix per lag, at least one");
+  const auto N = covariances.front().rows();
+  for (std::size_t h = 0; h < covariances.size(); ++h)
+    if (covariances[h].rows() != N || covariances[h].cols() != N)
+      refuse("covariances[" + std::to_string(h) + "]",
+             std::to_string(covariances[h].rows()) + " x " + std::to_string(covariances[h].cols()),
+             std::to_string(N) + " x " + std::to_string(N));
   return static_cast<int>(covariances.size());
 }
 
@@ -106,6 +112,9 @@ Matrix template_statistics(const MatrixRef& residuals, std::span<const Matrix> c
   const int w = window_of(covariances);
   const Index N = covariances.front().rows();
   require_columns(residuals, N);
+  if (dc_gain.rows() != N || dc_gain.cols() != N)
+    refuse("dc_gain", std::to_string(dc_gain.rows()) + " x " + std::to_string(dc_gain.cols()),
+           std::to_string(N) + " x " + std::to_string(N));
   Matrix S(w * N, w * N);
   for (int a = 0; a < w; ++a)
     for (int b = 0; b < w; ++b) {

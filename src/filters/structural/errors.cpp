@@ -74,6 +74,7 @@ Matrix lyapunov(const MatrixRef& M, const MatrixRef& F) {
 Stationary stationary(const Setting& s, const GainMatrices& K, int lags) {
   require_valid(s);
   if (lags < 0) refuse("lags", std::to_string(lags), "at least 0");
+  require_memory("lags", std::to_string(lags), 8.0 * lags * static_cast<double>(s.N() * s.N()));
   const ErrorDynamics d = error_dynamics(s, K);
   Stationary x;
   x.rho = spectral_radius(d.Ahat);
@@ -117,6 +118,8 @@ Matrix step_response(const Setting& s, const GainMatrices& K, int agent, int row
   const ErrorDynamics d = error_dynamics(s, K);
   if (agent < 0 || agent >= s.N())
     refuse("agent", std::to_string(agent), "an agent in 0.." + std::to_string(s.N() - 1));
+  if (rows < 0) refuse("rows", std::to_string(rows), "at least 0");
+  require_memory("rows", std::to_string(rows), 8.0 * rows * static_cast<double>(s.N()));
   const Matrix Cb = residual_map(s);
   Vector e = Vector::Zero(d.Ahat.rows());
   Matrix r(rows, s.N());
@@ -142,6 +145,9 @@ Matrix isolation_ratios(const Setting& s, const GainMatrices& K) {
 }
 
 Matrix predictions(const Setting& s, const MatrixRef& estimates) {
+  if (estimates.rows() != s.N() || estimates.cols() != s.n())
+    refuse("estimates", std::to_string(estimates.rows()) + " x " + std::to_string(estimates.cols()),
+           std::to_string(s.N()) + " x " + std::to_string(s.n()) + ", one row per agent");
   return s.W * (estimates * s.A.transpose());
 }
 

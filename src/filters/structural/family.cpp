@@ -3,5 +3,5 @@
 #include "garrison/filters/structural/filter.hpp"
 
 namespace garrison {
-FamilyInfo structural_family() { return family_info<Structural>(); }
+template FamilyInfo family_info<Structural>();
 }  // namespace garrison

@@ -109,6 +109,12 @@ Designed design_gains(const Setting& s, const std::string& method) {
 }
 
 ScalarGainChoice best_scalar_gain(double a, const MatrixRef& W) {
+  if (!std::isfinite(a)) refuse("a", text(a), "a finite number");
+  if (W.rows() != W.cols() || W.rows() < 1 || !W.allFinite())
+    refuse(
+        "W",
+        std::to_string(W.rows()) + " x " + std::to_string(W.cols()) + (W.allFinite() ? "" : ", not finite"),
+        "a square matrix of finite numbers with at least one row");
   const auto radius = [&](double k) {
     Matrix M = W;
     M.row(0) *= 1.0 - k;

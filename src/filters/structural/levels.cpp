@@ -42,7 +42,9 @@ double power(double mean, double std, double threshold) {
 
 double chi_square_level(int degrees, double rate) {
   require_rate("false_alarm", rate);
-  if (degrees < 1) refuse("window", std::to_string(degrees), "at least 1");
+  constexpr int most = 1000;
+  if (degrees < 1 || degrees > most)
+    refuse("degrees (window)", std::to_string(degrees), "1.." + std::to_string(most));
   const double length = certificate::chi(rate, degrees);
   return length * length;
 }
@@ -54,20 +56,23 @@ Vector thresholds(const Vector& residual_std, double m) {
 
 namespace {
 void require_bound(double Q1) {
-  if (!std::isfinite(Q1))
-    refuse("bound", text(Q1), "a finite Q1", "the bound needs |Ahat|_2 < 1; the exact thresholds do not");
+  if (!(Q1 >= 0.0 && std::isfinite(Q1)))
+    refuse("bound", text(Q1), "a finite Q1 >= 0",
+           "the bound needs |Ahat|_2 < 1; the exact thresholds do not");
 }
 }  // namespace
 
 Vector thresholds_printed(const Setting& s, double Q1, double m) {
   require_level(m);
   require_bound(Q1);
+  require_valid(s);
   return m * (s.C.rowwise().norm() * Q1 + s.R.diagonal());
 }
 
 Vector thresholds_root(const Setting& s, double Q1, double m) {
   require_level(m);
   require_bound(Q1);
+  require_valid(s);
   return m * (s.C.rowwise().squaredNorm() * Q1 + s.R.diagonal()).cwiseSqrt();
 }
 

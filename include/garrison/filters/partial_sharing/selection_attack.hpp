@@ -17,7 +17,7 @@ namespace garrison::partial_sharing {
 struct GARRISON_EXPORT SelectionProblem {
   SelectionProblem(Matrix G, int blocks, int most);  ///< @throws InvalidInput on shapes, most outside 0..m
 
-  double objective(const Vector& s) const { return s.dot(G * s); }
+  double objective(const Vector& s) const;  ///< @throws InvalidInput when s does not have B m numbers
   /// Best block i with the others fixed: v'G_ii v + factor * sum over j != i of v'G_ij s_j. Ties: fewest
   /// ones, then lexicographic by index set.
   Vector best_block(int i, const Vector& s, double factor) const;

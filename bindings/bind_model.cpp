@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plant.
+#include "bindings.hpp"
+#include "convert.hpp"
+#include "garrison/core/model.hpp"
+#include "kept.hpp"
+
+using namespace garrison;
+
+namespace {
+
+std::string at(const char* which, std::size_t k) {
+  return std::string(which) + "[" + std::to_string(k) + "]";
+}
+
+/// The entries of a list, one per agent.
+py::list per_agent(const std::string& which, const py::object& given, const std::string& expected) {
+  const py::object plain = py::hasattr(given, "toarray") ? given.attr("toarray")() : given;
+  const bool can = !convert::scalar(plain) && !py::isinstance<py::str>(plain) &&
+                   !py::isinstance<py::bytes>(plain) && !py::isinstance<py::dict>(plain);
+  if (!can) refuse(which, convert::shown(plain), expected);
+  return py::list(plain);
+}
+
+/// C: one matrix per agent, or one N x n array with a row per agent. A flat list of n numbers is one row.
+std::vector<Matrix> rows_per_agent(const py::object& given, Eigen::Index n) {
+  std::vector<Matrix> C;
+  const std::string rows = "one row, or rows x " + std::to_string(n);
+  for (const auto& one : per_agent("C", given, "one matrix of observation rows per agent")) {
+    const std::string which = at("C", C.size());
+    const auto array = convert::array(which, one, rows + " numbers");
+    if (array.ndim() > 2 || (array.ndim() == 0 && n != 1))
+      refuse(which, std::to_string(array.ndim()) + " dimensions", rows);
+    if (array.size() == 0)
+      C.emplace_back(0, n);
+    else if (array.ndim() == 2)
+      C.push_back(convert::eigen(array));
+    else
+      C.push_back(convert::eigen(array).transpose());
+  }
+  return C;
+}
+
+Vector bound_per_agent(const py::object& given, std::size_t agents) {
+  if (given.is_none()) return {};
+  const auto array = convert::array("measurement_bound", given, "a number, or one number per agent");
+  if (array.ndim() > 1)
+    refuse("measurement_bound", convert::shown(array), "a number, or one number per agent");
+  if (array.ndim() == 0) return Vector::Constant(static_cast<Eigen::Index>(agents), *array.data());
+  return Eigen::Map<const Vector>(array.data(), array.size());
+}
+
+/// A number (times the identity), one n x n matrix for all, or one per agent.
+void set_process_covariance(Noise& noise, const py::object& given, Eigen::Index n) {
+  const char* which = "process_covariance";
+  const std::string expected = "a number, n x n numbers, or one n x n matrix per agent";
+  const auto all = convert::array(which, given, expected);
+  if (all.ndim() == 0) {
+    noise.process_covariance = *all.data() * Matrix::Identity(n, n);
+  } else if (all.ndim() == 2) {
+    noise.process_covariance = convert::eigen(all);
+  } else if (all.ndim() == 3) {
+    for (const auto& one : py::list(all))
+      noise.agent_process_covariance.push_back(
+          convert::eigen(convert::Array(py::reinterpret_borrow<py::object>(one))));
+  } else {
+    refuse(which, convert::shown(all), expected);
+  }
+}
+
+/// One entry for each agent: a matrix, or a number (times the identity), or the numbers of its diagonal.
+std::vector<Matrix> measurement_covariances(const py::object& given, const std::vector<Matrix>& C) {
+  const char* which = "measurement_covariance";
+  std::vector<Matrix> all;
+  if (convert::scalar(given)) {
+    const double variance = convert::number(which, given);
+    for (const Matrix& rows : C) all.push_back(variance * Matrix::Identity(rows.rows(), rows.rows()));
+    return all;
+  }
+  for (const auto& one : per_agent(which, given, "a number, or one matrix per agent")) {
+    const std::string name = at(which, all.size());
+    const auto array = convert::array(name, one, "a number, or m x m numbers");
+    if (array.ndim() > 2) refuse(name, convert::shown(array), "a number, or m x m numbers");
+    const Eigen::Index m = all.size() < C.size() ? C[all.size()].rows() : 0;
+    if (array.size() == 0)
+      all.emplace_back(0, 0);
+    else if (array.ndim() == 2)
+      all.push_back(convert::eigen(array));
+    else if (array.ndim() == 1)
+      all.push_back(Eigen::Map<const Vector>(array.data(), array.size()).asDiagonal().toDenseMatrix());
+    else
+      all.push_back(*array.data() * Matrix::Identity(m, m));
+  }
+  return all;
+}
+
+std::vector<std::string> optional_names(const char* which, const py::object& given) {
+  return given.is_none() ? std::vector<std::string>() : convert::names(which, given);
+}
+
+/// units: a dict from the name of a state or output to its unit, or one text for all states and named
+/// outputs.
+std::map<std::string, std::string> units_of(const py::object& given, const Labels& labels, Eigen::Index n) {
+  std::map<std::string, std::string> units;
+  if (given.is_none()) return units;
+  if (py::isinstance<py::str>(given)) {
+    const auto unit = convert::words("units", given);
+    for (Eigen::Index k = 0; labels.states.empty() && k < n; ++k) units["x" + std::to_string(k + 1)] = unit;
+    for (const auto& name : labels.states) units[name] = unit;
+    for (const auto& name : labels.outputs) units[name] = unit;
+    return units;
+  }
+  if (!py::isinstance<py::dict>(given))
+    refuse("units", convert::shown(given), "a dict from names of states and outputs to units, or one unit");
+  for (const auto& [name, unit] : py::reinterpret_borrow<py::dict>(given))
+    units[convert::words("units", name)] = convert::words("units", unit);
+  return units;
+}
+
+Model make_model(const py::object& A, const py::object& C, const py::object& process_bound,
+                 const py::object& measurement_bound, const py::object& process_covariance,
+                 const py::object& measurement_covariance, const py::object& states,
+                 const py::object& outputs, const py::object& sources, const py::object& units,
+                 const py::object& exposed) {
+  const Matrix plant = convert::eigen(convert::matrix("A", A));
+  std::vector<Matrix> rows = rows_per_agent(C, plant.cols());
+  Noise noise;
+  if (!process_bound.is_none()) noise.process_bound = convert::number("process_bound", process_bound);
+  noise.measurement_bound = bound_per_agent(measurement_bound, rows.size());
+  if (!process_covariance.is_none()) set_process_covariance(noise, process_covariance, plant.rows());
+  if (!measurement_covariance.is_none())
+    noise.measurement_covariance = measurement_covariances(measurement_covariance, rows);
+  Labels labels{optional_names("states", states),
+                optional_names("outputs", outputs),
+                optional_names("sources", sources),
+                {}};
+  labels.units = units_of(units, labels, plant.rows());
+  std::vector<int> reach;
+  if (!exposed.is_none())
+    for (const auto& one : per_agent("exposed", exposed, "one whole number per agent"))
+      reach.push_back(convert::small(at("exposed", reach.size()), one));
+  return {plant, std::move(rows), std::move(noise), std::move(reach), std::move(labels)};
+}
+
+std::vector<Matrix> matrices(const Model& model) {
+  std::vector<Matrix> all;
+  for (int i = 0; i < model.agents(); ++i) all.push_back(model.C(i));
+  return all;
+}
+
+/// What `make_model` makes an equal one from.
+py::dict arguments(const Model& model) {
+  py::dict all(py::arg("A") = model.A(), py::arg("C") = matrices(model));
+  const Noise& noise = model.noise();
+  const Labels& labels = model.labels();
+  if (!std::isnan(noise.process_bound)) all["process_bound"] = noise.process_bound;
+  if (noise.measurement_bound.size() != 0) all["measurement_bound"] = noise.measurement_bound;
+  if (noise.process_covariance.size() != 0) all["process_covariance"] = noise.process_covariance;
+  if (!noise.agent_process_covariance.empty()) all["process_covariance"] = noise.agent_process_covariance;
+  if (!noise.measurement_covariance.empty()) all["measurement_covariance"] = noise.measurement_covariance;
+  if (!labels.states.empty()) all["states"] = labels.states;
+  if (!labels.outputs.empty()) all["outputs"] = labels.outputs;
+  if (!labels.sources.empty()) all["sources"] = labels.sources;
+  if (!labels.units.empty()) all["units"] = labels.units;
+  std::vector<int> exposed;
+  bool everything = true;
+  for (int i = 0; i < model.agents(); ++i) {
+    exposed.push_back(model.exposed(i));
+    everything = everything && model.exposed(i) == model.outputs(i);
+  }
+  if (!everything) all["exposed"] = exposed;
+  return all;
+}
+
+Model model_from(const py::dict& given) {
+  const auto get = [&](const char* name) {
+    return given.contains(name) ? py::object(given[name]) : py::object(py::none());
+  };
+  return make_model(get("A"), get("C"), get("process_bound"), get("measurement_bound"),
+                    get("process_covariance"), get("measurement_covariance"), get("states"), get("outputs"),
+                    get("sources"), get("units"), get("exposed"));
+}
+
+}  // namespace
+
+void bind_model(py::module_& m) {
+  py::class_<Model> model(
+      m, "Model",
+      "The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.\n\n"
+      "A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.\n"
+      "process_bound: ||w|| <= it, >= 0, None or nan = not known. measurement_bound: |v_i| <= it, a number "
+      "or\n"
+      "one per agent. process_covariance: (n, n), a number (times the identity), or (N, n, n) where each "
+      "agent\n"
+      "takes another one for w (no noise is simulated from those). measurement_covariance: a number, or one\n"
+      "(m_i, m_i) array or number per agent.\n"
+      "states: n names (default x1, x2, ..). outputs: one name per measurement of the whole network, agent "
+      "by\n"
+      "agent. sources: who can falsify each measurement; several outputs of one receiver have one source.\n"
+      "units: a dict from names of states and outputs to units, or one unit for all. exposed: per agent, "
+      "how\n"
+      "many of its first outputs an attacker can reach (default: all).\n"
+      "Raises InvalidInput when shapes or names do not fit or a number is not finite.");
+  model
+      .def(py::init(&make_model), py::arg("A"), py::arg("C"), py::kw_only(),
+           py::arg("process_bound") = py::none(), py::arg("measurement_bound") = py::none(),
+           py::arg("process_covariance") = py::none(), py::arg("measurement_covariance") = py::none(),
+           py::arg("states") = py::none(), py::arg("outputs") = py::none(), py::arg("sources") = py::none(),
+           py::arg("units") = py::none(), py::arg("exposed") = py::none())
+      .def_property_readonly("A", &Model::A, "(n, n)")
+      .def_property_readonly("C", &matrices, "One (m_i, n) array per agent.")
+      .def_property_readonly("states", &Model::states, "n")
+      .def_property_readonly("agents", &Model::agents, "N")
+      .def_property_readonly("outputs", &Model::total_outputs,
+                             "Scalar measurements per sample of the whole network.")
+      .def_property_readonly("state_names", &Model::state_names, "n names; x1, x2, .. where none were given.")
+      .def_property_readonly(
+          "output_names", [](const Model& x) { return x.labels().outputs; },
+          "One name per measurement of the whole network; empty where none were given.")
+      .def_property_readonly(
+          "sources", [](const Model& x) { return x.labels().sources; },
+          "Who can falsify each measurement; empty where none were given.")
+      .def_property_readonly(
+          "units", [](const Model& x) { return x.labels().units; }, "Unit by the name of a state or output.")
+      .def_property_readonly("process_bound", [](const Model& x) { return x.noise().process_bound; })
+      .def_property_readonly("measurement_bound", [](const Model& x) { return x.noise().measurement_bound; })
+      .def_property_readonly(
+          "process_covariance",
+          [](const Model& x) -> py::object {
+            if (!x.noise().agent_process_covariance.empty())
+              return py::cast(x.noise().agent_process_covariance);
+            if (x.noise().process_covariance.size() == 0) return py::none();
+            return py::cast(x.noise().process_covariance);
+          },
+          "(n, n), one (n, n) array per agent, or None = not known.")
+      .def_property_readonly(
+          "measurement_covariance",
+          [](const Model& x) -> py::object {
+            if (x.noise().measurement_covariance.empty()) return py::none();
+            return py::cast(x.noise().measurement_covariance);
+          },
+          "One (m_i, m_i) array per agent, or None = not known.")
+      .def("__repr__", [](const Model& x) { return as_code("garrison.Model", arguments(x)); })
+      .def("__str__", [](const Model& x) {
+        return "Model with " + std::to_string(x.states()) + " states, " + std::to_string(x.agents()) +
+               " agents, " + std::to_string(x.total_outputs()) + " outputs";
+      });
+  keep(model, arguments, model_from);
+  compare<Model>(
+      model, [](const Model& a, const Model& b) { return a == b; },
+      [](const Model& x) {
+        const Matrix all = x.A().array() + 0.0;  // -0 equals 0
+        return py::make_tuple(x.agents(), x.total_outputs(),
+                              py::bytes(reinterpret_cast<const char*>(all.data()),
+                                        sizeof(double) * static_cast<std::size_t>(all.size())));
+      });
+}

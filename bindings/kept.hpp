@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Objects that can be kept: from the arguments of its constructor follow an object's code (repr), its pickle
+// and its copies.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+/// "garrison.Model(A=[[0.9]], C=[[[1.0]]])"; arrays as lists, numbers with all their digits.
+std::string as_code(const std::string& maker, const pybind11::dict& arguments);
+
+/// `arguments(object)` gives the constructor's arguments as a dict and `make(dict)` an equal object.
+template <class Class, class Arguments, class Make>
+void keep(Class& bound, Arguments arguments, Make make) {
+  bound.def(pybind11::pickle(arguments, make));
+  bound.def("__copy__", [](pybind11::object self) { return self; });  // immutable
+  bound.def(
+      "__deepcopy__", [](pybind11::object self, const pybind11::dict&) { return self; },
+      pybind11::arg("memo"));
+}
+
+/// Equality and hash by value.
+template <class T, class Class, class Same, class Hash>
+void compare(Class& bound, const Same& same, const Hash& hash) {
+  bound.def(
+      "__eq__",
+      [same](const T& self, const pybind11::object& other) -> pybind11::object {
+        if (!pybind11::isinstance<T>(other))
+          return pybind11::reinterpret_borrow<pybind11::object>(Py_NotImplemented);
+        return pybind11::bool_(same(self, other.cast<const T&>()));
+      },
+      pybind11::arg("other"));
+  bound.def("__hash__", [hash](const T& self) { return pybind11::hash(hash(self)); });
+}
+
+/// All of it for a class whose constructor takes `arguments(object)` by name; `maker` is what Python calls
+/// it.
+template <class T, class Class, class Arguments>
+void keep_as_code(Class& bound, const std::string& maker, Arguments arguments) {
+  const pybind11::handle type = bound;
+  keep(bound, arguments, [type](const pybind11::dict& given) { return type(**given).template cast<T>(); });
+  const auto code = [maker, arguments](const T& x) { return as_code(maker, arguments(x)); };
+  bound.def("__repr__", code);
+  compare<T>(
+      bound, [code](const T& a, const T& b) { return code(a) == code(b); },
+      [code](const T& x) { return pybind11::str(code(x)); });
+}
+
+template <class T, class M>
+struct KeptField {
+  const char* name;
+  M T::* member;
+};
+
+/// Results without a constructor: pickled by their fields, equal when these are.
+template <class T, class Class, class... M>
+void keep_fields(Class& bound, KeptField<T, M>... fields) {
+  const auto state = [fields...](const T& x) {
+    pybind11::dict all;
+    ((all[fields.name] = x.*(fields.member)), ...);
+    return all;
+  };
+  keep(bound, state, [fields...](const pybind11::dict& given) {
+    T x;
+    ((x.*(fields.member) = given[fields.name].template cast<M>()), ...);
+    return x;
+  });
+  const auto code = [state](const T& x) { return as_code("", state(x)); };
+  compare<T>(
+      bound, [code](const T& a, const T& b) { return code(a) == code(b); },
+      [code](const T& x) { return pybind11::str(code(x)); });
+}

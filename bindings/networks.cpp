@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "networks.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "convert.hpp"
+#include "garrison/core/params.hpp"
+
+using namespace garrison;
+
+namespace networks {
+
+Numbering::Numbering(const Names& names) : names_(names) {
+  for (std::size_t k = 0; k < names.size(); ++k) of_.emplace(names[k], static_cast<int>(k));
+}
+
+int Numbering::operator()(const std::string& which, py::handle given) const {
+  if (!py::isinstance<py::str>(given)) return convert::small(which, given);
+  const auto name = convert::words(which, given);
+  if (names_.empty()) refuse(which, "\"" + name + "\"", "a number", "names need names=[..], one per agent");
+  const auto found = of_.find(name);
+  if (found == of_.end()) refuse_unknown(which, name, names_);
+  return found->second;
+}
+
+namespace {
+
+Network build(std::int64_t agents, const std::vector<Edge>& edges, bool directed, Names names) {
+  require_memory("agents", std::to_string(agents), 8.0 * static_cast<double>(agents));
+  if (agents > std::numeric_limits<int>::max())
+    refuse("agents", std::to_string(agents), "at most " + std::to_string(std::numeric_limits<int>::max()));
+  return {static_cast<int>(agents), edges, directed, std::move(names)};
+}
+
+constexpr const char* kSources = "(sender, receiver) pairs, a networkx graph or a sparse adjacency matrix";
+
+/// Labels 0..N-1 keep their number; other whole numbers are sorted, other labels keep their order, and both
+/// become names.
+Network from_graph(const py::object& graph, const py::object& agents, Names names) {
+  const py::list nodes(graph.attr("nodes")());
+  const auto count = static_cast<std::int64_t>(nodes.size());
+  bool whole = true;
+  for (const auto& node : nodes) whole = whole && PyLong_CheckExact(node.ptr());
+  bool own = whole;
+  for (const auto& node : nodes) own = own && node >= py::int_(0) && node < py::int_(count);
+  py::dict number;
+  if (own) {
+    for (const auto& node : nodes) number[node] = node;
+  } else if (!names.empty()) {
+    for (std::size_t k = 0; k < names.size(); ++k) number[py::str(names[k])] = k;
+    for (const auto& node : nodes)
+      if (!number.contains(node)) refuse_unknown("names", py::str(node).cast<std::string>(), names);
+  } else {
+    if (whole) nodes.attr("sort")();
+    for (const auto& node : nodes) {
+      number[node] = py::len(number);
+      names.push_back(py::str(node).cast<std::string>());
+    }
+  }
+  std::vector<Edge> edges;
+  for (const auto& edge : graph.attr("edges")()) {
+    const py::tuple pair(py::reinterpret_borrow<py::object>(edge));
+    edges.emplace_back(number[pair[0]].cast<int>(), number[pair[1]].cast<int>());
+  }
+  const std::int64_t all = agents.is_none() ? std::max(count, static_cast<std::int64_t>(names.size()))
+                                            : convert::small("agents", agents);
+  return build(all, edges, graph.attr("is_directed")().cast<bool>(), std::move(names));
+}
+
+/// Two rows of two numbers that could be an adjacency matrix as well as two edges that mean something else.
+bool ambiguous(const py::object& given, const py::list& items, bool directed) {
+  if (items.size() != 2) return false;
+  for (const auto& item : items)
+    if (py::isinstance<py::tuple>(item) || !py::hasattr(item, "__len__") || py::len(item) != 2) return false;
+  const auto a = convert::array("edges", given, kSources);
+  if (a.ndim() != 2 || a.at(0, 0) != 0.0 || a.at(1, 1) != 0.0) return false;
+  return (directed || a.at(0, 1) == a.at(1, 0)) && !(a.at(0, 1) == 1.0 && a.at(1, 0) == 1.0);
+}
+
+/// (sender, receiver) from one item of a list of edges.
+Edge edge_of(const std::string& which, py::handle item, const Numbering& number) {
+  const std::string expected = "a pair (sender, receiver)";
+  if (py::isinstance<py::str>(item) || py::isinstance<py::dict>(item) || !py::hasattr(item, "__len__") ||
+      !py::hasattr(item, "__getitem__"))
+    refuse(which, convert::shown(item), expected);
+  const py::list ends(py::reinterpret_borrow<py::object>(item));
+  if (ends.size() == 3)
+    refuse(which, "3 values", expected, "a network has no weights; leave the third value out");
+  if (ends.size() != 2) refuse(which, std::to_string(ends.size()) + " values", expected);
+  return {number(which + "[0]", ends[0]), number(which + "[1]", ends[1])};
+}
+
+/// A square table of more than two rows is an adjacency matrix.
+bool square(const py::list& items) {
+  const auto N = items.size();
+  if (N < 3) return false;
+  for (const auto& item : items)
+    if (py::isinstance<py::str>(item) || !py::hasattr(item, "__len__") || py::len(item) != N) return false;
+  return true;
+}
+
+}  // namespace
+
+Network from_adjacency(const py::object& given, bool directed, Names names) {
+  const char* which = "adjacency";
+  if (names.empty() && py::hasattr(given, "columns") && py::hasattr(given, "to_numpy")) {  // a DataFrame
+    const py::list columns(given.attr("columns"));
+    if (columns.size() > 0 && py::isinstance<py::str>(columns[0]))
+      names = convert::names("adjacency.columns", columns);
+  }
+  std::vector<std::pair<Edge, double>> entries;
+  std::pair<std::int64_t, std::int64_t> shape;
+  if (py::hasattr(given, "tocoo")) {
+    const py::object coo = given.attr("tocoo")();
+    const py::tuple sides = coo.attr("shape");
+    if (sides.size() != 2) refuse(which, std::to_string(sides.size()) + " dimensions", "two");
+    shape = {sides[0].cast<std::int64_t>(), sides[1].cast<std::int64_t>()};
+    const auto rows = coo.attr("row").cast<std::vector<std::int64_t>>();
+    const auto columns = coo.attr("col").cast<std::vector<std::int64_t>>();
+    const auto values = convert::array(which, coo.attr("data"));
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      entries.push_back({{static_cast<int>(rows[k]), static_cast<int>(columns[k])}, values.data()[k]});
+  } else {
+    const auto dense = convert::array(which, given, "a square matrix of zeros and ones");
+    if (dense.ndim() != 2) refuse(which, convert::shown(dense), "a square matrix of zeros and ones");
+    shape = {dense.shape(0), dense.shape(1)};
+    for (py::ssize_t i = 0; i < dense.shape(0); ++i)
+      for (py::ssize_t j = 0; j < dense.shape(1); ++j)
+        if (dense.at(i, j) != 0.0)
+          entries.push_back({{static_cast<int>(i), static_cast<int>(j)}, dense.at(i, j)});
+  }
+  if (shape.first != shape.second)
+    refuse(which, std::to_string(shape.first) + " x " + std::to_string(shape.second), "a square matrix");
+  std::vector<Edge> edges;
+  for (const auto& [place, value] : entries) {
+    const auto [i, j] = place;
+    if (value == 0.0 || i == j) continue;
+    if (value != 1.0)
+      refuse(which + ("[" + std::to_string(i)) + ", " + std::to_string(j) + "]", text(value), "0 or 1",
+             "a network has no weights; pass matrix != 0");
+    edges.emplace_back(j, i);
+  }
+  Network network = build(shape.first, edges, directed, std::move(names));
+  if (!directed && 2 * network.edges().size() != Network(network.agents(), edges, true).edges().size())
+    refuse(which, "a matrix that is not symmetric", "a symmetric one",
+           "directed=True makes a directed network");
+  return network;
+}
+
+Network make_network(const py::object& source, const py::object& agents, bool directed,
+                     const py::object& given_names) {
+  Names names = given_names.is_none() ? Names() : convert::names("names", given_names);
+  if (py::hasattr(source, "nodes") && py::hasattr(source, "edges") && py::hasattr(source, "is_directed"))
+    return from_graph(source, agents, std::move(names));
+  if (py::isinstance<py::str>(source) || py::isinstance<py::bytes>(source) ||
+      py::isinstance<py::dict>(source) || convert::scalar(source))
+    if (!py::hasattr(source, "tocoo")) refuse("edges", convert::shown(source), kSources);
+  const bool table = py::hasattr(source, "columns") && py::hasattr(source, "to_numpy");
+  const py::list items = py::hasattr(source, "tocoo") || table ? py::list() : py::list(source);
+  if (py::hasattr(source, "tocoo") || table || square(items)) {
+    Network network = from_adjacency(source, directed, std::move(names));
+    const int count = agents.is_none() ? network.agents() : convert::small("agents", agents);
+    if (count != network.agents())
+      refuse("agents", std::to_string(count), std::to_string(network.agents()) + ", the size of the matrix");
+    return network;
+  }
+  if (ambiguous(source, items, directed))
+    refuse("edges", "two rows that may be two edges or an adjacency matrix", "one of them",
+           "use Network.from_adjacency(matrix), or tuples for edges");
+  const Numbering number(names);
+  std::vector<Edge> edges;
+  std::int64_t count = static_cast<std::int64_t>(names.size());
+  for (const auto& item : items) {
+    edges.push_back(edge_of("edges[" + std::to_string(edges.size()) + "]", item, number));
+    if (names.empty())
+      count = std::max({count, std::int64_t{edges.back().first} + 1, std::int64_t{edges.back().second} + 1});
+  }
+  if (!agents.is_none()) count = convert::small("agents", agents);
+  return build(count, edges, directed, std::move(names));
+}
+
+}  // namespace networks
