@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "core/solvers.hpp"
+#include "garrison/analysis/modes.hpp"
 #include "garrison/filters/rdkf/analysis.hpp"
 #include "garrison/filters/rdkf/filter.hpp"
 #include "penalties.hpp"
@@ -22,14 +23,15 @@ double radius(const Matrix& A) {
 /// Existence of the covariances (theorem III.1). False: nothing else can be computed.
 bool existence(Check& c, const Model& model, const Network& network) {
   const bool connected = network.connected();
-  const bool seen = detectable(model.A(), model.stacked());
+  const Visibility modes = visibility(model.A(), model.stacked(), 1.0);
+  const bool seen = modes.all_seen();
   const Noise& noise = model.noise();
   const bool known = (noise.process_covariance.size() != 0 || !noise.agent_process_covariance.empty()) &&
                      (!noise.measurement_covariance.empty() || model.total_outputs() == 0);
   c.conditions.push_back({"connected network", connected ? 1.0 : 0.0, "= 1", connected,
                           "information of every sensor reaches every agent"});
   c.conditions.push_back({"(A, C) detectable", seen ? 1.0 : 0.0, "= 1", seen,
-                          "equation (5) has a solution (theorem III.1; our notes, 9)"});
+                          "equation (5) has a solution (theorem III.1); " + modes.text()});
   c.conditions.push_back({"covariances known", known ? 1.0 : 0.0, "= 1", known,
                           "process_covariance and measurement_covariance of the model"});
   return connected && seen && known;
