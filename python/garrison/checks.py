@@ -1,5 +1,6 @@
 """Conditions and bounds of a filter's theorems."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,9 +46,15 @@ def verdict(condition: dict[str, Any]) -> str:
     return "holds" if condition["holds"] else "FAILS" if condition["required"] else "no"
 
 
-def check(filter: _core.Filter, model: _core.Model, network: _core.Network) -> Check:
+def check(
+    filter: _core.Filter, model: _core.Model, network: _core.Network, *, seconds: float = math.inf
+) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
+
+    After `seconds` (> 0) searches end with a certified interval and say so; computations that have no partial result
+    raise InvalidInput. Ctrl-C ends both. Without `seconds`, searches end after about a second of work, with the same
+    result on every machine.
 
     Raises InvalidInput when parameters, model and network do not fit together.
     """
-    return Check(*_core.check(filter, model, network))
+    return Check(*_core.check(filter, model, network, seconds))

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/solvers.hpp"
+#include "garrison/core/budget.hpp"
 
 namespace garrison::detail {
 namespace {
@@ -53,6 +54,7 @@ double gmres(const RiccatiMap& map, const Vector& b, std::size_t count, Index n,
     V.col(0) = r.normalized();
     Index m = 0;
     for (bool full = false; m < most && !full; ++m) {
+      require_time("the solution of coupled Riccati equations");
       Vector w = apply(V.col(m));
       const double whole = w.norm();
       for (int twice = 0; twice < 2; ++twice) {

@@ -282,7 +282,7 @@ class Lfre(Filter):
     Source: Mitra, Sundaram, Automatica 2019; baseline of the saturation paper
 
     faulty: values trimmed from each end of the parents' estimates [agents], >= 0
-    poles: real poles of the sources' observers, one per state; left out: equally spaced from 0.3 to 0.4 [1], >= -1, <= 1
+    poles: real poles of the sources' observers, one per state; left out: equally spaced over 0.1, from 0.3 to 0.8, where the noise gives each source the least error [1], >= -1, <= 1
     """
     def __init__(
         self,
@@ -678,9 +678,12 @@ def chebyshev_contraction(
     What `rounds` Chebyshev-filtered rounds leave of a disagreement.
     """
 
-def check(filter: Filter, model: Model, network: Network) -> tuple[list, list]:
+def check(
+    filter: Filter, model: Model, network: Network, seconds: typing.SupportsFloat | typing.SupportsIndex = ...
+) -> tuple[list, list]:
     """
-    Conditions and quantities of the family's theorems, as two lists of dicts.
+    Conditions and quantities of the family's theorems, as two lists of dicts. Searches end after `seconds` with a
+    certified interval; a computation without partial results raises InvalidInput then. Ctrl-C ends it, too.
     """
 
 def filter_infos() -> list:

@@ -66,9 +66,17 @@ void under_attack(Check& c, const Model& model, const Constants& k) {
   c.quantities.push_back(
       {"deviation bound", k.prior_deviation_bound.maxCoeff(),
        "estimate from the fused prediction in one step, whatever was measured, worst agent"});
-  c.quantities.push_back({"persistent bound", bounded ? k.persistent_bound.maxCoeff() : kNaN,
-                          bounded ? "shift of the estimate by any attack, for ever, worst agent"
-                                  : "no bound for persistent attacks: radius = " + text(open)});
+  const double persistent = bounded ? k.persistent_bound.maxCoeff() : kNaN;
+  const std::string none = "no bound for persistent attacks: radius = " + text(open);
+  c.quantities.push_back(
+      {"persistent bound", persistent,
+       bounded ? "error of a run without noise that starts exactly, under any attack for ever, worst agent"
+               : none});
+  c.quantities.push_back(
+      {"persistent shift", 2.0 * persistent,
+       bounded ? "estimate from that of the same run without attack (same noise, same start), under any "
+                 "attack for ever, worst agent"
+               : none});
   c.quantities.push_back({"basin", std::isinf(k.level.refined) ? kNaN : k.level.refined,
                           std::isnan(k.level.refined) ? "known for penalty \"norm\" only"
                           : std::isinf(k.level.refined)

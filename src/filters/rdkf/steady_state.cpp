@@ -3,6 +3,7 @@
 
 #include "analysis/policy_iteration.hpp"
 #include "core/solvers.hpp"
+#include "garrison/core/budget.hpp"
 
 namespace garrison::rdkf {
 namespace {
@@ -69,6 +70,7 @@ bool settle(const Setting& s, const std::vector<Matrix>& seen, double tolerance,
   int since_best = 0;
   for (int k = 0; k < most; ++k) {
     ++out.sweeps;
+    require_time("the sweeps of (5)");
     std::vector<Matrix> next = sweep(s, seen, out.P);
     out.change = 0.0;
     for (std::size_t i = 0; i < next.size(); ++i) {

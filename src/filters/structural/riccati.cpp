@@ -5,6 +5,8 @@
 #include "analysis/policy_iteration.hpp"
 #include "blocks.hpp"
 #include "core/solvers.hpp"
+#include "garrison/analysis/lyapunov.hpp"
+#include "garrison/core/budget.hpp"
 #include "garrison/filters/structural/errors.hpp"
 #include "garrison/filters/structural/gains.hpp"
 
@@ -89,6 +91,7 @@ class Coupled {
     double before = 0.0;
     for (int k = 0; k < most; ++k) {
       ++g.sweeps;
+      require_time("the coupled Riccati recursion");
       double change = 0.0;
       double size = 0.0;
       for (std::size_t i = 0; i < next.size(); ++i) {
@@ -262,7 +265,7 @@ bool polish(Joint& joint, JointGains& g) {
   constexpr double kSame = 1e-9;
   const GainMatrices swept = g.K;
   try {
-    for (int k = 0; k < kMost; ++k) {
+    for (int k = 0; k < kMost && !current_budget().over(); ++k) {
       const double change = joint.take_gains(joint.prior(joint.stationary()), g.K, false);
       if (k == 0 && change <= kSame) g.K = swept;  // the sweeps had settled
       if (change <= kSame) return true;
@@ -284,6 +287,7 @@ JointGains joint_kalman(const Setting& s, int most_sweeps, double tolerance) {
   g.K.assign(static_cast<std::size_t>(s.N()), Matrix::Zero(n, n));
   Matrix Q = Matrix::Identity(s.N() * n, s.N() * n);
   for (g.sweeps = 1; g.sweeps <= std::min(most_sweeps, kQuickSweeps); ++g.sweeps) {
+    require_time("the joint Kalman recursion");
     const Matrix P = joint.prior(Q);
     const bool settled = joint.take_gains(P, g.K, true) <= tolerance;
     Q = joint.update(P);
