@@ -37,7 +37,7 @@ class Removals {
         C_(C),
         pair_A_(pair.A.cast<S>()),
         pair_C_(pair.C.cast<S>()),
-        size_(std::hypot(pair.A.norm(), pair.C.norm())) {}
+        size_(detail::pair_size(pair.A, pair.C)) {}
 
   bool survives(S z, const std::vector<Group>& kept, const std::vector<Group>& free, int s) {
     if (++tried_ > kMostRemovals)
@@ -119,7 +119,7 @@ bool s_sparse_observable(const MatrixRef& A, const MatrixRef& C, int s) {
   const Matrix own_C = C;
   const double rate = detail::natural_rate(own_A);
   const detail::Pair pair = detail::balanced(own_A, own_C, rate);
-  const auto modes = detail::candidate_modes(pair.A, rate, 0.0);
+  const auto modes = detail::candidate_modes(own_A, pair.A, rate, 0.0);
   const bool real = std::all_of(modes.begin(), modes.end(), [](Complex z) { return z.imag() == 0.0; });
   return real ? all_survive<double>(own_A, own_C, pair, modes, groups, s)
               : all_survive<Complex>(own_A, own_C, pair, modes, groups, s);

@@ -9,8 +9,12 @@ namespace {
 
 /// Eigenvalues closer than this part of the rate may be copies of one: eps^(1/12) is 0.05.
 constexpr double kCluster = 0.05;
-/// Share of the circle's radius below which a mode is far inside.
-constexpr double kNearCircle = 0.8;
+/// Share of the circle's radius below which a mode is far inside: nearer in small systems, where it costs
+/// little.
+double near_circle(Eigen::Index n) {
+  constexpr Eigen::Index kSmall = 100;
+  return n <= kSmall ? 0.8 : 1.0 - 1e-6;
+}
 
 /// Union-find over eigenvalues, with the sum of every set.
 class Clusters {
@@ -52,8 +56,13 @@ Complex outside(Complex z, double least) {
   return z * (least / modulus);
 }
 
-std::vector<Complex> candidate_modes(const Matrix& A, double rate, double least) {
-  const Eigen::VectorXcd values = Eigen::EigenSolver<Matrix>(A, false).eigenvalues();
+std::vector<Complex> candidate_modes(const Matrix& A, const Matrix& balanced, double rate, double least) {
+  const bool symmetric = (A.array() == A.transpose().array()).all();
+  const Eigen::VectorXcd values =
+      symmetric ? Eigen::VectorXcd(Eigen::SelfAdjointEigenSolver<Matrix>(A, Eigen::EigenvaluesOnly)
+                                       .eigenvalues()
+                                       .cast<Complex>())
+                : Eigen::VectorXcd(Eigen::EigenSolver<Matrix>(balanced, false).eigenvalues());
   std::vector<Complex> all(values.begin(), values.end());
   const double same = 1e-15 * rate * static_cast<double>(A.rows());
   std::vector<Gap> gaps;
@@ -74,7 +83,7 @@ std::vector<Complex> candidate_modes(const Matrix& A, double rate, double least)
   }
   const auto largest = std::max_element(all.begin(), all.end(),
                                         [](Complex x, Complex y) { return std::abs(x) < std::abs(y); });
-  const double from = std::min(kNearCircle * least, std::abs(*largest));
+  const double from = std::min(near_circle(A.rows()) * least, std::abs(*largest));
   std::vector<Complex> kept;
   for (const Complex value : all) {
     if (std::abs(value) < from) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <vector>
@@ -26,13 +27,25 @@ S scalar_of(Complex z) {
     return z;
 }
 
-/// Candidates for z: the eigenvalues of A, and the means of their clusters (a k-fold eigenvalue is computed
-/// with errors of eps^(1/k), the mean of its copies with eps). With `least` > 0, those far inside of that
-/// circle are left out and the others are moved out to it.
-std::vector<Complex> candidate_modes(const Matrix& A, double rate, double least);
+/// Candidates for z: the eigenvalues of A, and the means of their clusters (a k-fold eigenvalue is
+/// computed with errors of eps^(1/k), the mean of its copies with eps). With `least` > 0, those far inside
+/// of that circle are left out and the others are moved out to it. `balanced`: D^-1 A D, whose eigenvalues
+/// are computed unless A is symmetric.
+std::vector<Complex> candidate_modes(const Matrix& A, const Matrix& balanced, double rate, double least);
 
 /// z, moved radially out to the circle of radius `least` where it is inside.
 Complex outside(Complex z, double least);
+
+/// An upper bound of the spectral norm of [A; C], close to it for sparse ones; 1 for zeros.
+template <class M>
+double pair_size(const M& A, const M& C) {
+  const double rows = std::max(A.rowwise().template lpNorm<1>().maxCoeff(),
+                               C.rows() > 0 ? C.rowwise().template lpNorm<1>().maxCoeff() : 0.0);
+  const Vector column_sums =
+      A.cwiseAbs().colwise().sum().transpose() + C.cwiseAbs().colwise().sum().transpose();
+  const double size = std::min(std::hypot(A.norm(), C.norm()), std::sqrt(rows * column_sums.maxCoeff()));
+  return size > 0.0 ? size : 1.0;
+}
 
 /// R of the QR decomposition of [A - z I; C].
 template <class S>

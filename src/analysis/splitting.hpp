@@ -16,16 +16,16 @@ template <class S>
 class Splitting {
  public:
   Splitting(const Pair& pair, double least) : A_(pair.A.cast<S>()), C_(pair.C.cast<S>()), least_(least) {
-    size_ = std::hypot(A_.norm(), C_.norm());
-    if (!(size_ > 0.0)) size_ = 1.0;
+    size_ = pair_size(A_, C_);
     level_ = unseen_level(A_.rows());
+    unclear_level_ = unclear_level(A_.rows());
   }
 
   Visibility run(const std::vector<Complex>& candidates) {
     out_.distance = kInfinity;
     // First what is surely unseen, from the best candidate: it may make clear what was unclear before.
     sweep(candidates, level_);
-    if (doubtful_) sweep(candidates, kUnclear * level_);
+    if (doubtful_) sweep(candidates, unclear_level_);
     if (!out_.unseen.empty())
       out_.sight = Sight::unseen;
     else if (!out_.unclear.empty())
@@ -59,7 +59,7 @@ class Splitting {
       out_.nearest = z;
     }
     if (!(sigma <= bar)) {
-      doubtful_ = doubtful_ || sigma <= kUnclear * level_;
+      doubtful_ = doubtful_ || sigma <= unclear_level_;
       return false;
     }
     auto& list = sigma <= level_ ? out_.unseen : out_.unclear;
@@ -147,6 +147,7 @@ class Splitting {
   double least_;
   double size_ = 1.0;
   double level_ = 0.0;
+  double unclear_level_ = 0.0;
   bool doubtful_ = false;
   Visibility out_;
 };

@@ -37,7 +37,7 @@ std::vector<int> necessary(const Matrix& A, const Matrix& C, const detail::Pair&
   std::vector<int> found;
   if (seen.A().rows() == 0) return found;
   std::vector<char> listed(agents.size(), 0);
-  const double level = detail::kUnclear * detail::unseen_level(A.rows()) * seen.size();
+  const double level = detail::unclear_level(A.rows()) * seen.size();
   for (const Complex mode : modes) {
     const S z = detail::scalar_of<S>(mode);
     const MatrixOf<S> R = detail::triangle<S>(seen.A(), seen.C(), z);
@@ -77,7 +77,7 @@ std::vector<int> necessary_agents(const Matrix& A, const Matrix& C, const std::v
   const Matrix own_C = C(Eigen::all, heard);
   const double rate = detail::natural_rate(own_A);
   const detail::Pair pair = detail::balanced(own_A, own_C, rate);
-  const auto modes = detail::candidate_modes(pair.A, rate, 1.0);
+  const auto modes = detail::candidate_modes(own_A, pair.A, rate, 1.0);
   const bool real = std::all_of(modes.begin(), modes.end(), [](Complex z) { return z.imag() == 0.0; });
   return real ? necessary<double>(own_A, own_C, pair, modes, agents)
               : necessary<Complex>(own_A, own_C, pair, modes, agents);

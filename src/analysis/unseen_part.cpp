@@ -16,7 +16,7 @@ Visibility split(const Matrix& A, const Matrix& C, double least) {
   Pair pair = balanced(A, C, rate);
   if (C.rows() > C.cols())  // as good, and smaller
     pair.C = Eigen::HouseholderQR<Matrix>(pair.C).matrixQR().topRows(C.cols()).triangularView<Eigen::Upper>();
-  const auto candidates = candidate_modes(pair.A, rate, least);
+  const auto candidates = candidate_modes(A, pair.A, rate, least);
   const bool real =
       std::all_of(candidates.begin(), candidates.end(), [](Complex z) { return z.imag() == 0.0; });
   return real ? Splitting<double>(pair, least).run(candidates)

@@ -2,17 +2,21 @@
 // Splits the unseen modes off a pair. Internal.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "garrison/analysis/modes.hpp"
 
 namespace garrison::detail {
 
-/// Relative distance (16 n^1.5 eps) up to which a mode counts as unseen; up to 1000 times that it is unclear.
+/// Relative distance up to which a mode counts as unseen: 16 n^1.5 eps, at most 2000 eps.
 inline double unseen_level(Eigen::Index n) {
-  return 16.0 * 2.220446049250313e-16 * std::pow(static_cast<double>(n), 1.5);
+  const double factor = std::min(16.0 * std::pow(static_cast<double>(n), 1.5), 2000.0);
+  return factor * std::numeric_limits<double>::epsilon();
 }
-inline constexpr double kUnclear = 1000.0;
+/// Up to this it is unclear: 1000 times that, at most 1e-10.
+inline double unclear_level(Eigen::Index n) { return std::min(1000.0 * unseen_level(n), 1e-10); }
 
 /// visibility() without the question of entries that are rounding only.
 Visibility examine(const Matrix& A, const Matrix& C, double least);
