@@ -42,9 +42,9 @@ GARRISON_EXPORT Visibility visibility(const MatrixRef& A, const MatrixRef& C, do
 GARRISON_EXPORT std::vector<std::complex<double>> unseen_modes(const MatrixRef& A, const MatrixRef& C,
                                                                double least);
 
-/// Agents whose sensor alone can lie along a mode of modulus >= 1 that nobody else surely sees: no detector
-/// of any kind can find such an attack (notes on the structural paper, section 2). A mode that this agent
-/// does not see either cannot be hidden behind it. Sorted.
+/// Agents whose sensor alone can lie along a mode of modulus >= 1 that nobody else surely sees: that lie
+/// moves like the plant itself, so no detector of any kind can find it. A mode that this agent does not see
+/// either cannot be hidden behind it. Sorted.
 GARRISON_EXPORT std::vector<int> undetectable_agents(const Model& model);
 
 }  // namespace garrison

@@ -75,6 +75,15 @@ std::string remedy9(const Setting& s, const FixedPoints& points, const Interval&
   }
 }
 
+/// What to do when (12) fails.
+std::string remedy12(Setting s, double varpi) {
+  constexpr double kStep = 1.1;
+  constexpr int kMost = 200;
+  for (int k = 0; k < kMost; ++k, s.beta *= kStep)
+    if (theorem_bounds(s, varpi, 1).cond12) return "raise threshold to " + rounded_up(s.beta);
+  return "no larger threshold is enough: take more rounds";
+}
+
 /// Theorem 1, and what is left of it with the detector.
 void add_error_bounds(Check& c, const TheoremBounds& bounds, const InformedBound* informed) {
   if (informed == nullptr || bounds.cond12) {
@@ -110,11 +119,17 @@ void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_valu
        k.cond9 ? "the error stays bounded by theorem 1"
                : "the error would stay bounded by theorem 1; " + remedy9(s, points, thresholds)});
   c.conditions.push_back({"(beta - b_w - b_v)/a > rho_1 + p0 (12)", bounds.cond12_margin, "> 0",
-                          bounds.cond12, "honest measurements are never saturated from t = 2 on (theorem 3)",
+                          bounds.cond12,
+                          std::string("honest measurements are never saturated from t = 2 on (theorem 3)") +
+                              (bounds.cond12 ? "" : "; " + remedy12(s, varpi_value)),
                           false});
-  c.conditions.push_back({"spectral radius of G < 1 (theorem 5)", g.spectral_radius, "< 1",
-                          g.spectral_radius < 1.0,
-                          "without noise the errors vanish once all attackers are proved", false});
+  const bool vanishes = g.spectral_radius < 1.0;
+  c.conditions.push_back({"spectral radius of G < 1 (theorem 5)", g.spectral_radius, "< 1", vanishes,
+                          std::string("without noise the errors vanish once all attackers are proved") +
+                              (vanishes            ? ""
+                               : varpi_value < 1.0 ? "; take more rounds"
+                                                   : "; add sensors: varpi must be below 1"),
+                          false});
   c.quantities.push_back({"p0", k.p0, "limit of the disagreement bound (8)"});
   c.quantities.push_back({"q0", k.q0, "what noise, disagreement and attack add per step (8)"});
   c.quantities.push_back({"rho_lo", points.lo, "limit of the mean error bound (7)"});

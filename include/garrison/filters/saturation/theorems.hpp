@@ -54,7 +54,7 @@ GARRISON_EXPORT MatrixG theorem5(const Setting& setting, double tau0, double var
 
 /// What theorem 1 does not cover: sensors that have proved all s attackers use their innovations in full, so
 /// that lemma 2 (injections of at most beta) ends and consensus may overshoot (star of 8, a = 0.9: 12.34
-/// above the 10.24 of theorem 1; notes, item 11).
+/// above the 10.24 of theorem 1).
 struct InformedBound {
   double uniform;     ///< ||error|| of every sensor at all t >= 1, detector included; NaN when radius >= 1
   double asymptotic;  ///< limsup of it, also when all attackers are proved; NaN like that

@@ -113,3 +113,22 @@ TEST_CASE("a condition that fails says what to do, and doing it helps") {
   params["initial_error"] = std::stod(failed.meaning.substr(at + asked.size()));
   CHECK(condition(make_filter("saturation", params)->check(model, ring), nine).holds);
 }
+
+TEST_CASE("a threshold that saturates honest sensors is told how far to rise") {
+  const Model model(Matrix{{1.0}}, std::vector<Matrix>(6, Matrix{{1.0}}),
+                    {0.1, Vector::Constant(6, 0.1), {}, {}});
+  const Network ring = Network::ring(6);
+  ParamMap params{{"threshold", 2.0},
+                  {"rounds", std::int64_t{10}},
+                  {"attacked", std::int64_t{1}},
+                  {"initial_error", 5.0}};
+  const char* twelve = "(beta - b_w - b_v)/a > rho_1 + p0 (12)";
+  const Check low = make_filter("saturation", params)->check(model, ring);
+  REQUIRE_FALSE(condition(low, twelve).holds);
+  const std::string raise = "raise threshold to ";
+  const std::string& words = condition(low, twelve).meaning;
+  const auto number = words.find(raise);
+  REQUIRE(number != std::string::npos);
+  params["threshold"] = std::stod(words.substr(number + raise.size()));
+  CHECK(condition(make_filter("saturation", params)->check(model, ring), twelve).holds);
+}
