@@ -11,10 +11,7 @@ namespace {
 constexpr double kCluster = 0.05;
 /// Share of the circle's radius below which a mode is far inside: nearer in small systems, where it costs
 /// little.
-double near_circle(Eigen::Index n) {
-  constexpr Eigen::Index kSmall = 100;
-  return n <= kSmall ? 0.8 : 1.0 - 1e-6;
-}
+double near_circle(Eigen::Index n) { return n <= kThorough ? 0.8 : 1.0 - 1e-6; }
 
 /// Union-find over eigenvalues, with the sum of every set.
 class Clusters {

@@ -27,6 +27,10 @@ S scalar_of(Complex z) {
     return z;
 }
 
+/// States up to which the search for the nearest unseen mode is thorough; beyond, a decomposition more costs
+/// seconds, and only modes that may decide the answer are refined.
+inline constexpr Eigen::Index kThorough = 100;
+
 /// Candidates for z: the eigenvalues of A, and the means of their clusters (a k-fold eigenvalue is
 /// computed with errors of eps^(1/k), the mean of its copies with eps). With `least` > 0, those far inside
 /// of that circle are left out and the others are moved out to it. `balanced`: D^-1 A D, whose eigenvalues

@@ -85,9 +85,9 @@ class Splitting {
   /// fast where the mode is unseen.
   Try descend(Try now) const {
     constexpr int kMost = 30;
-    constexpr double kHopeless = 0.05;
+    const double hopeless = A_.rows() <= kThorough ? 0.05 : 1e-5;
     int idle = 0;
-    for (int k = 0; k < kMost && idle < 2 && now.sigma > kGoal * level_ && now.sigma < kHopeless; ++k) {
+    for (int k = 0; k < kMost && idle < 2 && now.sigma > kGoal * level_ && now.sigma < hopeless; ++k) {
       const VectorOf<S> moved = A_ * now.v;
       Try next = at(Complex(now.v.dot(moved)));
       const VectorOf<S> u = (moved - now.z * now.v) / (now.sigma * size_);
