@@ -120,6 +120,15 @@ Pair balanced(const Matrix& A, const Matrix& C, double rate) {
   return out;
 }
 
+Pair rows_scaled(const Matrix& A, const Matrix& C, double rate) {
+  Pair out{A, C};
+  for (Index k = 0; k < C.rows(); ++k) {
+    const double length = C.row(k).stableNorm();
+    if (length > 0.0) out.C.row(k) *= power_of_2(rate / length);
+  }
+  return out;
+}
+
 double natural_rate(const Matrix& A) {
   const double largest =
       A.cwiseAbs().cwiseSqrt().cwiseProduct(A.transpose().cwiseAbs().cwiseSqrt()).maxCoeff();

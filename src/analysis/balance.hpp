@@ -20,6 +20,10 @@ struct Pair {
 /// such a way (reach_outputs), except with C without rows, where A alone is balanced.
 Pair balanced(const Matrix& A, const Matrix& C, double rate);
 
+/// S C only, every row of length `rate`: states stay as they are. In networks where every state is far from
+/// the outputs, balancing grows exponentially with that distance, and what is seen well looks hardly seen.
+Pair rows_scaled(const Matrix& A, const Matrix& C, double rate);
+
 /// A rate of the pair that no scaling changes: the largest sqrt(|a_ij a_ji|), 1 where all are 0.
 double natural_rate(const Matrix& A);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Agents whose loss ends detectability, from one decomposition per mode instead of one per agent.
 #include <algorithm>
+#include <optional>
 
 #include "splitting.hpp"
 
@@ -31,13 +32,16 @@ Matrix without(const Matrix& C, const Rows& rows) {
 template <class S>
 std::vector<int> necessary(const Matrix& A, const Matrix& C, const detail::Pair& pair,
                            const std::vector<Complex>& modes, const std::vector<Rows>& agents) {
-  detail::Splitting<S> seen(pair, 1.0);
-  const Visibility all = seen.run(modes);
-  const std::size_t unseen_by_all = all.unseen.size() + all.unclear.size();
+  detail::Splitting<S> seen(detail::rows_scaled(A, C, detail::natural_rate(A)), 1.0);
+  if (!seen.run(modes).all_seen()) {  // perhaps only in the units given
+    seen = detail::Splitting<S>(pair, 1.0);
+    seen.run(modes);
+  }
+  std::optional<std::size_t> unseen_by_all;  // computed for the first agent that needs it
   std::vector<int> found;
   if (seen.A().rows() == 0) return found;
   std::vector<char> listed(agents.size(), 0);
-  const double level = detail::unclear_level(A.rows()) * seen.size();
+  const double level = detail::unseen_level(A.rows()) * seen.size();
   for (const Complex mode : modes) {
     const S z = detail::scalar_of<S>(mode);
     const MatrixOf<S> R = detail::triangle<S>(seen.A(), seen.C(), z);
@@ -58,8 +62,12 @@ std::vector<int> necessary(const Matrix& A, const Matrix& C, const detail::Pair&
       const double residual = std::hypot((seen.A() * v - z * v).norm(), shown.norm());
       listed[k] = residual <= level;
       if (listed[k]) continue;
-      const Visibility rest = detail::examine(A, without(C, rows), 1.0);
-      listed[k] = rest.unseen.size() + rest.unclear.size() > unseen_by_all;
+      const auto unseen = [&](const Matrix& rows_of_C) {
+        const Visibility v = detail::examine(A, rows_of_C, 1.0);
+        return v.unseen.size() + v.unclear.size();
+      };
+      if (!unseen_by_all) unseen_by_all = unseen(C);
+      listed[k] = unseen(without(C, rows)) > *unseen_by_all;
     }
   }
   for (std::size_t k = 0; k < agents.size(); ++k)

@@ -142,7 +142,7 @@ TEST_CASE("random systems without hidden modes are observable, in any coordinate
     const Visibility v = visibility(c.A, c.C, 0.0);
     CAPTURE(v.text());
     CHECK(v.sight == Sight::seen);
-    CHECK(v.distance > 1e-3 * before);
+    CHECK(v.distance > std::min(1e-4, 1e-3 * before));  // above 1e-4, other units are not tried
   }
 }
 
@@ -205,4 +205,25 @@ TEST_CASE("what does not fit is refused") {
   CHECK_THROWS_AS(visibility(Matrix::Identity(2, 2), Matrix::Ones(1, 3), 0.0), InvalidInput);
   CHECK_THROWS_AS(visibility(Matrix{{kNaN}}, Matrix{{1.0}}, 0.0), InvalidInput);
   CHECK_THROWS_AS(visibility(Matrix{{1.0}}, Matrix{{1.0}}, -1.0), InvalidInput);
+}
+
+TEST_CASE("sensors far from most states of a network: what is seen well is not called hardly seen") {
+  test::Rng rng(7);
+  const int n = 90;
+  Matrix A = Matrix::Identity(n, n);
+  for (int i = 1; i < n; ++i) {  // diffusion on a random tree
+    const int j = test::whole(rng, std::max(0, i - 5), i - 1);
+    A(i, i) -= 0.05;
+    A(j, j) -= 0.05;
+    A(i, j) += 0.05;
+    A(j, i) += 0.05;
+  }
+  std::vector<Matrix> C;
+  for (int i = 0; i < n; i += 30) C.push_back(Matrix::Identity(n, n).row(i));
+  const Model model(A, C);
+  const Visibility v = visibility(A, model.stacked(), 1.0);
+  CHECK(v.all_seen());
+  CHECK(v.distance > 1e-6);
+  CHECK(undetectable_agents(model).empty());
+  CHECK(undetectable_agents(Model(A, {C[0]})) == std::vector<int>{0});
 }
