@@ -31,10 +31,12 @@ std::string three_digits(double value) {
 }  // namespace
 
 std::string Visibility::text() const {
+  constexpr double kReal = 1e-7;  // copies of a real mode are computed as complex pairs that far apart
   const std::string real = three_digits(nearest.real());
-  const std::string mode = nearest.imag() == 0.0 ? real
-                                                 : real + (nearest.imag() < 0.0 ? " - " : " + ") +
-                                                       three_digits(std::abs(nearest.imag())) + "i";
+  const std::string mode =
+      std::abs(nearest.imag()) <= kReal * std::abs(nearest)
+          ? real
+          : real + (nearest.imag() < 0.0 ? " - " : " + ") + three_digits(std::abs(nearest.imag())) + "i";
   const std::string at = "distance " + three_digits(distance) + " at the mode " + mode;
   switch (sight) {
     case Sight::seen:
