@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "bindings.hpp"
+#include "budget.hpp"
 #include "garrison/filters/families.hpp"
 #include "kept.hpp"
 
@@ -129,8 +130,8 @@ void bind_filters(py::module_& m) {
       "All families with the description of their parameters.");
   m.def(
       "check",
-      [](const FilterHandle& f, const Model& model, const Network& network) {
-        const Check check = f.filter->check(model, network);
+      [](const Model& model, const Network& network, const FilterHandle& f, double seconds) {
+        const Check check = within_budget(seconds, [&] { return f.filter->check(model, network); });
         py::list conditions;
         for (const auto& c : check.conditions)
           conditions.append(py::dict(py::arg("name") = c.name, py::arg("value") = c.value,
@@ -142,6 +143,9 @@ void bind_filters(py::module_& m) {
               py::dict(py::arg("name") = q.name, py::arg("value") = q.value, py::arg("meaning") = q.meaning));
         return py::make_tuple(conditions, quantities);
       },
-      py::arg("filter"), py::arg("model"), py::arg("network"),
-      "Conditions and quantities of the family's theorems, as two lists of dicts.");
+      py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("seconds") = kInfinity,
+      "Conditions and quantities of the family's theorems, as two lists of dicts. Searches end after "
+      "`seconds` with a\n"
+      "certified interval; a computation without partial results raises InvalidInput then. Ctrl-C ends it, "
+      "too.");
 }

@@ -301,9 +301,21 @@ void bind_networks(py::module_& s) {
       py::arg("agents"), py::arg("edges"), py::arg("weights"), py::arg("max_nodes") = 2'000'000,
       "Cheapest strongly connected network from (from, to) edges; see the C++ header.");
   s.def("unseen_modes", &unseen_modes, py::arg("A"), py::arg("C"), py::arg("least") = 0.0,
-        py::arg("tolerance") = 1e-9,
-        "Eigenvalues of modulus >= least that the rows of C do not show (PBH test).");
-  s.def("undetectable_agents", &undetectable_agents, py::arg("model"), py::arg("tolerance") = 1e-9,
+        "Eigenvalues of modulus >= least that the rows of C do not surely show; see visibility.");
+  s.def(
+      "visibility",
+      [](const MatrixRef& A, const MatrixRef& C, double least) {
+        const Visibility v = visibility(A, C, least);
+        const char* sight = v.sight == Sight::seen ? "seen" : v.sight == Sight::unseen ? "unseen" : "unclear";
+        return py::dict(py::arg("sight") = sight, py::arg("distance") = v.distance,
+                        py::arg("nearest") = v.nearest, py::arg("unseen") = v.unseen,
+                        py::arg("unclear") = v.unclear, py::arg("text") = v.text());
+      },
+      py::arg("A"), py::arg("C"), py::arg("least") = 0.0,
+      "What the rows of C show of the modes of A of modulus >= least: \"seen\", \"unseen\" or \"unclear\", "
+      "with the\n"
+      "relative distance to the nearest pair with an unseen mode. Units and coordinates do not matter.");
+  s.def("undetectable_agents", &undetectable_agents, py::arg("model"),
         "Agents whose sensor alone can lie along an unstable mode that nobody else sees.");
 }
 

@@ -1,9 +1,11 @@
 """Conditions and bounds of a filter's theorems."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 from garrison import _core
+from garrison.arguments import number
 from garrison.words import hinted, require_order
 
 
@@ -55,10 +57,16 @@ def verdict(condition: dict[str, Any]) -> str:
 
 
 @hinted
-def check(model: _core.Model, network: _core.Network, filter: _core.Filter) -> Check:
+def check(
+    model: _core.Model, network: _core.Network, filter: _core.Filter, *, seconds: float = math.inf
+) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
+
+    After `seconds` (> 0) searches end with a certified interval and say so; computations that have no partial result
+    raise InvalidInput. Ctrl-C ends both. Without `seconds`, searches end after about a second of work, with the same
+    result on every machine.
 
     Raises InvalidInput when parameters, model and network do not fit together.
     """
     require_order("check", model, network, filter)
-    return Check(*_core.check(filter, model, network))
+    return Check(*_core.check(model, network, filter, number("seconds", seconds)))

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "garrison/analysis/subsets.hpp"
+#include "garrison/core/budget.hpp"
 #include "row_groups.hpp"
 #include "symmetric_eigen.hpp"
 
@@ -24,9 +24,9 @@ class BranchAndBound {
   BranchAndBound(const MatrixRef& C, int s, const SubsetLimits& limits)
       : C_(C.transpose()),
         s_(s),
-        limits_(limits),
-        groups_(group_rows(C)),
-        start_(std::chrono::steady_clock::now()) {}
+        max_nodes_(limits.max_nodes),
+        budget_(current_budget().within(limits.max_seconds)),
+        groups_(group_rows(C)) {}
 
   SubsetBound run() {
     Square S = Square::Zero(C_.rows(), C_.rows());
@@ -37,7 +37,10 @@ class BranchAndBound {
     std::vector<int> candidates(static_cast<std::size_t>(C_.cols()));
     std::iota(candidates.begin(), candidates.end(), 0);
     open_ = kInfinity;
-    levels_.resize(static_cast<std::size_t>(s_) + 1);
+    root_ = certify(S, s_, candidates);
+    // A search keeps the candidates of every depth.
+    stopped_ = static_cast<double>(s_) * static_cast<double>(C_.cols()) > kMostMemory;
+    levels_.resize(static_cast<std::size_t>(stopped_ ? 0 : s_) + 1);
     search(S, s_, candidates);
     SubsetBound b;
     b.upper = std::max(best_, 0.0);
@@ -51,6 +54,8 @@ class BranchAndBound {
   }
 
  private:
+  static constexpr double kMostMemory = 2e7;      // entries of all depths together
+  static constexpr std::size_t kMostStarts = 64;  // of the heuristic, besides the eigenvectors
   using Square = Mat<n>;
   using Column = Vec<n>;
   using Columns = Eigen::Matrix<double, n, Eigen::Dynamic>;
@@ -88,8 +93,10 @@ class BranchAndBound {
     Square vectors(S.rows(), S.cols());
     symmetric_eigen(S.data(), S.cols(), values.data(), vectors.data());
     for (Eigen::Index k = 0; k < vectors.cols(); ++k) improve(S, vectors.col(k), {}, s_);
-    for (const auto& members : groups_.members) {
-      const Column c = C_.col(members.front());
+    const std::size_t G = groups_.members.size();
+    const std::size_t starts = std::min(G, kMostStarts);
+    for (std::size_t k = 0; k < starts && !budget_.over(); ++k) {
+      const Column c = C_.col(groups_.members[k * G / starts].front());
       if (c.norm() > 0.0) improve(S, c.normalized(), {}, s_);
     }
   }
@@ -121,11 +128,10 @@ class BranchAndBound {
 
   bool out_of_budget() {
     if (stopped_) return true;
-    if (nodes_ >= limits_.max_nodes) stopped_ = true;
-    if (nodes_ % 256 == 0 && std::isfinite(limits_.max_seconds)) {
-      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-      if (elapsed.count() > limits_.max_seconds) stopped_ = true;
-    }
+    if (nodes_ >= max_nodes_) stopped_ = true;
+    // A node costs about 10 ns per candidate and more: polled at least every millisecond.
+    const std::int64_t often = std::max<std::int64_t>(1, 65536 / (C_.cols() + 256));
+    if (nodes_ % often == 0 && budget_.over()) stopped_ = true;
     return stopped_;
   }
 
@@ -166,7 +172,7 @@ class BranchAndBound {
     return std::accumulate(values.begin(), middle, 0.0);
   }
 
-  /// A level that no completion of an unfinished node falls below.
+  /// A level that no completion of a node falls below.
   double certify(const Square& S, int r, const std::vector<int>& candidates) const {
     double low = 0.0;
     double high = std::min(target(), least(S));
@@ -183,7 +189,7 @@ class BranchAndBound {
     ++nodes_;
     if (r == 0) return offer(least(S), removed_);
     if (out_of_budget()) {
-      open_ = std::min(open_, certify(S, r, candidates));
+      open_ = std::min(open_, root_);  // holds for every set; to certify each open node would take for ever
       return;
     }
     Level& level = levels_[static_cast<std::size_t>(r)];
@@ -240,12 +246,13 @@ class BranchAndBound {
 
   Columns C_;
   int s_;
-  SubsetLimits limits_;
+  std::int64_t max_nodes_;
+  Budget budget_;
   RowGroups groups_;
-  std::chrono::steady_clock::time_point start_;
   double scale_ = 1.0;
   double best_ = kInfinity;
   double open_ = kInfinity;
+  double root_ = 0.0;  // no set at all gets below this level
   bool stopped_ = false;
   std::int64_t nodes_ = 0;
   std::vector<int> removed_;

@@ -87,6 +87,16 @@ std::optional<double> lambda0_orthogonal(const MatrixRef& C, int s) {
   return std::max(0.0, static_cast<double>(*std::min_element(size.begin(), size.end()) - s));
 }
 
+SubsetLimits usual_limits(Eigen::Index rows, Eigen::Index states) {
+  constexpr double kWork = 4e7;  // rows looked at, for few states
+  const double per_node =
+      static_cast<double>(rows) * std::max(1.0, static_cast<double>(states * states) / 16.0);
+  SubsetLimits limits;
+  limits.max_nodes =
+      static_cast<std::int64_t>(std::clamp(kWork / per_node, 200.0, static_cast<double>(limits.max_nodes)));
+  return limits;
+}
+
 SubsetBound lambda0(const MatrixRef& C, int s, const SubsetLimits& limits) {
   detail::require_subset_input("lambda0", C, s);
   SubsetBound trivial;

@@ -1,54 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/analysis/modes.hpp"
 
-#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cstdio>
 
-#include "core/solvers.hpp"
+#include "unseen_part.hpp"
 
 namespace garrison {
+namespace {
 
-std::vector<std::complex<double>> unseen_modes(const MatrixRef& A, const MatrixRef& C, double least,
-                                               double tolerance) {
-  const Eigen::Index n = A.rows();
+using Index = Eigen::Index;
+
+void require_pair(const MatrixRef& A, const MatrixRef& C) {
+  const Index n = A.rows();
   if (n < 1 || A.cols() != n)
     refuse("A", std::to_string(n) + " x " + std::to_string(A.cols()),
            "a square matrix with at least one row");
   if (C.rows() > 0 && C.cols() != n)
     refuse("C", std::to_string(C.cols()) + " columns", std::to_string(n) + ", as many as A");
   if (!A.allFinite() || !C.allFinite()) refuse("A or C", "a number that is not finite", "finite numbers");
-  std::vector<std::complex<double>> unseen;
-  const Eigen::VectorXcd values = Eigen::EigenSolver<Matrix>(A, false).eigenvalues();
-  for (Eigen::Index k = 0; k < n; ++k) {
-    // A mode that rounding puts just inside counts as on the circle.
-    if (std::abs(values(k)) < least * (1.0 - 1e-9)) continue;
-    Eigen::MatrixXcd test(n + C.rows(), n);
-    test.topRows(n) = values(k) * Eigen::MatrixXcd::Identity(n, n) - A.cast<std::complex<double>>();
-    test.bottomRows(C.rows()) = C.cast<std::complex<double>>();
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> qr(test);
-    qr.setThreshold(tolerance);
-    if (qr.rank() < n) unseen.push_back(values(k));
-  }
-  return unseen;
 }
 
-std::vector<int> undetectable_agents(const Model& model, double tolerance) {
-  std::vector<int> all;
-  for (int i = 0; i < model.agents(); ++i) {
-    if (model.outputs(i) == 0) continue;
-    Matrix others(model.total_outputs() - model.outputs(i), model.states());
-    Eigen::Index row = 0;
-    for (int j = 0; j < model.agents(); ++j) {
-      if (j == i) continue;
-      others.middleRows(row, model.outputs(j)) = model.C(j);
-      row += model.outputs(j);
-    }
-    const auto without = unseen_modes(model.A(), others, 1.0, tolerance);
-    if (without.empty()) continue;
-    // A mode that this agent does not see either cannot be hidden behind it.
-    const auto with = unseen_modes(model.A(), model.stacked(), 1.0, tolerance);
-    if (without.size() > with.size()) all.push_back(i);
+std::string three_digits(double value) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
+  return buffer.data();
+}
+
+}  // namespace
+
+std::string Visibility::text() const {
+  constexpr double kReal = 1e-7;  // copies of a real mode are computed as complex pairs that far apart
+  const std::string real = three_digits(nearest.real());
+  const std::string mode =
+      std::abs(nearest.imag()) <= kReal * std::abs(nearest)
+          ? real
+          : real + (nearest.imag() < 0.0 ? " - " : " + ") + three_digits(std::abs(nearest.imag())) + "i";
+  const std::string at = "distance " + three_digits(distance) + " at the mode " + mode;
+  switch (sight) {
+    case Sight::seen:
+      return "every mode is seen: " + at;
+    case Sight::unseen:
+      return "no output shows the mode " + mode;
+    case Sight::unclear:
+      return "cannot tell: " + at;
   }
-  return all;
+  return at;
+}
+
+Visibility visibility(const MatrixRef& A, const MatrixRef& C, double least) {
+  require_pair(A, C);
+  if (!(least >= 0.0)) refuse("least", text(least), "a modulus >= 0");
+  const Matrix own = C.rows() > 0 ? Matrix(C) : Matrix(0, A.rows());
+  Visibility v = detail::examine(A, own, least);
+  if (v.sight != Sight::seen) return v;
+  // Entries of the size of rounding must not be what makes a mode visible.
+  Matrix A_without = A;
+  Matrix C_without = own;
+  if (!detail::drop_rounding(A_without, C_without)) return v;
+  Visibility without = detail::examine(A_without, C_without, least);
+  if (without.sight == Sight::seen) return v;
+  without.sight = Sight::unclear;
+  without.unclear.insert(without.unclear.end(), without.unseen.begin(), without.unseen.end());
+  without.unseen.clear();
+  return without;
+}
+
+std::vector<std::complex<double>> unseen_modes(const MatrixRef& A, const MatrixRef& C, double least) {
+  Visibility v = visibility(A, C, least);
+  v.unseen.insert(v.unseen.end(), v.unclear.begin(), v.unclear.end());
+  return v.unseen;
 }
 
 }  // namespace garrison

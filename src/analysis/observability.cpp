@@ -2,57 +2,127 @@
 #include "garrison/analysis/observability.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <numeric>
 
-#include "core/solvers.hpp"
+#include "garrison/analysis/modes.hpp"
 #include "garrison/analysis/subsets.hpp"
 #include "row_groups.hpp"
+#include "splitting.hpp"
 
 namespace garrison {
+namespace {
+
+using Index = Eigen::Index;
+using detail::Complex;
+using detail::MatrixOf;
+
+/// Rows whose leverages sum to less than 1 minus this can go without any loss of rank.
+constexpr double kMargin = 1e-6;
+/// Relative singular value below which the mode is looked at with care.
+constexpr double kWeak = 1e-3;
+
+/// A row of C with its copies.
+struct Group {
+  Index row;
+  int size;
+};
+
+/// At one mode z: does [A - z I; C] keep its rank when groups of together at most s rows go? With R'R = P'P,
+/// removing the rows V does no harm if the sum of their leverages |R'^-1 c|^2 is below 1.
+template <class S>
+class Removals {
+ public:
+  Removals(const Matrix& A, const Matrix& C, const detail::Pair& pair)
+      : A_(A),
+        C_(C),
+        pair_A_(pair.A.cast<S>()),
+        pair_C_(pair.C.cast<S>()),
+        size_(detail::pair_size(pair.A, pair.C)) {}
+
+  bool survives(S z, const std::vector<Group>& kept, const std::vector<Group>& free, int s) {
+    if (++tried_ > kMostRemovals)
+      refuse("s_sparse_observable", "more than " + text(kMostRemovals) + " sets to try", "a smaller s or N");
+    const MatrixOf<S> R = detail::triangle<S>(pair_A_, rows(pair_C_, kept), z);
+    detail::VectorOf<S> v;
+    if (detail::least_singular<S>(R, v) <= kWeak * size_ && !observable(A_, rows(C_, kept))) return false;
+    std::vector<double> leverage(free.size());
+    for (std::size_t k = 0; k < free.size(); ++k)
+      leverage[k] = R.adjoint()
+                        .template triangularView<Eigen::Lower>()
+                        .solve(pair_C_.row(free[k].row).adjoint())
+                        .squaredNorm();
+    std::vector<std::size_t> order(free.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto density = [&](std::size_t k) { return leverage[k] / free[k].size; };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return density(a) > density(b); });
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      double budget = s;  // what the best choice from here on can remove, groups in parts allowed
+      double sum = 0.0;
+      for (std::size_t j = k; j < order.size() && budget > 0.0; ++j) {
+        const double part = std::min(budget, static_cast<double>(free[order[j]].size));
+        sum += part * density(order[j]);
+        budget -= part;
+      }
+      if (!(sum >= 1.0 - kMargin)) return true;
+      const Group& gone = free[order[k]];
+      if (gone.size > s) continue;
+      std::vector<Group> still;
+      for (const Group& g : kept)
+        if (g.row != gone.row) still.push_back(g);
+      std::vector<Group> rest;
+      for (std::size_t j = k + 1; j < order.size(); ++j) rest.push_back(free[order[j]]);
+      if (!survives(z, still, rest, s - gone.size)) return false;
+    }
+    return true;
+  }
+
+ private:
+  template <class M>
+  static M rows(const M& C, const std::vector<Group>& kept) {
+    M some(static_cast<Index>(kept.size()), C.cols());
+    for (std::size_t k = 0; k < kept.size(); ++k) some.row(static_cast<Index>(k)) = C.row(kept[k].row);
+    return some;
+  }
+
+  const Matrix& A_;
+  const Matrix& C_;
+  MatrixOf<S> pair_A_, pair_C_;
+  double size_;
+  double tried_ = 0.0;
+};
+
+template <class S>
+bool all_survive(const Matrix& A, const Matrix& C, const detail::Pair& pair,
+                 const std::vector<Complex>& modes, const std::vector<Group>& groups, int s) {
+  Removals<S> removals(A, C, pair);
+  return std::all_of(modes.begin(), modes.end(), [&](Complex z) {
+    return removals.survives(detail::scalar_of<S>(z), groups, groups, s);
+  });
+}
+
+}  // namespace
 
 bool observable(const MatrixRef& A, const MatrixRef& C) {
-  const auto n = A.rows();
-  if (A.cols() != n || C.cols() != n)
+  if (A.cols() != A.rows() || C.cols() != A.rows())
     refuse("C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()), "as many columns as A has rows");
-  if (C.rows() == 0) return false;
-  Matrix O(C.rows() * n, n);
-  Matrix block = C;
-  for (Eigen::Index k = 0; k < n; ++k, block = block * A) O.middleRows(k * C.rows(), C.rows()) = block;
-  const Vector values = Eigen::JacobiSVD<Matrix>(O).singularValues();
-  const double zero = static_cast<double>(std::max(O.rows(), O.cols())) * 2.220446049250313e-16 * values(0);
-  return (values.array() > zero).count() == n;
+  return visibility(A, C, 0.0).all_seen();
 }
 
 bool s_sparse_observable(const MatrixRef& A, const MatrixRef& C, int s) {
   detail::require_subset_input("s_sparse_observable", C, s);
-  const auto groups = detail::group_rows(C);
-  // Copies add nothing to the rank: only which groups vanish entirely matters.
-  const std::size_t G = groups.members.size();
-  std::vector<char> gone(G, 0);
-  double tried = 0.0;
-  const std::function<bool(std::size_t, int)> all_observable = [&](std::size_t k, int left) -> bool {
-    if (k == G) {
-      if (++tried > kMostRemovals)
-        refuse("s_sparse_observable", "more than " + text(kMostRemovals) + " sets to try",
-               "a smaller s or N");
-      Matrix kept(0, C.cols());
-      for (std::size_t g = 0; g < G; ++g)
-        if (!gone[g]) {
-          kept.conservativeResize(kept.rows() + 1, Eigen::NoChange);
-          kept.row(kept.rows() - 1) = C.row(groups.members[g].front());
-        }
-      return observable(A, kept);
-    }
-    const int size = static_cast<int>(groups.members[k].size());
-    if (size <= left) {
-      gone[k] = 1;
-      const bool fine = all_observable(k + 1, left - size);
-      gone[k] = 0;
-      if (!fine) return false;
-    }
-    return all_observable(k + 1, left);
-  };
-  return all_observable(0, s);
+  if (!observable(A, C)) return false;
+  std::vector<Group> groups;
+  for (const auto& members : detail::group_rows(C).members)
+    groups.push_back({members.front(), static_cast<int>(members.size())});
+  const Matrix own_A = A;
+  const Matrix own_C = C;
+  const double rate = detail::natural_rate(own_A);
+  const detail::Pair pair = detail::balanced(own_A, own_C, rate);
+  const auto modes = detail::candidate_modes(own_A, pair.A, rate, 0.0);
+  const bool real = std::all_of(modes.begin(), modes.end(), [](Complex z) { return z.imag() == 0.0; });
+  return real ? all_survive<double>(own_A, own_C, pair, modes, groups, s)
+              : all_survive<Complex>(own_A, own_C, pair, modes, groups, s);
 }
 
 bool one_step_sparse_observable(const MatrixRef& C, int s) {

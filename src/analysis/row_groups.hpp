@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -29,19 +31,42 @@ inline void require_subset_input(const char* who, const MatrixRef& C, int s) {
            "s counts removed rows");
 }
 
+/// Rows are compared with those only that have the same |w c'| for a fixed w, so that equal ones meet after
+/// sorting.
 inline RowGroups group_rows(const MatrixRef& C) {
   constexpr double kSame = 1e-14;
+  const Eigen::Index N = C.rows();
+  const Vector w = Vector::NullaryExpr(
+      C.cols(), [](Eigen::Index k) { return 1.0 + 0.5 * std::sin(1.0 + 2.4 * double(k)); });
+  const Vector key = (C * w).cwiseAbs();
+  const Vector scale = kSame * (1.0 + C.rowwise().norm().array());
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(N));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return key(a) < key(b); });
+  const double reach = 4.0 * w.norm();
+  std::vector<Eigen::Index> like(static_cast<std::size_t>(N));  // the first of its kind in the order of keys
+  std::vector<Eigen::Index> kinds;                              // those whose key is near
+  for (const Eigen::Index i : order) {
+    std::erase_if(kinds,
+                  [&](Eigen::Index k) { return key(i) - key(k) > reach * std::max(scale(i), scale(k)); });
+    const auto same = std::find_if(kinds.begin(), kinds.end(), [&](Eigen::Index k) {
+      const double near = std::min(scale(i), scale(k));
+      return (C.row(k) - C.row(i)).norm() <= near || (C.row(k) + C.row(i)).norm() <= near;
+    });
+    like[static_cast<std::size_t>(i)] = same != kinds.end() ? *same : i;
+    if (same == kinds.end()) kinds.push_back(i);
+  }
   RowGroups g;
-  for (Eigen::Index i = 0; i < C.rows(); ++i) {
-    const double scale = kSame * (1.0 + C.row(i).norm());
-    std::size_t k = 0;
-    for (; k < g.members.size(); ++k) {
-      const auto first = g.members[k].front();
-      if ((C.row(first) - C.row(i)).norm() <= scale || (C.row(first) + C.row(i)).norm() <= scale) break;
+  std::vector<int> number(static_cast<std::size_t>(N), -1);  // of the group, in the order of rows
+  for (Eigen::Index i = 0; i < N; ++i) {
+    int& group = number[static_cast<std::size_t>(like[static_cast<std::size_t>(i)])];
+    if (group < 0) {
+      group = static_cast<int>(g.members.size());
+      g.members.emplace_back();
     }
-    if (k == g.members.size()) g.members.emplace_back();
-    g.members[k].push_back(static_cast<int>(i));
-    g.group.push_back(static_cast<int>(k));
+    g.members[static_cast<std::size_t>(group)].push_back(static_cast<int>(i));
+    g.group.push_back(group);
   }
   return g;
 }

@@ -1,9 +1,80 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/central_kalman.hpp"
 
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "core/solvers.hpp"
 
 namespace garrison {
+namespace {
+
+using Index = Eigen::Index;
+
+/// A noise-free output counts as one with this part of its prior deviation as noise: less would not be seen.
+constexpr double kExact = 1e-14;
+
+Matrix root(const Matrix& S) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(S);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+/// QR with columns pivoted and rows sorted by size: errors are then relative to each row (Cox, Higham 1998),
+/// so that large prior deviations do not drown precise measurements.
+Eigen::ColPivHouseholderQR<Matrix> sorted_qr(Matrix rows, Vector* right = nullptr) {
+  std::vector<Index> order(static_cast<std::size_t>(rows.rows()));
+  std::iota(order.begin(), order.end(), Index{0});
+  const Vector size = rows.rowwise().lpNorm<Eigen::Infinity>();
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return size(a) > size(b); });
+  if (right != nullptr) *right = Vector((*right)(order));
+  return Eigen::ColPivHouseholderQR<Matrix>(rows(order, Eigen::all));
+}
+
+/// An estimate x with error covariance S S'.
+struct Estimate {
+  Vector x;
+  Matrix S;
+
+  void predict(const Matrix& A, const Matrix& process_root) {
+    x = A * x;
+    const Index n = x.size();
+    Matrix both(S.cols() + process_root.cols(), n);
+    both << (A * S).transpose(), process_root.transpose();
+    const auto qr = sorted_qr(std::move(both));
+    const Matrix R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+    S = qr.colsPermutation() * R.transpose();
+  }
+
+  /// All outputs of one time that are there. With [I; R^-1/2 C S] = Q U the new root is S U^-1: S is never
+  /// inverted.
+  void correct(const Matrix& C, const Vector& R, const Matrix& y) {
+    std::vector<Index> present;
+    const Matrix CS = C * S;
+    for (Index k = 0; k < C.rows(); ++k)
+      if (std::isfinite(y(k)) && (R(k) > 0.0 || CS.row(k).squaredNorm() > 0.0)) present.push_back(k);
+    if (present.empty()) return;
+    const Index n = x.size();
+    const auto m = static_cast<Index>(present.size());
+    Matrix rows(n + m, n);
+    Vector right = Vector::Zero(n + m);
+    rows.topRows(n).setIdentity();
+    for (Index k = 0; k < m; ++k) {
+      const Index at = present[static_cast<std::size_t>(k)];
+      const double deviation = std::max(std::sqrt(R(at)), kExact * CS.row(at).norm());
+      rows.row(n + k) = CS.row(at) / deviation;
+      right(n + k) = (y(at) - C.row(at).dot(x)) / deviation;
+    }
+    const auto qr = sorted_qr(std::move(rows), &right);
+    const auto U = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+    right.applyOnTheLeft(qr.householderQ().adjoint());
+    S = U.solve<Eigen::OnTheRight>(Matrix(S * qr.colsPermutation()));
+    x += S * right.head(n);
+  }
+};
+
+}  // namespace
 
 Matrix central_kalman(const Model& model, const MatrixRef& measurements, const VectorRef& x0,
                       double start_variance) {
@@ -16,7 +87,8 @@ Matrix central_kalman(const Model& model, const MatrixRef& measurements, const V
     refuse("measurements", std::to_string(measurements.cols()) + " columns",
            std::to_string(model.total_outputs()));
   if (x0.size() != n) refuse("x0", std::to_string(x0.size()) + " numbers", std::to_string(n));
-  if (!(start_variance >= 0.0)) refuse("start_variance", text(start_variance), "a number >= 0");
+  if (!(start_variance >= 0.0) || std::isinf(start_variance))
+    refuse("start_variance", text(start_variance), "a finite number >= 0");
   Vector R(model.total_outputs());
   for (int i = 0; i < model.agents(); ++i) {
     const Matrix& S = noise.measurement_covariance[static_cast<std::size_t>(i)];
@@ -25,24 +97,14 @@ Matrix central_kalman(const Model& model, const MatrixRef& measurements, const V
     R.segment(model.offset(i), model.outputs(i)) = S.diagonal();
   }
   const Matrix C = model.stacked();
-  const Matrix I = Matrix::Identity(n, n);
+  const Matrix process_root = root(noise.process_covariance);
   Matrix estimates(measurements.rows() + 1, n);
-  Vector x = x0;
-  Matrix P = start_variance * I;
-  estimates.row(0) = x;
-  for (Eigen::Index t = 0; t < measurements.rows(); ++t) {
-    x = model.A() * x;
-    P = model.A() * P * model.A().transpose() + noise.process_covariance;
-    for (Eigen::Index k = 0; k < C.rows(); ++k) {
-      const double y = measurements(t, k);
-      const double S = C.row(k) * P * C.row(k).transpose() + R(k);
-      if (!std::isfinite(y) || !(S > 0.0)) continue;
-      const Vector K = P * C.row(k).transpose() / S;
-      x += K * (y - C.row(k).dot(x));
-      P = (I - K * C.row(k)) * P * (I - K * C.row(k)).transpose() + R(k) * K * K.transpose();
-      P = 0.5 * (P + P.transpose().eval());
-    }
-    estimates.row(t + 1) = x;
+  Estimate now{x0, std::sqrt(start_variance) * Matrix::Identity(n, n)};
+  estimates.row(0) = now.x;
+  for (Index t = 0; t < measurements.rows(); ++t) {
+    now.predict(model.A(), process_root);
+    now.correct(C, R, measurements.row(t));
+    estimates.row(t + 1) = now.x;
   }
   return estimates;
 }

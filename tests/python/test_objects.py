@@ -287,7 +287,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
         r"network: got 4 agents, expected 3",
     ),
     (lambda: _core.rdkf.Setting(MODEL, gr.Network.ring(4)), r"network: got 4 agents, expected 3"),
-    (lambda: _core.check(RING, MODEL, gr.filters.Dkf()), r"check.filter: got a Network, expected a Filter"),
+    (lambda: _core.check(RING, MODEL, gr.filters.Dkf()), r"check.model: got a Network, expected a Model"),
     (lambda: gr.structural.best_scalar_gain(0.9, np.zeros((0, 0))), r"W: got 0 x 0"),
     (lambda: gr.partial_sharing.Selection(np.zeros((0, 0)), 1), r"start: got 0 x 0"),
     (lambda: gr.partial_sharing.SelectionProblem(np.eye(4), 2, 1).objective([]), r"s: got 0 numbers"),

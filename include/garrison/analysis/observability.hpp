@@ -7,15 +7,15 @@
 
 namespace garrison {
 
-/// rank [C; CA; ...; CA^(n-1)] = n, singular values below max(size) * 2.2e-16 * largest counted as zero.
+/// Every mode of A is surely seen (visibility(A, C, 0) in modes.hpp): rank [C; CA; ...; CA^(n-1)] = n.
 /// A: n x n. C: m x n, m >= 0. @throws InvalidInput on shapes that do not fit
 GARRISON_EXPORT bool observable(const MatrixRef& A, const MatrixRef& C);
 
-/// Removals that s_sparse_observable tries at most before it refuses.
+/// Sets of removed rows that s_sparse_observable tries at most before it refuses.
 inline constexpr double kMostRemovals = 2e6;
 
-/// (A, kept rows) is observable for every choice of N - s kept rows of C (N x n). Equal rows are
-/// interchangeable.
+/// (A, kept rows) is surely observable for every choice of N - s kept rows of C (N x n). Equal rows are
+/// interchangeable; mode by mode, only rows are tried whose loss can cost rank.
 /// @throws InvalidInput when s is outside 0..N or more than kMostRemovals choices would have to be tried
 GARRISON_EXPORT bool s_sparse_observable(const MatrixRef& A, const MatrixRef& C, int s);
 

@@ -13,7 +13,7 @@
 
 namespace garrison {
 
-/// Budget of an exact search. When it runs out, the result is a certified interval.
+/// Budget of an exact search, within current_budget(). When it runs out, the result is a certified interval.
 struct SubsetLimits {
   std::int64_t max_nodes = 20'000'000;
   double max_seconds = kInfinity;
@@ -39,10 +39,18 @@ GARRISON_EXPORT SubsetBound lambda0(const MatrixRef& C, int s, const SubsetLimit
 /// 0 or 1): 0 with fewer groups of parallel rows than n, else max(0, smallest group - s). Empty otherwise.
 GARRISON_EXPORT std::optional<double> lambda0_orthogonal(const MatrixRef& C, int s);
 
+/// The node limit that check and design take: about a second of work, and the same result on every machine.
+GARRISON_EXPORT SubsetLimits usual_limits(Eigen::Index rows, Eigen::Index states);
+
 /// Theorem 3: largest ||(I - (1/N) sum of C_i'C_i) A|| over sets of N - s rows. A: n x n. @throws
 /// InvalidInput
 GARRISON_EXPORT SubsetBound varpi(const MatrixRef& C, const MatrixRef& A, int s,
                                   const SubsetLimits& limits = {});
+
+/// The same by looking at every set, nothing where there are too many: then a (1 - lambda_0/N) is an upper
+/// bound for rows of at most unit length. @throws InvalidInput
+GARRISON_EXPORT std::optional<SubsetBound> varpi_enumerated(const MatrixRef& C, const MatrixRef& A, int s,
+                                                            const SubsetLimits& limits = {});
 
 /// Theorem 5: largest (1/N) ||[C_i'C_i A]|| (blocks side by side) over sets of N - s rows. @throws
 /// InvalidInput

@@ -240,6 +240,7 @@ class AgentOf final : public Agent {
     round_ = 0;
     F::template sense<n>(local_, *gains_, state_, y, t, outgoing_);
     lost_ = fresh_ || !usable<n>(F::template estimate<n>(state_));
+    if (rounds_ == 0 && lost_) rejoin({nullptr, {}, nullptr, 0});
   }
   void miss_one() noexcept {
     begin(t_ + 1, silence_.data());
@@ -250,7 +251,9 @@ class AgentOf final : public Agent {
   }
   void fuse_round(const Inbox<Message>& inbox) noexcept {
     F::template fuse<n>(local_, *gains_, state_, inbox, round_, outgoing_);
-    if (++round_ < rounds_ || !lost_) return;
+    if (++round_ == rounds_ && lost_) rejoin(inbox);
+  }
+  void rejoin(const Inbox<Message>& inbox) noexcept {
     F::template rejoin<n>(local_, *gains_, inbox, t_, state_);
     resets_ += fresh_ ? 0 : 1;
     fresh_ = false;

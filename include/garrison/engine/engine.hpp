@@ -199,7 +199,11 @@ class Engine final : public Runner {
       if (!usable<n>(F::template estimate<n>(states_[k]))) lost_.push_back(k);
   }
   void rejoin(std::int64_t t) {
-    for (const std::size_t k : lost_) F::template rejoin<n>(local(k), *gains_, mail_.inbox(k), t, states_[k]);
+    const Inbox<Message> nobody(nullptr, {}, nullptr, 0);  // of a filter without rounds
+    for (const std::size_t k : lost_) {
+      const auto heard = F::rounds(*gains_) > 0 ? mail_.inbox(k) : nobody;
+      F::template rejoin<n>(local(k), *gains_, heard, t, states_[k]);
+    }
     resets_ += static_cast<std::int64_t>(lost_.size());
   }
   void count_bytes(int round) {

@@ -69,7 +69,13 @@ class PreparedOf final : public Prepared {
   void check_start(const Matrix& x0) const override {
     if constexpr (requires { F::check_start(*gains_, x0); }) F::check_start(*gains_, x0);
   }
-  std::unique_ptr<Agent> agent(int id) const override { return agent_of<F>(part(id)); }
+  std::unique_ptr<Agent> agent(int id) const override {
+    constexpr int kMostRounds = 1000;  // it keeps the messages of two samples
+    if (F::rounds(*gains_) > kMostRounds)
+      refuse(std::string(F::name) + ".rounds", std::to_string(F::rounds(*gains_)),
+             "at most " + std::to_string(kMostRounds) + " for agents on their own");
+    return agent_of<F>(part(id));
+  }
   void require(const MessageAttack& attack) const override {
     dispatched<F>(model_.states(), [&]<int n>() {
       typename F::template State<n> state;

@@ -21,6 +21,7 @@ __all__: list[str] = [
     "strong_components",
     "undetectable_agents",
     "unseen_modes",
+    "visibility",
 ]
 
 class Pattern:
@@ -197,9 +198,7 @@ def strong_components(pattern: Pattern) -> tuple[int, numpy.typing.NDArray[numpy
     (count, component of each vertex) of the digraph with links column -> row.
     """
 
-def undetectable_agents(
-    model: garrison._core.Model, tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-09
-) -> list[int]:
+def undetectable_agents(model: garrison._core.Model) -> list[int]:
     """
     Agents whose sensor alone can lie along an unstable mode that nobody else sees.
     """
@@ -208,8 +207,17 @@ def unseen_modes(
     A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     least: typing.SupportsFloat | typing.SupportsIndex = 0.0,
-    tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-09,
 ) -> list[complex]:
     """
-    Eigenvalues of modulus >= least that the rows of C do not show (PBH test).
+    Eigenvalues of modulus >= least that the rows of C do not surely show; see visibility.
+    """
+
+def visibility(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    least: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+) -> dict:
+    """
+    What the rows of C show of the modes of A of modulus >= least: "seen", "unseen" or "unclear", with the
+    relative distance to the nearest pair with an unseen mode. Units and coordinates do not matter.
     """

@@ -68,7 +68,7 @@ Check PartialSharing::check(const Params& params, const Model& model, const Netw
       {"gamma_lyapunov", lyapunov, ">= gain", lyapunov >= s.gamma,
        "certified: up to here the errors' Lyapunov function cannot grow at any phase" + why, false});
   c.conditions.push_back({"gamma* (22)", star, ">= gain", star >= s.gamma,
-                          star < 1e-7
+                          star == 0.0
                               ? "advisory, and vacuous here: some agent's measurements do not span the state"
                               : "advisory: Theorem 1 does not hold as printed" + why,
                           false});

@@ -84,6 +84,18 @@ Matrix lambda_I(const Setting& s, const LocalGains& g, int agent) {
   return (L + L.transpose()) / 2.0;
 }
 
+namespace {
+
+/// Least eigenvalue of a positive semidefinite matrix, 0 where it is nothing but rounding of 0.
+double information(const Matrix& L) {
+  const double rounding =
+      16.0 * static_cast<double>(L.rows()) * std::numeric_limits<double>::epsilon() * L.norm();
+  const double found = least(L);
+  return found > rounding ? found : 0.0;
+}
+
+}  // namespace
+
 double gamma_star(const Setting& s, const std::vector<LocalGains>& gains, double fraction) {
   const int m = s.states();
   double weakest = kInfinity;
@@ -91,7 +103,7 @@ double gamma_star(const Setting& s, const std::vector<LocalGains>& gains, double
   Matrix laplacian = Matrix::Zero(s.agents(), s.agents());
   for (int i = 0; i < s.agents(); ++i) {
     const LocalGains& g = gains[static_cast<std::size_t>(i)];
-    weakest = std::min(weakest, least(lambda_I(s, g, i)));
+    weakest = std::min(weakest, information(lambda_I(s, g, i)));
     middle.block(i * m, i * m, m, m) = lambda_II(s, g, i);
     for (const int j : s.hears[static_cast<std::size_t>(i)]) {
       laplacian(i, i) += 1.0;

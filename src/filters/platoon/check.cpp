@@ -30,9 +30,9 @@ Check Platoon::check(const Params& p, const Model& model, const Network& network
   Check c;
   const auto safe = beta_interval_safe(s);
   const auto printed = beta_interval(s);
-  c.conditions.push_back({"threshold beta", s.beta, interval(safe.lo, safe.hi),
-                          s.beta > safe.lo && s.beta < safe.hi,
-                          "the error bound contracts without any detection"});
+  c.conditions.push_back(
+      {"threshold beta", s.beta, interval(safe.lo, safe.hi), s.beta > safe.lo && s.beta < safe.hi,
+       "the error bound contracts without any detection; left out, the best threshold is taken"});
   c.conditions.push_back({"threshold beta, Theorem 1", s.beta, interval(printed.lo, printed.hi),
                           s.beta > printed.lo && s.beta < printed.hi, "as printed, for some omega", false});
   c.conditions.push_back({"Assumption 4", p.gv, "> T g_s, and T^2 g_s - 2 T g_v > -4/sigma_max",

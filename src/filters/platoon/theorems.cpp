@@ -29,6 +29,51 @@ double blind(const Setting& s, double rho) {
   return safe_bound(s, threshold(s, rho), rho, {0, 2 * s.range + 1, 0, 0});
 }
 
+bool feasible(const Setting& s) { return !std::isnan(beta_interval_safe(s).lo); }
+
+/// Least value from `low` (not feasible) on, doubling, for which `good` holds, to two digits upwards; NaN
+/// when none.
+template <class Good>
+double least_value(double low, const Good& good) {
+  if (good(low)) return low;
+  constexpr int kMostDoublings = 60;
+  double high = low;
+  for (int k = 0; k < kMostDoublings && !good(high); ++k) high *= 2.0;
+  if (!good(high)) return kNaN;
+  for (int k = 0; k < 40; ++k) {
+    const double middle = 0.5 * (low + high);
+    (good(middle) ? high : low) = middle;
+  }
+  const double unit = std::pow(10.0, std::floor(std::log10(high)) - 1.0);
+  for (double rounded = std::ceil(high / unit) * unit; rounded < 2.0 * high; rounded += unit)
+    if (good(rounded)) return rounded;
+  return high;
+}
+
+/// What makes a threshold exist, found by trying: a larger initial error (the bound cannot fall below what
+/// noise allows, so q must not start there), less noise, or less to tolerate.
+std::string advice(const Setting& given) {
+  Setting s = given;
+  const double q = least_value(given.q, [&](double value) {
+    s.q = value;
+    return feasible(s);
+  });
+  if (!std::isnan(q)) return "raise initial_error (q) to " + text(q);
+  s = given;
+  for (s.attacked = given.attacked - 1; s.attacked >= 1; --s.attacked) {
+    Setting large = s;
+    const double enough = least_value(given.q, [&](double value) {
+      large.q = value;
+      return feasible(large);
+    });
+    if (!std::isnan(enough))
+      return "lower attacked (b) to " + std::to_string(s.attacked) +
+             (enough > given.q ? " and raise initial_error (q) to " + text(enough) : "") +
+             ", or widen the range or shorten the period";
+  }
+  return "widen the range or shorten the period: no initial error helps";
+}
+
 }  // namespace
 
 double beta1_bar(const Setting& s, double omega) {
@@ -115,10 +160,9 @@ double best_threshold(const Setting& given) {
   s.beta = 1.0;
   const Interval all = beta_interval_safe(s);
   if (std::isnan(all.lo))
-    throw DesignInfeasible(
-        "threshold (beta): no value makes the error bound contract for N = " + std::to_string(s.vehicles) +
-        ", L = " + std::to_string(s.range) + ", b = " + std::to_string(s.attacked) + ", q = " + text(s.q) +
-        "; lower eps and mu, or widen the range");
+    throw DesignInfeasible("threshold (beta): no value makes the error bound contract for N = " +
+                           std::to_string(s.vehicles) + ", L = " + std::to_string(s.range) +
+                           ", b = " + std::to_string(s.attacked) + ", q = " + text(s.q) + "; " + advice(s));
   // |1 - lo/2L| and hence the limit is a convex-over-linear function of beta: unimodal, golden section finds
   // it.
   const auto limit = [&](double beta) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "core/solvers.hpp"
+#include "garrison/analysis/modes.hpp"
 #include "garrison/filters/rdkf/analysis.hpp"
 #include "garrison/filters/rdkf/filter.hpp"
 #include "penalties.hpp"
@@ -22,14 +23,15 @@ double radius(const Matrix& A) {
 /// Existence of the covariances (theorem III.1). False: nothing else can be computed.
 bool existence(Check& c, const Model& model, const Network& network) {
   const bool connected = network.connected();
-  const bool seen = detectable(model.A(), model.stacked());
+  const Visibility modes = visibility(model.A(), model.stacked(), 1.0);
+  const bool seen = modes.all_seen();
   const Noise& noise = model.noise();
   const bool known = (noise.process_covariance.size() != 0 || !noise.agent_process_covariance.empty()) &&
                      (!noise.measurement_covariance.empty() || model.total_outputs() == 0);
   c.conditions.push_back({"connected network", connected ? 1.0 : 0.0, "= 1", connected,
                           "information of every sensor reaches every agent"});
   c.conditions.push_back({"(A, C) detectable", seen ? 1.0 : 0.0, "= 1", seen,
-                          "equation (5) has a solution (theorem III.1; our notes, 9)"});
+                          "equation (5) has a solution (theorem III.1); " + modes.text()});
   c.conditions.push_back({"covariances known", known ? 1.0 : 0.0, "= 1", known,
                           "process_covariance and measurement_covariance of the model"});
   return connected && seen && known;
@@ -64,9 +66,17 @@ void under_attack(Check& c, const Model& model, const Constants& k) {
   c.quantities.push_back(
       {"deviation bound", k.prior_deviation_bound.maxCoeff(),
        "estimate from the fused prediction in one step, whatever was measured, worst agent"});
-  c.quantities.push_back({"persistent bound", bounded ? k.persistent_bound.maxCoeff() : kNaN,
-                          bounded ? "shift of the estimate by any attack, for ever, worst agent"
-                                  : "no bound for persistent attacks: radius = " + text(open)});
+  const double persistent = bounded ? k.persistent_bound.maxCoeff() : kNaN;
+  const std::string none = "no bound for persistent attacks: radius = " + text(open);
+  c.quantities.push_back(
+      {"persistent bound", persistent,
+       bounded ? "error of a run without noise that starts exactly, under any attack for ever, worst agent"
+               : none});
+  c.quantities.push_back(
+      {"persistent shift", 2.0 * persistent,
+       bounded ? "estimate from that of the same run without attack (same noise, same start), under any "
+                 "attack for ever, worst agent"
+               : none});
   c.quantities.push_back({"basin", std::isinf(k.level.refined) ? kNaN : k.level.refined,
                           std::isnan(k.level.refined) ? "known for penalty \"norm\" only"
                           : std::isinf(k.level.refined)

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/setting.hpp"
 
-#include <complex>
-
 #include "core/solvers.hpp"
+#include "garrison/analysis/modes.hpp"
 
 namespace garrison::rdkf {
 namespace {
@@ -23,26 +22,9 @@ Eigen::SelfAdjointEigenSolver<Matrix> require_definite(const std::string& which,
 }  // namespace
 
 bool detectable(const MatrixRef& A, const MatrixRef& C) {
-  const auto n = A.rows();
-  if (A.cols() != n || C.cols() != n)
+  if (A.cols() != A.rows() || C.cols() != A.rows())
     refuse("C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()), "as many columns as A has rows");
-  const Eigen::VectorXcd modes = Eigen::EigenSolver<Matrix>(A, false).eigenvalues();
-  const double scale = std::max(A.norm(), C.rows() > 0 ? C.norm() : 0.0);
-  for (const std::complex<double> mode : modes) {
-    if (std::abs(mode) < 1.0 - 1e-10) continue;
-    // [A - mode I; C] with real and imaginary part side by side: every singular value comes twice.
-    const auto m = C.rows();
-    const Matrix real = A - mode.real() * Matrix::Identity(n, n);
-    const Matrix imaginary = mode.imag() * Matrix::Identity(n, n);
-    Matrix pencil = Matrix::Zero(2 * (n + m), 2 * n);
-    pencil.topLeftCorner(n, n) = pencil.block(n, n, n, n) = real;
-    pencil.topRightCorner(n, n) = imaginary;
-    pencil.block(n, 0, n, n) = -imaginary;
-    pencil.block(2 * n, 0, m, n) = pencil.bottomRightCorner(m, n) = C;
-    const Vector values = Eigen::JacobiSVD<Matrix>(pencil).singularValues();
-    if (!(values(2 * n - 1) > 1e-10 * scale)) return false;
-  }
-  return true;
+  return visibility(A, C, 1.0).all_seen();
 }
 
 Setting setting(const Model& model, const Network& network) {
@@ -79,9 +61,11 @@ Setting setting(const Model& model, const Network& network) {
     all.insert(std::lower_bound(all.begin(), all.end(), i), i);
     s.neighbours.push_back(std::move(all));
   }
-  if (!detectable(s.A, model.stacked()))
-    refuse("model", "a pair (A, C) that is not detectable: no agent sees some mode that does not decay",
-           "a detectable one", "equation (5) has no solution otherwise; add a sensor for that mode");
+  const Visibility modes = visibility(s.A, model.stacked(), 1.0);
+  if (!modes.all_seen())
+    refuse("model", "a pair (A, C) that is not detectable (" + modes.text() + ")",
+           "every mode that does not decay is seen by some agent",
+           "equation (5) has no solution otherwise; add a sensor for that mode");
   return s;
 }
 

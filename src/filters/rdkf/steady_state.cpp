@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/steady_state.hpp"
 
+#include "analysis/policy_iteration.hpp"
 #include "core/solvers.hpp"
+#include "garrison/core/budget.hpp"
 
 namespace garrison::rdkf {
 namespace {
 
-constexpr double kGrown = 1e14;
+constexpr double kGrown = 1e14;  // times the largest entry of Sw and of (C'Sv^-1C)^-1
+/// Sweeps after which a recursion that still changes is left to Newton's method.
+constexpr int kQuickSweeps = 400;
 /// Rounding may keep the change above the tolerance: sweeps without progress after which a small change
 /// counts.
 constexpr int kPatience = 30;
@@ -49,6 +53,118 @@ std::vector<Matrix> measured(const Setting& s) {
   return all;
 }
 
+/// Unit of the covariances: what makes a bound of them large or small.
+double scale(const Setting& s, const std::vector<Matrix>& seen) {
+  double size = 0.0;
+  double information = 0.0;
+  for (const Matrix& Sw : s.Sw) size = std::max(size, Sw.cwiseAbs().maxCoeff());
+  for (const Matrix& one : seen) information = std::max(information, one.cwiseAbs().maxCoeff());
+  return information > 0.0 ? std::max(size, 1.0 / information) : size;
+}
+
+/// Sweeps until the change is below `tolerance`, or where rounding keeps it; false: still changing after
+/// `most`.
+bool settle(const Setting& s, const std::vector<Matrix>& seen, double tolerance, int most, SteadyState& out) {
+  const double grown = kGrown * scale(s, seen);
+  double best = kInfinity;
+  int since_best = 0;
+  for (int k = 0; k < most; ++k) {
+    ++out.sweeps;
+    require_time("the sweeps of (5)");
+    std::vector<Matrix> next = sweep(s, seen, out.P);
+    out.change = 0.0;
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const double size = next[i].cwiseAbs().maxCoeff();
+      if (!(size <= grown))
+        refuse("model", "covariances that grow beyond " + text(grown),
+               "a pair (A, C) that is detectable with some margin",
+               "equation (5) has no usable solution: agent " + std::to_string(i) +
+                   " hardly learns of a mode that does not decay");
+      out.change = std::max(out.change, (next[i] - out.P[i]).cwiseAbs().maxCoeff() / size);
+    }
+    out.P = std::move(next);
+    since_best = out.change < best ? 0 : since_best + 1;
+    best = std::min(best, out.change);
+    if (out.change < tolerance || (since_best >= kPatience && best < kSmallChange)) return true;
+  }
+  return false;
+}
+
+/// (5) for Newton's method. The best policy at P weighs neighbour j by L_ij = P_i Pbar_j^-1 / d_i, P_i from
+/// (5).
+class Fusion : public detail::RiccatiMap {
+ public:
+  Fusion(const Setting& s, const std::vector<Matrix>& seen) : s_(s), seen_(seen) {}
+
+  detail::Matrices residual(const detail::Matrices& P) override {
+    const Wide A = s_.A.cast<long double>();
+    std::vector<Wide> information;
+    for (std::size_t j = 0; j < P.size(); ++j)
+      information.push_back(
+          inverted(A * P[j].cast<long double>() * A.transpose() + s_.Sw[j].cast<long double>()));
+    weights_.assign(P.size(), {});
+    detail::Matrices r;
+    for (std::size_t i = 0; i < P.size(); ++i) {
+      const auto& heard = s_.neighbours[i];
+      Wide sum = Wide::Zero(s_.A.rows(), s_.A.cols());
+      for (const int j : heard) sum += information[static_cast<std::size_t>(j)];
+      sum /= static_cast<long double>(heard.size());
+      const Wide next = inverted(sum + seen_[i].cast<long double>());
+      r.push_back((next - P[i].cast<long double>()).cast<double>());
+      for (const int j : heard)
+        weights_[i].push_back((next * information[static_cast<std::size_t>(j)] * A /
+                               std::sqrt(static_cast<long double>(heard.size())))
+                                  .cast<double>());
+    }
+    return r;
+  }
+
+  detail::Matrices apply(const detail::Matrices& D) const override {
+    detail::Matrices all;
+    for (std::size_t i = 0; i < D.size(); ++i) {
+      Matrix sum = Matrix::Zero(s_.A.rows(), s_.A.cols());
+      for (std::size_t k = 0; k < weights_[i].size(); ++k)
+        sum += weights_[i][k] * D[static_cast<std::size_t>(s_.neighbours[i][k])] * weights_[i][k].transpose();
+      all.push_back(std::move(sum));
+    }
+    return all;
+  }
+
+ private:
+  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  static Wide inverted(const Wide& S) {
+    const Wide inv = Eigen::LLT<Wide>(S).solve(Wide::Identity(S.rows(), S.cols()));
+    return 0.5L * (inv + inv.transpose());
+  }
+
+  const Setting& s_;
+  const std::vector<Matrix>& seen_;
+  std::vector<std::vector<Matrix>> weights_;  // sqrt(d_i) L_ij A, in the order of N_i
+};
+
+/// Newton's method on (5), from the solution for more process noise: that one is an upper bound, and with
+/// enough of it the sweeps settle quickly.
+bool newton(const Setting& s, const std::vector<Matrix>& seen, SteadyState& out) {
+  Setting noisy = s;
+  for (double more = 1e2; more < 1e40; more *= 1e2) {
+    SteadyState rough;
+    rough.P.assign(s.C.size(), Matrix::Zero(s.A.rows(), s.A.cols()));
+    for (std::size_t i = 0; i < s.Sw.size(); ++i) noisy.Sw[i] = more * s.Sw[i];
+    const bool settled = settle(noisy, seen, 1e-6, kQuickSweeps, rough);
+    out.sweeps += rough.sweeps;
+    if (!settled) continue;
+    for (Matrix& P : rough.P) P *= 1.01;
+    Fusion fusion(s, seen);
+    const auto found = detail::policy_iteration(fusion, std::move(rough.P));
+    out.sweeps += found.steps;
+    if (!found.converged) continue;
+    out.P = found.P;
+    out.change = found.change;
+    return true;
+  }
+  return false;
+}
+
 void require_start(const Setting& s, const std::vector<Matrix>& P) {
   if (static_cast<int>(P.size()) != s.agents())
     refuse("P", std::to_string(P.size()) + " matrices", std::to_string(s.agents()) + ", one per agent");
@@ -67,37 +183,18 @@ std::vector<Matrix> riccati_sweep(const Setting& s, const std::vector<Matrix>& P
 }
 
 SteadyState steady_state(const Setting& s, const SteadyOptions& options) {
-  const auto N = static_cast<std::size_t>(s.agents());
   const auto n = s.states();
   const std::vector<Matrix> seen = measured(s);
   SteadyState out;
-  out.P = options.start.empty() ? std::vector<Matrix>(N, Matrix::Zero(n, n)) : options.start;
+  out.P = options.start.empty() ? std::vector<Matrix>(s.C.size(), Matrix::Zero(n, n)) : options.start;
   require_start(s, out.P);
-  double best = kInfinity;
-  int since_best = 0;
-  for (out.sweeps = 1;; ++out.sweeps) {
-    std::vector<Matrix> next = sweep(s, seen, out.P);
-    out.change = 0.0;
-    for (std::size_t i = 0; i < N; ++i) {
-      const double size = next[i].cwiseAbs().maxCoeff();
-      if (!(size <= kGrown))
-        refuse("model", "covariances that grow beyond 1e14",
-               "a pair (A, C) that is detectable with some margin",
-               "equation (5) has no usable solution: agent " + std::to_string(i) +
-                   " hardly learns of a mode that does not decay");
-      out.change = std::max(out.change, (next[i] - out.P[i]).cwiseAbs().maxCoeff() / size);
-    }
-    out.P = std::move(next);
-    since_best = out.change < best ? 0 : since_best + 1;
-    best = std::min(best, out.change);
-    if (out.change < options.tolerance || (since_best >= kPatience && best < kSmallChange)) break;
-    if (out.sweeps >= options.most_sweeps)
-      refuse("model",
-             "covariances that still change by " + text(out.change) + " after " + std::to_string(out.sweeps) +
-                 " sweeps",
-             "a pair (A, C) that is detectable with some margin");
-  }
-  for (std::size_t j = 0; j < N; ++j) out.Pbar.push_back(predicted(s, j, out.P[j]));
+  if (!settle(s, seen, options.tolerance, std::min(kQuickSweeps, options.most_sweeps), out) &&
+      !newton(s, seen, out) && !settle(s, seen, options.tolerance, options.most_sweeps - out.sweeps, out))
+    refuse("model",
+           "covariances that still change by " + text(out.change) + " after " + std::to_string(out.sweeps) +
+               " sweeps",
+           "a pair (A, C) that is detectable with some margin");
+  for (std::size_t j = 0; j < s.C.size(); ++j) out.Pbar.push_back(predicted(s, j, out.P[j]));
   out.Q = fused(s, out.P);
   return out;
 }

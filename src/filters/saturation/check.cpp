@@ -2,9 +2,12 @@
 // `garrison check` for the saturation filter: each condition with its value, and the bounds that follow.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "facts.hpp"
 #include "garrison/analysis/observability.hpp"
+#include "garrison/filters/saturation/design.hpp"
 #include "garrison/filters/saturation/feasibility.hpp"
 #include "garrison/filters/saturation/filter.hpp"
 #include "garrison/filters/saturation/theorems.hpp"
@@ -17,6 +20,12 @@ using namespace saturation;
 
 std::string above(double value) { return "> " + text(value); }
 
+/// Three digits, never below the value: what satisfies a condition still does.
+std::string rounded_up(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+  return text(std::ceil(value / unit * (1.0 - 1e-12)) * unit);
+}
+
 bool scalar_unit_rows(const Model& model) {
   for (int i = 0; i < model.agents(); ++i)
     if (model.outputs(i) > 1 || (model.outputs(i) == 1 && std::abs(model.C(i).norm() - 1.0) > 1e-9))
@@ -24,25 +33,108 @@ bool scalar_unit_rows(const Model& model) {
   return true;
 }
 
-void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_value) {
+/// Samples until what one agent knows has reached everybody: at most twice the distance to the farthest from
+/// agent 0.
+int spread_of(const Network& network, int rounds) {
+  std::vector<int> distance(static_cast<std::size_t>(network.agents()), -1);
+  std::vector<int> queue{0};
+  distance[0] = 0;
+  for (std::size_t k = 0; k < queue.size(); ++k)
+    for (const int j : network.neighbours(queue[k])) {
+      if (distance[static_cast<std::size_t>(j)] >= 0) continue;
+      distance[static_cast<std::size_t>(j)] = distance[static_cast<std::size_t>(queue[k])] + 1;
+      queue.push_back(j);
+    }
+  const int across = 2 * distance[static_cast<std::size_t>(queue.back())];
+  return rounds > 0 ? (across + rounds - 1) / rounds : 0;
+}
+
+/// What to do when (11) fails.
+std::string remedy11(const Matrix& C, int attacked) {
+  constexpr int kMostTries = 8;  // each one is a search
+  const std::string sensors = "add sensors of the direction that is seen least";
+  for (int s = attacked - 1; s >= std::max(0, attacked - kMostTries); --s)
+    if (lambda0(C, s, usual_limits(C.rows(), C.cols())).lower > s + 1e-9)
+      return sensors + ", or protect some: attacked = " + std::to_string(s) + " satisfies it";
+  return sensors;
+}
+
+/// What to do when (9) fails.
+std::string remedy9(const Setting& s, const FixedPoints& points, const Interval& thresholds) {
+  if (!std::isnan(points.lo) && s.eta0 < points.lo) return "raise initial_error to " + rounded_up(points.lo);
+  if (!std::isnan(thresholds.lo))
+    return "choose a threshold from " + text(thresholds.lo) + " to " + text(thresholds.hi);
+  if (!std::isnan(points.hi) && s.eta0 > points.hi)
+    return "lower initial_error to " + text(points.hi) + ", or take more rounds";
+  try {
+    const Threshold best = best_threshold(s);
+    return "threshold " + rounded_up(best.beta) + " with initial_error " + rounded_up(1.001 * best.eta0) +
+           " satisfies it";
+  } catch (const DesignInfeasible& e) {
+    return e.what();
+  }
+}
+
+/// What to do when (12) fails.
+std::string remedy12(Setting s, double varpi) {
+  constexpr double kStep = 1.1;
+  constexpr int kMost = 200;
+  for (int k = 0; k < kMost; ++k, s.beta *= kStep)
+    if (theorem_bounds(s, varpi, 1).cond12) return "raise threshold to " + rounded_up(s.beta);
+  return "no larger threshold is enough: take more rounds";
+}
+
+/// Theorem 1, and what is left of it with the detector.
+void add_error_bounds(Check& c, const TheoremBounds& bounds, const InformedBound* informed) {
+  if (informed == nullptr || bounds.cond12) {
+    c.quantities.push_back(
+        {"uniform bound", bounds.thm1_item2, "||error|| for all t >= 1, theorem 1 item 2"});
+    c.quantities.push_back(
+        {"asymptotic bound", bounds.thm1_item3, "limsup ||error||, theorem 1 item 3, in exact arithmetic"});
+    return;
+  }
+  const bool known = !std::isnan(informed->uniform);
+  const std::string why =
+      known ? "also of sensors that have proved all s attackers and no longer saturate"
+            : "none is known for sensors that have proved all s attackers: they no longer saturate "
+              "and may overshoot (radius " +
+                  text(informed->spectral_radius) + ", needed below 1)";
+  c.quantities.push_back({"uniform bound", informed->uniform, "||error|| for all t >= 1, " + why});
+  c.quantities.push_back(
+      {"asymptotic bound", informed->asymptotic, "limsup ||error||, in exact arithmetic, " + why});
+  c.quantities.push_back({"uniform bound, testing sensors", bounds.thm1_item2,
+                          "theorem 1 item 2, of sensors that have not proved all s attackers yet"});
+  c.quantities.push_back({"asymptotic bound, testing sensors", bounds.thm1_item3,
+                          "theorem 1 item 3, of sensors that have not proved all s attackers yet"});
+}
+
+void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_value, const Interval& thresholds,
+                const InformedBound* informed) {
   const auto k = constants(s);
   const auto points = fixed_points(s);
   const auto bounds = theorem_bounds(s, varpi_value, 1);
   const auto g = theorem5(s, tau0_value, varpi_value);
-  c.conditions.push_back({"eta0 (1 - F(eta0)) >= q0 (9)", k.cond9_margin, ">= 0", k.cond9,
-                          "the error stays bounded by theorem 1"});
+  c.conditions.push_back(
+      {"eta0 (1 - F(eta0)) >= q0 (9)", k.cond9_margin, ">= 0", k.cond9,
+       k.cond9 ? "the error stays bounded by theorem 1"
+               : "the error would stay bounded by theorem 1; " + remedy9(s, points, thresholds)});
   c.conditions.push_back({"(beta - b_w - b_v)/a > rho_1 + p0 (12)", bounds.cond12_margin, "> 0",
-                          bounds.cond12, "honest measurements are never saturated from t = 2 on (theorem 3)",
+                          bounds.cond12,
+                          std::string("honest measurements are never saturated from t = 2 on (theorem 3)") +
+                              (bounds.cond12 ? "" : "; " + remedy12(s, varpi_value)),
                           false});
-  c.conditions.push_back({"spectral radius of G < 1 (theorem 5)", g.spectral_radius, "< 1",
-                          g.spectral_radius < 1.0,
-                          "without noise the errors vanish once all attackers are proved", false});
+  const bool vanishes = g.spectral_radius < 1.0;
+  c.conditions.push_back({"spectral radius of G < 1 (theorem 5)", g.spectral_radius, "< 1", vanishes,
+                          std::string("without noise the errors vanish once all attackers are proved") +
+                              (vanishes            ? ""
+                               : varpi_value < 1.0 ? "; take more rounds"
+                                                   : "; add sensors: varpi must be below 1"),
+                          false});
   c.quantities.push_back({"p0", k.p0, "limit of the disagreement bound (8)"});
   c.quantities.push_back({"q0", k.q0, "what noise, disagreement and attack add per step (8)"});
   c.quantities.push_back({"rho_lo", points.lo, "limit of the mean error bound (7)"});
   c.quantities.push_back({"rho_hi", points.hi, "largest initial error from which (7) does not grow"});
-  c.quantities.push_back({"uniform bound", bounds.thm1_item2, "||error|| for all t >= 1, theorem 1 item 2"});
-  c.quantities.push_back({"asymptotic bound", bounds.thm1_item3, "limsup ||error||, theorem 1 item 3"});
+  add_error_bounds(c, bounds, informed);
   c.quantities.push_back({"unsaturated bound", bounds.thm3_item3, "limsup ||error||, theorem 3 item 3"});
 }
 
@@ -78,24 +170,33 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   c.quantities.push_back({"lambda_0", facts.lambda0.lower,
                           facts.lambda0.exact
                               ? "worst information of N - s sensors (6), exact"
-                              : "certified lower bound of (6); the exact search was stopped"});
+                              : "certified lower bound of (6), which is at most " +
+                                    text(facts.lambda0.upper) + "; the exact search was stopped after " +
+                                    std::to_string(facts.lambda0.nodes) + " sets"});
   c.quantities.push_back(
       {"varpi", facts.varpi, "largest mean error growth, all honest unsaturated (theorem 3)"});
   Setting setting = saturation::detail::setting(p, model, facts, rates);
   const double growth = facts.a * rates.contraction;
-  c.conditions.push_back({"lambda_0 > s (11)", facts.lambda0.lower, above(s), condition11(setting),
-                          "some threshold and rounds work for ||A|| near 1 (theorem 2)", false});
+  const bool enough = condition11(setting);
+  c.conditions.push_back({"lambda_0 > s (11)", facts.lambda0.lower, above(s), enough,
+                          std::string("some threshold and rounds work for ||A|| near 1 (theorem 2)") +
+                              (enough ? "" : "; " + remedy11(C, p.attacked)),
+                          false});
   // With lambda_0 < s a plant that contracts (a < 1) always has some small threshold with (9).
   const double a_max = std::max(1.0, normA_max_exact(setting));
   c.conditions.push_back({"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max),
                           facts.a < a_max,
                           "some threshold, initial error and rounds satisfy (9) (our notes, exact)", false});
-  c.conditions.push_back(
-      {"||A|| gamma^L < 1", growth, "< 1", growth < 1.0, "the disagreement stays bounded", bound_asked});
   const auto least = minimal_rounds(
       setting, p.chebyshev
                    ? std::function<double(int)>([&](int L) { return chebyshev_contraction(rates.gamma, L); })
                    : [&](int L) { return std::pow(rates.gamma, L); });
+  c.conditions.push_back(
+      {"||A|| gamma^L < 1", growth, "< 1", growth < 1.0,
+       growth < 1.0 ? "the disagreement stays bounded"
+       : least      ? "the disagreement would stay bounded; raise rounds to " + std::to_string(*least)
+                    : "the disagreement would stay bounded; no number of rounds is enough for (9)",
+       bound_asked});
   c.quantities.push_back(
       {"minimal rounds", least ? static_cast<double>(*least) : kNaN,
        least ? "fewest rounds for which some threshold satisfies (9)" : "no number of rounds is enough"});
@@ -108,8 +209,11 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   c.quantities.push_back({"threshold to", interval.hi, "largest one"});
   if (!(growth < 1.0)) return c;
   if (p.adaptive || !std::isfinite(p.threshold)) return c;
-  const auto tau = tau0(C, model.A(), p.attacked);
-  add_bounds(c, setting, facts.varpi, tau.upper);
+  const auto tau = tau0(C, model.A(), p.attacked, usual_limits(C.rows(), C.cols()));
+  const auto informed = p.detector
+                            ? informed_bound(setting, tau.upper, facts.varpi, spread_of(network, p.rounds))
+                            : InformedBound{};
+  add_bounds(c, setting, facts.varpi, tau.upper, interval, p.detector ? &informed : nullptr);
   return c;
 }
 

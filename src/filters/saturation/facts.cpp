@@ -62,9 +62,12 @@ Facts facts(const Model& model, int attacked, bool with_varpi) {
   Facts f;
   const Matrix C = sensor_rows(model);
   f.a = Eigen::JacobiSVD<Matrix>(model.A()).singularValues()(0);
-  f.lambda0 = lambda0(C, attacked);
-  if (with_varpi)
-    f.varpi = std::min(varpi(C, model.A(), attacked).upper, f.a * (1.0 - f.lambda0.lower / model.agents()));
+  const SubsetLimits limits = usual_limits(C.rows(), C.cols());
+  f.lambda0 = lambda0(C, attacked, limits);
+  if (!with_varpi) return f;
+  f.varpi = f.a * (1.0 - f.lambda0.lower / model.agents());
+  if (const auto exact = varpi_enumerated(C, model.A(), attacked, limits))
+    f.varpi = std::min(f.varpi, exact->upper);
   return f;
 }
 

@@ -79,6 +79,43 @@ std::vector<DetectedBound> theorem4(const Setting& s, int T) {
   return list;
 }
 
+InformedBound informed_bound(const Setting& s, double tau0, double varpi, int spread) {
+  require(s);
+  require_norm("tau0", tau0);
+  require_norm("varpi", varpi);
+  if (spread < 0) refuse("spread", std::to_string(spread), "a whole number >= 0");
+  const double honest = s.agents - s.attacked;
+  const double g11 = s.a * s.contraction;
+  const double g12 = g11 * std::sqrt(honest);
+  InformedBound b{kNaN, kNaN, 0.5 * (g11 + varpi + std::hypot(g11 - varpi, 2.0 * std::sqrt(g12 * tau0)))};
+  const auto before = theorem_bounds(s, varpi, 1);
+  if (!before.cond9 || !(b.spectral_radius < 1.0)) return b;
+  const double to_p = s.contraction * std::sqrt(honest) * (s.b_w + s.b_v);
+  const double to_rho = s.b_w + s.b_v * honest / s.agents;
+  double p = constants(s).p0;
+  double rho = before.thm1_item2 - p;
+  // The limit of the recursion, by Cramer's rule: 1 - G has a positive determinant.
+  const double determinant = (1.0 - g11) * (1.0 - varpi) - g12 * tau0;
+  const double p_limit = ((1.0 - varpi) * to_p + g12 * to_rho) / determinant;
+  const double rho_limit = (tau0 * to_p + (1.0 - g11) * to_rho) / determinant;
+  b.asymptotic = std::max(before.thm1_item3, p_limit + rho_limit);
+  b.uniform = std::max(before.thm1_item2, p_limit + rho_limit);
+  constexpr int kMost = 1'000'000;
+  constexpr double kSlack =
+      1e-9;  // what is left of the way to the limit when the recursion is no longer followed
+  for (int t = 1; t <= kMost; ++t) {
+    const bool spreading = t <= spread;
+    const double next = to_p + g11 * p + g12 * rho;
+    rho = to_rho + (spreading ? s.a : varpi) * rho +
+          (spreading ? s.a * std::sqrt(honest) / s.agents : tau0) * p;
+    p = next;
+    b.uniform = std::max(b.uniform, p + rho);
+    if (!spreading && p + rho <= (p_limit + rho_limit) * (1.0 + kSlack) + kSlack * b.uniform) break;
+  }
+  b.uniform *= 1.0 + 2.0 * kSlack;
+  return b;
+}
+
 MatrixG theorem5(const Setting& s, double tau0, double varpi) {
   require_network(s);
   require_norm("tau0", tau0);

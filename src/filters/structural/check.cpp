@@ -66,9 +66,11 @@ Check Structural::check(const Params& p, const Model& model, const Network& netw
   Check c;
   const Setting s = setting(p, model, network);
   add_structure(c, s);
-  const auto unseen = unseen_modes(model.A(), model.stacked(), 1.0);
-  c.conditions.push_back({"unstable modes that no agent sees", static_cast<double>(unseen.size()), "= 0",
-                          unseen.empty(), "the system is detectable by all sensors together"});
+  const Visibility modes = visibility(model.A(), model.stacked(), 1.0);
+  c.conditions.push_back({"unstable modes that no agent surely sees",
+                          static_cast<double>(modes.unseen.size() + modes.unclear.size()), "= 0",
+                          modes.all_seen(),
+                          "the system is detectable by all sensors together; " + modes.text()});
   c.quantities.push_back({"agents that could lie unseen",
                           static_cast<double>(undetectable_agents(model).size()),
                           "alone on an unstable mode: no detector of any kind can see them lie"});
@@ -81,7 +83,7 @@ Check Structural::check(const Params& p, const Model& model, const Network& netw
   c.conditions.push_back(
       {"least self-weight W_ii", least, "> 0", least > 0.0, "lemma 2; small ones stabilise more", false});
   const bool known = s.E.size() != 0 && s.R.size() != 0;
-  if (p.gain.empty() && (!known || !unseen.empty())) return c;
+  if (p.gain.empty() && (!known || !modes.all_seen())) return c;
   structural::GainMatrices K;
   double rho = kNaN;
   if (p.gain.empty()) {

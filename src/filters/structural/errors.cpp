@@ -6,6 +6,7 @@
 
 #include "blocks.hpp"
 #include "core/solvers.hpp"
+#include "garrison/analysis/lyapunov.hpp"
 
 namespace garrison::structural {
 namespace {
@@ -53,22 +54,6 @@ ErrorDynamics error_dynamics(const Setting& s, const GainMatrices& K) {
 double spectral_radius(const MatrixRef& M) {
   if (M.rows() == 0) return 0.0;
   return Eigen::EigenSolver<Matrix>(M, false).eigenvalues().cwiseAbs().maxCoeff();
-}
-
-Matrix lyapunov(const MatrixRef& M, const MatrixRef& F) {
-  Matrix power = M;
-  Matrix X = F;
-  // |M^(2^k)| falls below any size once k > log2(1 / (1 - rho)); 60 doublings reach rho = 1 - 1e-16.
-  for (int k = 0; k < 60; ++k) {
-    const Matrix more = power * X * power.transpose();
-    X += more;
-    const double size = X.cwiseAbs().maxCoeff();
-    if (!std::isfinite(size)) break;
-    if (more.cwiseAbs().maxCoeff() <= 1e-18 * size) return 0.5 * (X + X.transpose());
-    power = power * power;
-  }
-  refuse("spectral radius of the error matrix", text(spectral_radius(M)), "below 1 (Schur stable)",
-         "there is no steady state");
 }
 
 Stationary stationary(const Setting& s, const GainMatrices& K, int lags) {

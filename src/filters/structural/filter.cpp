@@ -51,11 +51,10 @@ void require_covariances(const Setting& s) {
 }
 
 void require_detectable(const Model& model) {
-  const auto unseen = unseen_modes(model.A(), model.stacked(), 1.0);
-  if (!unseen.empty())
-    refuse("model", "an eigenvalue of modulus " + text(std::abs(unseen.front())) + " that no agent sees",
-           "(A, C) detectable: every eigenvalue of modulus >= 1 is seen by some agent",
-           "add a sensor on the state that it moves");
+  const Visibility modes = visibility(model.A(), model.stacked(), 1.0);
+  if (!modes.all_seen())
+    refuse("model", "a pair (A, C) that is not detectable (" + modes.text() + ")",
+           "every mode of modulus >= 1 is seen by some agent", "add a sensor on the state that it moves");
 }
 
 /// Standard deviations of what is tested, and the window's matrices: exact, or bounds of them.

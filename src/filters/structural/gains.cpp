@@ -90,13 +90,20 @@ Designed design_gains(const Setting& s, const std::string& method) {
   if (any || method == "riccati" || method == "h2") {
     auto g = coupled_riccati(s, 20000, 1e-11);
     const bool schur = accept(g.K, "riccati");
-    if (schur && method != "h2") {
+    // A recursion that grows for ever has gains of its own; one that still changes has no answer yet.
+    if (schur && method != "h2" && (g.converged || g.diverged)) {
       if (g.converged) d.P = std::move(g.P);
       return d;
     }
+    if (schur && method == "riccati")
+      throw DesignInfeasible(
+          "the coupled Riccati recursion still changes after " + std::to_string(g.sweeps) +
+          " sweeps: its gains would not be the best ones; raise process_covariance (a mode that "
+          "neither decays nor is driven by noise has no best gain), or try the design 'h2'");
   }
   if (any || method == "kalman") {
-    if (accept(joint_kalman(s).K, "kalman")) return d;
+    const auto g = joint_kalman(s);
+    if (accept(g.K, "kalman") && (any || g.converged)) return d;
   }
   if (method == "projection" && accept(projection_gains(s), "projection")) return d;
   if (any || method == "h2") {

@@ -6,6 +6,7 @@
 #include <deque>
 
 #include "blocks.hpp"
+#include "garrison/core/budget.hpp"
 #include "garrison/filters/structural/errors.hpp"
 #include "garrison/filters/structural/gains.hpp"
 
@@ -157,6 +158,7 @@ void minimise(const Cost& cost, Vector& x, int most, double tolerance) {
   std::deque<Vector> turns;
   int idle = 0;
   for (int it = 0; it < most && std::isfinite(f) && idle < 5; ++it) {
+    require_time("the h2 design");
     Vector p = -g;
     std::vector<double> alpha(steps.size());
     for (std::size_t k = steps.size(); k-- > 0;) {

@@ -58,3 +58,103 @@ TEST_CASE("missing measurements are predicted over, what does not fit is refused
   const Model full(plant.A, plant.C, {kNaN, {}, plant.Q, {plant.R[0], Matrix{{1.0, 0.5}, {0.5, 1.0}}}});
   says(full, y, Vector::Zero(2), 1.0, "measurement_covariance[1]: got a full matrix");
 }
+
+namespace {
+
+/// Best estimate of the last state by least squares over all states' causes, in long double: no recursion.
+Vector batch(const Model& model, const Matrix& y, const Vector& x0, double variance) {
+  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  using WideVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+  const auto n = model.states();
+  const auto T = y.rows();
+  const Wide A = model.A().cast<long double>();
+  const Wide root = Eigen::LLT<Wide>(Wide(model.noise().process_covariance.cast<long double>())).matrixL();
+  const Matrix C = model.stacked();
+  std::vector<WideVector> rows;
+  std::vector<long double> right;
+  Wide map = Wide::Zero(n, n * (T + 1));  // the state at t from x0 - x0hat (in deviations) and unit noises
+  map.leftCols(n) = Wide::Identity(n, n) * std::sqrt(static_cast<long double>(variance));
+  WideVector mean = x0.cast<long double>();
+  for (Eigen::Index t = 0; t < T; ++t) {
+    map = A * map;
+    mean = A * mean;
+    map.middleCols(n * (t + 1), n) = root;
+    for (int i = 0; i < model.agents(); ++i)
+      for (int k = 0; k < model.outputs(i); ++k) {
+        const int row = model.offset(i) + k;
+        if (!std::isfinite(y(t, row))) continue;
+        const long double deviation = std::sqrt(static_cast<long double>(
+            model.noise().measurement_covariance[static_cast<std::size_t>(i)](k, k)));
+        const WideVector c = C.row(row).cast<long double>().transpose();
+        rows.emplace_back(map.transpose() * c / deviation);
+        right.push_back((static_cast<long double>(y(t, row)) - c.dot(mean)) / deviation);
+      }
+  }
+  const auto unknown = map.cols();
+  Wide J(static_cast<Eigen::Index>(rows.size()) + unknown, unknown);
+  WideVector b = WideVector::Zero(J.rows());
+  for (std::size_t k = 0; k < rows.size(); ++k) {  // large rows first
+    J.row(static_cast<Eigen::Index>(k)) = rows[k].transpose();
+    b(static_cast<Eigen::Index>(k)) = right[k];
+  }
+  J.bottomRows(unknown) = Wide::Identity(unknown, unknown);
+  const WideVector z = Eigen::ColPivHouseholderQR<Wide>(J).solve(b);
+  return (mean + map * z).cast<double>();
+}
+
+}  // namespace
+
+TEST_CASE("large start variances and nearly parallel precise sensors keep nine digits") {
+  test::Rng rng(7);
+  for (const double angle : {1e-1, 1e-3, 1e-4})
+    for (int T = 1; T <= 6; ++T) {
+      const Model model(Matrix{{1.0, 0.1}, {0.0, 1.0}},
+                        {Matrix{{1.0, 0.0}}, Matrix{{std::cos(angle), std::sin(angle)}}},
+                        {kNaN, {}, Matrix{{1e-6, 0.0}, {0.0, 1e-6}}, {Matrix{{1e-4}}, Matrix{{1e-4}}}});
+      Matrix y = 100.0 * test::normal_matrix(rng, T, 2);
+      if (T > 3) y(2, 1) = kNaN;
+      const Vector expected = batch(model, y, Vector::Zero(2), 1e10);
+      const Matrix x = central_kalman(model, y, Vector::Zero(2), 1e10);
+      CAPTURE(angle);
+      CAPTURE(T);
+      CHECK((x.row(T).transpose() - expected).norm() <= 1e-9 * expected.norm());
+    }
+}
+
+TEST_CASE("random plants, gaps included, agree with batch least squares") {
+  test::Rng rng(8);
+  for (int k = 0; k < 60; ++k) {
+    const int n = test::whole(rng, 1, 4);
+    const int N = test::whole(rng, 1, 4);
+    const int T = test::whole(rng, 1, 5);
+    std::vector<Matrix> C;
+    std::vector<Matrix> R;
+    for (int i = 0; i < N; ++i) {
+      C.push_back(test::normal_matrix(rng, test::whole(rng, 0, 2), n));
+      R.emplace_back(Vector::NullaryExpr(C.back().rows(), [&] {
+                       return std::pow(10.0, test::uniform(rng, -4, 1));
+                     }).asDiagonal());
+    }
+    const Model model(test::normal_matrix(rng, n, n), C, {kNaN, {}, Matrix::Identity(n, n), R});
+    Matrix y = test::normal_matrix(rng, T, model.total_outputs());
+    for (double& value : y.reshaped())
+      if (test::whole(rng, 0, 3) == 0) value = kNaN;
+    const Vector x0 = test::normal_matrix(rng, n, 1);
+    const double p0 = std::pow(10.0, test::whole(rng, -3, 10));
+    const Vector expected = batch(model, y, x0, p0);
+    CAPTURE(k);
+    CHECK((central_kalman(model, y, x0, p0).row(T).transpose() - expected).norm() <=
+          1e-9 * (1.0 + expected.norm()));
+  }
+}
+
+TEST_CASE("outputs without noise and states without variance are followed exactly") {
+  const Model model(Matrix{{1.0, 0.0}, {0.0, 1.0}}, {Matrix{{1.0, 0.0}}, Matrix{{1.0, 0.0}}},
+                    {kNaN, {}, Matrix::Zero(2, 2), {Matrix{{0.0}}, Matrix{{1.0}}}});
+  const Matrix y{{3.0, 5.0}, {3.0, 7.0}};
+  const Matrix x = central_kalman(model, y, Vector{{1.0, 2.0}}, 4.0);
+  CHECK((x.row(2).transpose() - Vector{{3.0, 2.0}}).norm() < 1e-12);
+  const Matrix still = central_kalman(model, y, Vector{{1.0, 2.0}}, 0.0);  // known for sure: nothing moves it
+  CHECK((still.row(2).transpose() - Vector{{1.0, 2.0}}).norm() == 0.0);
+  CHECK_THROWS_AS(central_kalman(model, y, Vector{{1.0, 2.0}}, kInfinity), InvalidInput);
+}

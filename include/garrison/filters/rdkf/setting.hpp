@@ -27,8 +27,8 @@ struct GARRISON_EXPORT Setting {
 /// uniqueness of (5), our notes, 4), the network is not connected, or (A, C) is not detectable
 GARRISON_EXPORT Setting setting(const Model& model, const Network& network);
 
-/// Every eigenvalue of A on or outside of the unit circle is seen by some row of C (Popov, Belevitch,
-/// Hautus); singular values below 1e-10 of the pencil's scale count as zero. A: n x n, C: m x n, m >= 0.
+/// Every mode of A on or outside of the unit circle is surely seen by some row of C: visibility(A, C, 1) in
+/// analysis/modes.hpp. A: n x n, C: m x n, m >= 0.
 GARRISON_EXPORT bool detectable(const MatrixRef& A, const MatrixRef& C);
 
 }  // namespace garrison::rdkf

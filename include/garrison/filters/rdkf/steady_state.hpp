@@ -16,7 +16,7 @@ struct SteadyOptions {
   std::vector<Matrix>
       start;  ///< warm start, one P_i per agent; empty = from zero. The limit does not depend on it
   double tolerance = 1e-14;  ///< largest relative change of an entry in the last sweep
-  int most_sweeps = 20000;
+  int most_sweeps = 20000;   ///< when neither 400 sweeps nor Newton's method settle
 };
 
 /// Solution of (5), and how it was reached.
@@ -24,13 +24,15 @@ struct SteadyState {
   std::vector<Matrix> P;     ///< (5)
   std::vector<Matrix> Pbar;  ///< (6): A P_j A' + Sw_j
   std::vector<Matrix> Q;     ///< (1/d_i) sum over N_i of Pbar_j^-1
-  int sweeps = 0;
+  int sweeps = 0;  ///< of (5); steps of Newton's method, where the sweeps are slow, count as one each
   double change =
       0.0;  ///< relative change in the last sweep: at most the tolerance, or where rounding stops it
 };
 
-/// @throws InvalidInput when a start has a wrong shape, when P grows beyond 1e14 (a mode that is hardly
-/// seen), or when it does not settle within most_sweeps
+/// Any ratio of process to measurement noise: where 400 sweeps do not settle (Sw/Sv below about 1e-3),
+/// Newton's method does, from the solution for more process noise.
+/// @throws InvalidInput when a start has a wrong shape, when P grows beyond 1e14 times the noise (a mode that
+/// is hardly seen), or when nothing settles
 GARRISON_EXPORT SteadyState steady_state(const Setting& s, const SteadyOptions& options = {});
 
 }  // namespace garrison::rdkf

@@ -79,7 +79,7 @@ struct GARRISON_EXPORT Saturation {
     void visit(V& v) {
       v("alpha", alpha);
       v("omega", omega);
-      v.range("rounds", rounds, 1, 1000);
+      v.range("rounds", rounds, 0, 1000000);
       v("bounded", bounded);
       v("detector", detector);
       v("sharp_index", sharp_index);

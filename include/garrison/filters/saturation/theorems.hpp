@@ -52,4 +52,20 @@ struct MatrixG {
 /// `tau0` >= 0 and `varpi` >= 0 as in theorem 5, or upper bounds. @throws InvalidInput
 GARRISON_EXPORT MatrixG theorem5(const Setting& setting, double tau0, double varpi);
 
+/// What theorem 1 does not cover: sensors that have proved all s attackers use their innovations in full, so
+/// that lemma 2 (injections of at most beta) ends and consensus may overshoot (star of 8, a = 0.9: 12.34
+/// above the 10.24 of theorem 1).
+struct InformedBound {
+  double uniform;     ///< ||error|| of every sensor at all t >= 1, detector included; NaN when radius >= 1
+  double asymptotic;  ///< limsup of it, also when all attackers are proved; NaN like that
+  double spectral_radius;  ///< of the recursion of (disagreement, mean error) once everybody knows
+};
+/// Disagreement p and mean error rho, from p0 and rho_1 of theorem 1, follow
+///   p' = g (a p + sqrt(N-s) (a rho + b_w + b_v)),  rho' = x rho + y p + b_w + b_v (N-s)/N
+/// with (x, y) = (a, a sqrt(N-s)/N) for `spread` samples, while the news spreads and gains are anything in
+/// 0..1, and (varpi, tau0) after: proved sensors are silent, gains of honest ones are at most 1. No losses,
+/// no delays. Absent (NaN) without (9). `spread` >= 0: diameter over L, rounded up. @throws InvalidInput as
+/// theorem5
+GARRISON_EXPORT InformedBound informed_bound(const Setting& setting, double tau0, double varpi, int spread);
+
 }  // namespace garrison::saturation

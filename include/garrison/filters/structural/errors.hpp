@@ -18,8 +18,6 @@ GARRISON_EXPORT ErrorDynamics error_dynamics(const Setting& s, const GainMatrice
 GARRISON_EXPORT double spectral_radius(const MatrixRef& M);
 /// rho(Ahat) without forming it: Arnoldi's method on the blocks, for N n in the thousands.
 GARRISON_EXPORT double error_radius(const Setting& s, const GainMatrices& K);
-/// X = M X M' + F by doubling. @throws InvalidInput when the spectral radius of M is not below 1.
-GARRISON_EXPORT Matrix lyapunov(const MatrixRef& M, const MatrixRef& F);
 
 /// Exact stationary second moments (notes, items 11 and 15): no bound, no norm.
 struct GARRISON_EXPORT Stationary {

@@ -17,8 +17,11 @@ struct GARRISON_EXPORT RiccatiGains {
   std::vector<Matrix> P;       ///< n x n per agent: a bound of the stationary error covariance
   std::vector<Matrix> Pprior;  ///< the same before the measurement
   bool converged = false;      ///< else K, P are those of the last sweep and nothing is certified
-  int sweeps = 0;
+  bool diverged = false;       ///< P grows beyond any bound: there is no fixed point
+  int sweeps = 0;              ///< steps of Newton's method, where the sweeps are slow, count as one each
 };
+/// Where 400 sweeps do not settle (little process noise), Newton's method does, from the solution for more
+/// noise.
 GARRISON_EXPORT RiccatiGains coupled_riccati(const Setting& s, int most_sweeps = 20000,
                                              double tolerance = 1e-14);
 

@@ -108,3 +108,60 @@ TEST_CASE("the blocks of P_0 give what the dense matrices give") {
   CHECK(std::isnan(loop_factors(5, 0.01, 50, 60).xi));
   CHECK_FALSE(assumption4(5, 0.01, 50, 60));
 }
+
+TEST_CASE("the advice of an infeasible threshold works") {
+  Setting s;
+  s.vehicles = 7;
+  s.range = 3;
+  s.attacked = 1;
+  s.period = 0.1;
+  s.eps = 0.01;
+  s.mu = 1.0;
+  s.q = 5.0;
+  s.varpi = 1.5;
+  s.beta = 1.0;
+  test::Rng rng(9);
+  int followed = 0;
+  for (int k = 0; k < 300; ++k) {
+    if (k > 0) {
+      s.range = test::whole(rng, 1, 5);
+      s.vehicles = 2 * s.range + 1 + test::whole(rng, 0, 4);
+      s.attacked = test::whole(rng, 1, s.range);
+      s.period = std::pow(10.0, test::uniform(rng, -2, 0));
+      s.eps = std::pow(10.0, test::uniform(rng, -3, 1));
+      s.mu = std::pow(10.0, test::uniform(rng, -3, 1));
+      s.q = std::pow(10.0, test::uniform(rng, -2, 2));
+      s.varpi = std::min(1.5, 0.5 * (1.0 + norm_A(s) / (norm_A(s) - 1.0)));
+    }
+    CAPTURE(k);
+    std::string words;
+    try {
+      best_threshold(s);
+      REQUIRE(k > 0);
+      continue;
+    } catch (const DesignInfeasible& e) {
+      words = e.what();
+    }
+    const auto number = [&](const std::string& label) {
+      const auto at = words.find(label);
+      return at == std::string::npos ? kNaN : std::stod(words.substr(at + label.size()));
+    };
+    CAPTURE(words);
+    Setting better = s;
+    const double b = number("lower attacked (b) to ");
+    const double q = number("raise initial_error (q) to ");
+    if (std::isnan(b) && std::isnan(q)) {
+      CHECK(words.find("no initial error helps") != std::string::npos);
+      continue;
+    }
+    if (!std::isnan(b)) better.attacked = static_cast<int>(b);
+    if (!std::isnan(q)) better.q = q;
+    better.beta = best_threshold(better);
+    CHECK(better.beta > 0.0);
+    better.adaptive = true;
+    CHECK(std::isfinite(safe_limit(better)));
+    ++followed;
+    if (k == 0) CHECK(q <= 20.0);  // about 10 mu
+  }
+  CHECK(followed > 20);
+}

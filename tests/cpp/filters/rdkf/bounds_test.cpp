@@ -202,3 +202,35 @@ TEST_CASE("attacks for ever stay within the persistent bound where it exists, 40
             << "\n";
   CHECK(known > 10);
 }
+
+TEST_CASE("what any attack shifts against the same run without it is the doubled bound: one agent, a = 0.8") {
+  Noise noise;
+  noise.process_covariance = Matrix{{1.0}};
+  noise.measurement_covariance = {Matrix{{1.0}}};
+  const Model model(Matrix{{0.8}}, {Matrix{{1.0}}}, noise);
+  const auto filter = make_filter("rdkf", {{"weight", 1.0}});
+  double persistent = kNaN;
+  double shift = kNaN;
+  for (const auto& q : filter->check(model, Network(1, {})).quantities) {
+    if (q.name == "persistent bound") persistent = q.value;
+    if (q.name == "persistent shift") shift = q.value;
+  }
+  CHECK(persistent == doctest::Approx(3.42).epsilon(0.01));
+  CHECK(shift == 2.0 * persistent);
+  const auto settled = [&](double y) {  // from the truth 0, the same measurement for ever
+    const auto runner = filter->prepare(model, Network(1, {}))->runner(1);
+    runner->reset(Matrix::Zero(1, 1), nullptr);
+    double x = kNaN;
+    Frame frame;
+    frame.estimate = &x;
+    for (int t = 1; t <= 300; ++t) runner->step(t, &y);
+    runner->read(frame);
+    return x;
+  };
+  const double up = settled(1e6);
+  const double down = settled(-1e6);
+  CHECK(std::abs(up) <= persistent);
+  CHECK(up - down > persistent);  // 6.85: the single bound is not one of shifts
+  CHECK(up - down <= shift);
+  CHECK(up - down >= 0.99 * shift);
+}

@@ -156,7 +156,7 @@ TEST_CASE("the structural filter refuses with which, got, expected") {
                        doctest::Contains("process_covariance"), InvalidInput);
   const Model blind(2.0 * Matrix::Identity(2, 2), std::vector<Matrix>(3, Matrix::Identity(1, 2)),
                     {kNaN, {}, Matrix::Identity(2, 2), std::vector<Matrix>(3, Matrix::Identity(1, 1))});
-  CHECK_THROWS_WITH_AS(prepare({}, blind), doctest::Contains("eigenvalue of modulus 2 that no agent sees"),
+  CHECK_THROWS_WITH_AS(prepare({}, blind), doctest::Contains("not detectable (no output shows the mode 2)"),
                        InvalidInput);
   const Model two(model.A(), {Matrix::Ones(2, 2), Matrix::Ones(1, 2), Matrix::Ones(1, 2)});
   CHECK_THROWS_WITH_AS(prepare({}, two), doctest::Contains("split_outputs"), InvalidInput);

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "unseen_part.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "splitting.hpp"
+
+namespace garrison::detail {
+namespace {
+
+using Index = Eigen::Index;
+
+Visibility split(Pair pair, const std::vector<Complex>& candidates, double least) {
+  const Index n = pair.A.rows();
+  if (pair.C.rows() > n)  // as good, and smaller
+    pair.C = Eigen::HouseholderQR<Matrix>(pair.C).matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  const bool real =
+      std::all_of(candidates.begin(), candidates.end(), [](Complex z) { return z.imag() == 0.0; });
+  return real ? Splitting<double>(pair, least).run(candidates)
+              : Splitting<Complex>(pair, least).run(candidates);
+}
+
+/// A pair that is far from unseen modes in some units has none: rounding is small in all of them. Where
+/// neither units say so, it is enough that one of them finds an unseen mode.
+Visibility in_good_units(const Matrix& A, const Matrix& C, double least) {
+  const double rate = natural_rate(A);
+  const Pair own = balanced(A, C, rate);
+  const auto candidates = candidate_modes(A, own.A, rate, least);
+  const Visibility given = split(rows_scaled(A, C, rate), candidates, least);
+  constexpr double kClearly = 1e-4;  // the units given are good enough
+  if (given.sight == Sight::seen && given.distance > kClearly) return given;
+  Visibility v = split(own, candidates, least);
+  if (given.sight == Sight::seen) return v.sight == Sight::seen && v.distance > given.distance ? v : given;
+  return v.sight == Sight::unclear && given.sight == Sight::unseen ? given : v;
+}
+
+/// Rows and columns `kept` of A, columns of C.
+Pair part(const Matrix& A, const Matrix& C, const std::vector<Index>& kept) {
+  return {A(kept, kept), C(Eigen::all, kept)};
+}
+
+}  // namespace
+
+Visibility examine(const Matrix& A, const Matrix& C, double least) {
+  const auto reached = reach_outputs(A, C);
+  std::vector<Index> heard;
+  std::vector<Index> silent;
+  for (Index j = 0; j < A.rows(); ++j) (reached[static_cast<std::size_t>(j)] ? heard : silent).push_back(j);
+  if (silent.empty()) return in_good_units(A, C, least);
+  // States that move no output: their modes are seen by nobody, whatever the numbers.
+  const Pair dark = part(A, C, silent);
+  Visibility v = in_good_units(dark.A, Matrix(0, dark.A.rows()), least);
+  if (heard.empty()) return v;
+  const Pair lit = part(A, C, heard);
+  const Visibility of_lit = in_good_units(lit.A, lit.C, least);
+  v.unseen.insert(v.unseen.end(), of_lit.unseen.begin(), of_lit.unseen.end());
+  v.unclear.insert(v.unclear.end(), of_lit.unclear.begin(), of_lit.unclear.end());
+  if (of_lit.distance < v.distance) {
+    v.distance = of_lit.distance;
+    v.nearest = of_lit.nearest;
+  }
+  v.sight = !v.unseen.empty() ? Sight::unseen : !v.unclear.empty() ? Sight::unclear : Sight::seen;
+  return v;
+}
+
+bool drop_rounding(Matrix& A, Matrix& C) {
+  const Index n = A.rows();
+  constexpr double part = 2.0 * std::numeric_limits<double>::epsilon();
+  bool dropped = false;
+  const auto drop = [&](double& entry, double level) {
+    if (entry == 0.0 || std::abs(entry) > level) return;
+    entry = 0.0;
+    dropped = true;
+  };
+  const double level = part * natural_rate(A);
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i < n; ++i)
+      if (i != j) drop(A(i, j), level);
+  for (Index k = 0; k < C.rows(); ++k) {
+    const double row = part * C.row(k).cwiseAbs().maxCoeff();
+    for (Index j = 0; j < n; ++j) drop(C(k, j), row);
+  }
+  return dropped;
+}
+
+}  // namespace garrison::detail
