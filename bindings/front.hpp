@@ -14,7 +14,6 @@
 struct Front {
   std::string name;             ///< lambda0, Model, Network.ring
   std::vector<Argument> takes;  ///< with self
-  bool known = false;           ///< `takes` could be read
   bool method = false;          ///< the first one is self
   PyCFunction original = nullptr;
 };
