@@ -54,6 +54,29 @@ PyAgent agent_from(std::vector<std::byte> part) {
   return {nullptr, std::move(part), std::move(agent)};
 }
 
+/// Counter, size of the part, part, snapshot.
+std::vector<std::byte> kept(const PyAgent& a) {
+  const std::vector<std::byte> part = a.file();
+  const std::vector<std::byte> snapshot = a.snapshot();
+  std::vector<std::byte> all(16);
+  wire::store(all.data(), static_cast<std::uint64_t>(a.refused));
+  wire::store(all.data() + 8, static_cast<std::uint64_t>(part.size()));
+  all.insert(all.end(), part.begin(), part.end());
+  all.insert(all.end(), snapshot.begin(), snapshot.end());
+  return all;
+}
+PyAgent agent_kept(const std::vector<std::byte>& all) {
+  const std::size_t size =
+      all.size() < 16 ? 0 : static_cast<std::size_t>(wire::load<std::uint64_t>(all.data() + 8));
+  if (all.size() < 16 || size > all.size() - 16) refuse("agent", "damaged bytes", "a pickled agent");
+  const auto middle = all.begin() + 16 + static_cast<std::ptrdiff_t>(size);
+  PyAgent a = agent_from(std::vector<std::byte>(all.begin() + 16, middle));
+  if (a->load(std::vector<std::byte>(middle, all.end())) != Refusal::none)
+    refuse("agent", "damaged bytes", "a pickled agent");
+  a.refused = static_cast<std::int64_t>(wire::load<std::uint64_t>(all.data()));
+  return a;
+}
+
 [[noreturn]] void refuse_call(const PyAgent& a, const char* call, Refusal why, std::int64_t t) {
   const std::string at = "sample " + std::to_string(a->sample());
   switch (why) {
@@ -371,16 +394,8 @@ void bind_agent(py::module_& m) {
              return "<Agent " + std::to_string(a->id()) + " of " + std::string(a->family()) + ", sample " +
                     std::to_string(a->sample()) + ">";
            })
-      .def(py::pickle(
-          [](const PyAgent& a) {
-            return py::make_tuple(to_python(a.file()), to_python(a.snapshot()), a.refused);
-          },
-          [](const py::tuple& t) {
-            PyAgent a = agent_from(from_python(t[0], "part"));
-            a->load(from_python(t[1], "snapshot"));
-            a.refused = t[2].cast<std::int64_t>();
-            return a;
-          }));
+      .def(py::pickle([](const PyAgent& a) { return to_python(kept(a)); },
+                      [](const py::bytes& b) { return agent_kept(from_python(b, "agent")); }));
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ import numpy as np
 import saturation as paper
 from claims import Rows, claim, print_claims
 from garrison import certificate
-from garrison.fitting import read_records
 from garrison.scenario import read_scenario
+from garrison.tables import read_records
 
 WIND = Path(__file__).parents[1] / "wind" / "hijacked.toml"
 S = 3  # stations that may lie

@@ -57,9 +57,7 @@ def verdict(condition: dict[str, Any]) -> str:
 
 
 @hinted
-def check(
-    model: _core.Model, network: _core.Network, filter: _core.Filter, *, seconds: float = math.inf
-) -> Check:
+def check(model: _core.Model, network: _core.Network, filter: _core.Filter, *, seconds: float = math.inf) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
 
     After `seconds` (> 0) searches end with a certified interval and say so; computations that have no partial result

@@ -216,7 +216,7 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
         "rest on what agents tell each other.");
   if (record.resets > 0)
     record.warnings.push_back("Estimates overflowed and were taken anew from the neighbours " +
-                              std::to_string(record.resets) + " times.");
+                              std::to_string(record.resets) + " times: the filter diverged.");
   return record;
 }
 

