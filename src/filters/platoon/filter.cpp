@@ -122,7 +122,7 @@ Report Platoon::report_of(const Local&, const Gains& g, const platoon::VehicleSt
   r.verdict = s.verdict;
   r.statistic = s.innovation;
   r.threshold = s.level;
-  if (g.options.bound != BoundKind::printed && s.trouble == 0) r.bound = s.alpha;
+  if (g.options.bound != BoundKind::printed && s.trouble == 0) r.bound = s.alpha.norm;
   return r;
 }
 

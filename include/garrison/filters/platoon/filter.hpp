@@ -227,9 +227,9 @@ struct GARRISON_EXPORT Platoon {
   }
   /// No bound, no test and no steering until the next sample in which enough is heard (observe).
   template <int n>
-  static void uncover(const Gains&, State<n>& s) noexcept {
-    s.alpha = kNaN;
-    s.u = 0.0;
+  static void uncover(const Gains& g, State<n>& s) noexcept {
+    s.alpha = {};
+    s.u = g.formation.steers() ? 0.0 : kNaN;
   }
   /// What vehicle `id` needs of the gains: the rest of the priors is dropped.
   static Gains part(const Gains& all, int id, std::span<const int>) {
@@ -261,7 +261,7 @@ struct GARRISON_EXPORT Platoon {
   /// Per component, so that a deviation of both by it is just what (28) tolerates at the next sample.
   template <int n>
   static double alarm_level(const Local&, const Gains& g, const State<n>& s) noexcept {
-    return platoon::innovation_level(g.setting, s.alpha) / 1.4142135623730951;
+    return platoon::innovation_level(g.setting, predicted(g.setting, s.alpha).norm) / 1.4142135623730951;
   }
 
   static constexpr std::size_t signal_count = 9;
@@ -273,7 +273,7 @@ struct GARRISON_EXPORT Platoon {
   /// vehicle ahead, and largest certified difference to the desired one.
   template <int n>
   static void signals(const Local&, const Gains&, const State<n>& s, double* out) noexcept {
-    const double all[] = {s.alpha,
+    const double all[] = {s.alpha.norm,
                           s.beta,
                           s.u,
                           s.prediction[0],
