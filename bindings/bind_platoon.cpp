@@ -116,7 +116,7 @@ void bind_pieces(py::module_& p) {
   p.def(
       "gain",
       [](double beta, double eta_s, double eta_v, bool attacked, bool free) {
-        return gain(beta, std::hypot(eta_s, eta_v), attacked, free);
+        return gain(beta, length(eta_s, eta_v), attacked, free);
       },
       py::arg("beta"), py::arg("eta_s"), py::arg("eta_v"), py::kw_only(), py::arg("attacked") = false,
       py::arg("free") = false, "(14) of one innovation.");

@@ -43,12 +43,13 @@ void control(const Local& l, const Shared& shared, const View& view, VehicleStat
   s.gap[0] = s.gap[1] = kNaN;
   if (l.id == 0) return;
   const auto certify = [&](const Gap& gap) {
-    const double least = gap.value - gap.error;
-    const double off = std::abs(gap.value - f.spacing) + gap.error;
+    const double error = gap.error + rounding(std::abs(own.s) + std::abs(gap.value));
+    const double least = gap.value - error;
+    const double off = std::abs(gap.value - f.spacing) + error;
     if (!(s.gap[0] >= least)) s.gap[0] = least;
     if (!(s.gap[1] <= off)) s.gap[1] = off;
   };
-  if (s.has_link) certify({-s.link[0], relative_noise(g).position + rounding(std::abs(own.s))});
+  if (s.has_link) certify({-s.link[0], relative_noise(g).position});
   if (ahead != nullptr && ahead->covered() && s.alpha.known() && s.trouble == 0 &&
       shared.options.bound != BoundKind::printed)
     certify({ahead->prediction()[0] - own.s, ahead->bound + s.alpha.position});

@@ -141,6 +141,14 @@ void update_outer(const Local& l, const Shared& shared, const View& view, Vehicl
       moved(s.foreseen, varpi, Bound{bound, bound, bound} + relative_noise(g) * std::abs(s.source - l.id));
 }
 
+/// Size of what was added up for the estimate: it can be near zero where its terms are not.
+double size_of_sums(const View& view, const VehicleState& s) noexcept {
+  double links = 0.0;
+  for (int p = 0; p < view.size(); ++p)
+    if (view[p].linked) links = std::max(links, length(view[p].link));
+  return length(s.x.data()) + length(s.prediction.data()) + links + (std::isnan(s.beta) ? 0.0 : s.beta);
+}
+
 }  // namespace
 
 void observe(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
@@ -152,8 +160,7 @@ void observe(const Local& l, const Shared& shared, const View& view, VehicleStat
   }
   if (!s.has_y) s.verdict = Verdict::silent;
   if (s.sets.attacked.contains(l.id)) s.verdict = Verdict::attacked;
-  s.alpha = s.alpha +
-            rounding(length(s.x.data()) + length(s.prediction.data()) + (std::isnan(s.beta) ? 0.0 : s.beta));
+  s.alpha = s.alpha + rounding(size_of_sums(view, s));
   if (!(s.alpha.norm < kHuge)) s.alpha = {};  // a bound that has grown this far says nothing
 }
 

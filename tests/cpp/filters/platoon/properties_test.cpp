@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "random_platoon.hpp"
+#include "string_by_hand.hpp"
 
 using namespace garrison;
 
@@ -111,6 +111,50 @@ TEST_CASE("the same on links that lose and delay messages: 300 loops") {
   search(150, 6, {}, true);
   search(150, 7, {{"pairs", true}, {"count", std::string("cover")}, {"neighbours", true}, {"median", true}},
          true);
+}
+
+TEST_CASE(
+    "the same where vehicles are replaced, messages are lost and measurements are missing: 1200 strings") {
+  test::Rng rng(9);
+  const char* const laws[] = {"uniform", "extreme", "one_sided", "none"};
+  int bounds = 0;
+  int accusations = 0;
+  for (int run = 0; run < 1200; ++run) {
+    const auto p = test::random_platoon(rng);
+    const auto victims = test::random_victims(rng, p.setting);
+    const auto start = test::random_start(rng, p.setting);
+    ParamMap params = p.params;
+    if (run % 2 == 1) {
+      params["bound"] = std::string("tight");
+      params["count"] = std::string("cover");
+      for (const char* name : {"pairs", "neighbours", "median"}) params[name] = true;
+    }
+    test::StringByHand string(p, params, start, static_cast<std::uint64_t>(run), laws[run % 4]);
+    string.attack(test::random_attack(rng, p.setting, victims));
+    const double loss = run % 3 == 0 ? 0.0 : test::uniform(rng, 0.0, 0.5);
+    const double missing = run % 5 < 3 ? 0.0 : test::uniform(rng, 0.0, 0.3);
+    test::Promises kept;
+    for (int t = 0; t <= 40; ++t) {
+      string.step(t, loss, missing);
+      string.judge(victims, kept);
+      for (int i = 0; i < string.N(); ++i) {
+        bounds += std::isnan(string.bound(i)) ? 0 : 1;
+        accusations += string.state(i).sets.attacked.count();
+      }
+      if (run % 2 == 0 && t % 9 == 4)
+        string.replace(test::whole(rng, 0, string.N() - 1), Vec<2>(test::uniform(rng, -1e3, 1e3), 0.0));
+    }
+    CAPTURE(run);
+    CAPTURE(loss);
+    CAPTURE(victims.size());
+    CHECK(kept.bounds_violated == 0);
+    CHECK(kept.gaps_violated == 0);
+    CHECK(kept.accused_clean == 0);
+    CHECK(kept.cleared_attacked == 0);
+    CHECK(kept.doubted == 0);
+  }
+  CHECK(bounds > 300000);
+  CHECK(accusations > 50000);
 }
 
 TEST_CASE("the printed bound is violated in random loops, as our notes say, and never reported") {
