@@ -215,13 +215,13 @@ std::vector<std::string> Platoon::refuted_words(unsigned bits) {
   for (const auto& [bit, words] : found)
     if ((bits & bit) != 0 && what.find(words) == std::string::npos)
       what += (what.empty() ? "" : "; ") + std::string(words);
+  if (what.empty()) what = "vehicles were told so";
   return {
       "The data contradict the assumptions: " + what +
-      ". At least one of these is false: measurement_noise (or the bounds on its entries) and process_noise "
-      "(with input_bound, if any) bound the noise; initial_error bounds the start; at most `attacked` "
-      "sensors "
-      "are attacked; relative sensors and messages are honest. Vehicles that know of it report no bound, and "
-      "no verdict as proof."};
+      ". At least one of these is false: measurement_noise (or the bounds on its entries) and "
+      "process_noise (with input_bound, if any) bound the noise; initial_error bounds the start; at most "
+      "`attacked` sensors are attacked; relative sensors and messages are honest; or bound = \"printed\", "
+      "which is no bound, was asked for. Vehicles that know of it report no bound, and no verdict as proof."};
 }
 
 std::unique_ptr<World> Platoon::world(const Gains& g, const WorldOptions& options) {

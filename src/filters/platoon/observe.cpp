@@ -101,7 +101,7 @@ void update_inner(const Local& l, const Shared& shared, const View& view, Vehicl
     s.alpha = s.alpha.sharpened();
   }
   const Quorum heard = quorum(shared, view, s);
-  if (heard.certain && shared.options.detector) compare(g, heard, s);
+  if (heard.certain && shared.options.bound != BoundKind::printed) compare(g, heard, s);
   if (heard.certain && shared.options.median && median_bound(g) < s.alpha.norm) {
     s.x = heard.middle;
     s.alpha = median_error(g);

@@ -113,6 +113,7 @@ void rejoin(const Local& l, const Shared& shared, VehicleState& s, const Inbox<V
   if (!(std::abs(s.x[0]) < kHuge) || !(std::abs(s.x[1]) < kHuge)) s.x.setZero();
   s.prediction = s.x;
   s.alpha = s.foreseen = {};
+  if (s.t != t) s.has_y = s.has_link = false;  // it only listened: what it measured last is of another sample
   s.t = t;
   const View view(l.id, l.agents, shared.setting.range, s, inbox);
   observe(l, shared, view, s);

@@ -199,6 +199,46 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a vehicle that paused and listens takes nothing from its past") {
+  test::Rng rng(35);
+  for (int run = 0; run < 12; ++run) {
+    const Road r = road(rng);
+    const int N = r.p.setting.vehicles;
+    const int who = test::whole(rng, r.p.setting.range, N - 1 - r.p.setting.range);
+    const auto prepared = make_filter("platoon", r.p.params)->prepare(r.p.model, r.p.network);
+    test::AgentsByHand agents(*prepared, r.p.network);
+    for (int i = 0; i < N; ++i) agents[i].reset(r.start.x0.segment(2 * i, 2));
+    const auto position = [](int t, int i) { return 1.0 * t - 20.0 * i; };
+    const auto y = [&](int t) {
+      return [&, t](int i) {
+        Vector all(r.p.model.outputs(i));
+        all[0] = position(t, i);
+        all[1] = 10.0;
+        if (i > 0) all.tail(2) = Vector{{-20.0, 0.0}};
+        return all;
+      };
+    };
+    for (int t = 0; t <= 20; ++t) agents.step(t, y(t));
+    for (int t = 21; t <= 60; ++t) agents.step(t, y(t), who);
+    REQUIRE(agents[who].listen(61) == Refusal::none);
+    std::vector<std::byte> body(agents[who].most_bytes());
+    for (int j = 0; j < N; ++j) {
+      if (j == who) continue;
+      const Vector measured = y(61)(j);
+      const auto sent =
+          agents[j].sense(61, {measured.data(), static_cast<std::size_t>(measured.size())}, body);
+      if (std::abs(j - who) <= r.p.setting.range)
+        CHECK(agents[who].deliver({j, 61, 0}, std::span(body).first(sent.bytes)) == Refusal::none);
+    }
+    REQUIRE(agents[who].join() == Refusal::none);
+    double x[2];
+    agents[who].estimate(x);
+    CAPTURE(who);
+    CHECK(std::abs(x[0] - position(61, who)) < 0.5);  // it was 41 m further back
+    CHECK(std::isnan(agents[who].report().bound));
+  }
+}
+
 TEST_CASE("every variant goes on with the same bits from a snapshot") {
   test::Rng rng(34);
   for (int run = 0; run < 4; ++run) {
