@@ -158,7 +158,7 @@ void bind_pieces(py::module_& p) {
         require_range("beta", beta, std::numeric_limits<double>::min(), kInfinity);
         require_range("eta_s", std::abs(eta_s), 0.0);
         require_range("eta_v", std::abs(eta_v), 0.0);
-        return gain(beta, std::hypot(eta_s, eta_v), attacked, free);
+        return gain(beta, length(eta_s, eta_v), attacked, free);
       },
       py::arg("beta"), py::arg("eta_s"), py::arg("eta_v"), py::kw_only(), py::arg("attacked") = false,
       py::arg("free") = false, "(14) of one innovation.");

@@ -157,6 +157,7 @@ void Recorder::finish(const LinkCounters& link, const Runner& runner) {
   record_.link += link;
   record_.overflows += runner.overflows();
   record_.resets += runner.resets();
+  record_.refuted |= runner.refuted();
   record_.bytes_per_step = runner.bytes_per_step();
 }
 

@@ -209,6 +209,7 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
   Record record = recorder.release();
   record.interrupted = progress.stopped();
   record.warnings = filter.warnings(model, {record.verdict, record.trials, record.steps + 1, record.agents});
+  for (std::string& words : filter.refuted(record.refuted)) record.warnings.push_back(std::move(words));
   if (!options.message_attacks.empty())
     record.warnings.emplace_back(
         "Agents lie in their messages: no bound is reported, and a sensor called attacked may be honest, "
@@ -265,6 +266,9 @@ Record replay(const Prepared& prepared, const Log& log, const RunOptions& option
   if (log.runs != 1 && log.runs != options.trials)
     refuse("trials", std::to_string(options.trials), std::to_string(log.runs) + ", one per run of the log",
            "a log of one run serves any number of trials");
+  const auto rows = static_cast<std::size_t>(log.runs) *
+                    static_cast<std::size_t>(log.steps + 1 - prepared.filter().first_sample());
+  prepared.check_log({log.measurements, rows * static_cast<std::size_t>(model.total_outputs())});
   const int width = prepared.filter().own_states() ? model.agents() * model.states() : model.states();
   return drive(prepared, log.steps, log.truth != nullptr, options, [&](std::uint32_t trial) {
     return detail::recorded_source(model, log, log.runs == 1 ? 0 : trial, width,

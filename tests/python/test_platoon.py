@@ -23,8 +23,8 @@ def string(N: int = 5, L: int = 2) -> tuple[gr.Model, gr.Network]:
     return gr.platoon.model(N, 0.01), gr.Network.band(N, L)
 
 
-def loop(**more: object) -> gr.Run:
-    model, net = string()
+def loop(inputs: bool = False, **more: object) -> gr.Run:
+    model, net = gr.platoon.model(5, 0.01, inputs), gr.Network.band(5, 2)
     return gr.simulate(
         model,
         net,
@@ -45,13 +45,13 @@ def test_all_cases() -> None:
 
 
 def test_closed_loop_and_its_replay() -> None:
-    run = loop()
+    run = loop(inputs=True)  # a column of inputs that are all nan: the vehicles did what the filter commanded
     assert run.truth is not None and run.error is not None and run.bound is not None and run.measurements is not None
     assert run.truth.shape == (1, 61, 5, 2)
-    assert run.measurements.shape == (1, 61, 18)
+    assert run.measurements.shape == (1, 61, 23)
     assert (run.error <= run.bound).all()
     assert run.first_accused() == {2: 5}
-    model, net = string()
+    model, net = gr.platoon.model(5, 0.01, True), gr.Network.band(5, 2)
     start = np.column_stack([200 - 20.0 * np.arange(5), np.full(5, 10.0)])
     again = gr.replay(model, net, run.filter, measurements=run.measurements[0], truth=run.truth[0], start=start)
     assert again.estimate is not None and run.estimate is not None
@@ -70,6 +70,47 @@ def test_recorded_inputs_take_the_place_of_commands() -> None:
     replayed = gr.replay(model, net, other, measurements=rows, truth=run.truth[0], start=start)
     assert replayed.error is not None and run.error is not None
     assert np.abs(replayed.error - run.error).max() < 1e-9
+
+
+def test_cars_that_are_only_observed() -> None:
+    """Five noise-free cars at constant 20 m/s, recorded without inputs (it was 294 m off under a bound of 1.3 m)."""
+    model, net = gr.platoon.model(5, 0.1), gr.Network.band(5, 2)
+    t, car = np.arange(61)[:, None], np.arange(5)
+    truth = np.stack([2.0 * t - 20.0 * car, np.full((61, 5), 20.0)], axis=2)
+    rows = []
+    for k in range(5):
+        rows.append(truth[:, k])
+        if k > 0:
+            rows.append(truth[:, k] - truth[:, k - 1])
+    seen = {"attacked": 1, "process_noise": 0.01, "measurement_noise": 0.1, "initial_error": 10.0}
+    recorded = {"measurements": np.hstack(rows), "truth": truth, "start": truth[0]}
+    steered = gr.filters.Platoon(**seen, reference=[0.0, 20.0], gs=0.5, gv=1.0)
+    with pytest.raises(gr.InvalidInput, match="recorded vehicles without their inputs"):
+        gr.replay(steered, model, net, **recorded)
+    with pytest.raises(gr.InvalidInput, match="input_bound"):
+        gr.replay(gr.filters.Platoon(**seen), model, net, **recorded)
+    run = gr.replay(gr.filters.Platoon(**seen, input_bound=1.0), model, net, **recorded)
+    assert run.error is not None and run.bound is not None
+    assert (run.error <= run.bound).all()
+    assert run.error[0, 20:].max() < 0.1
+    assert run.first_accused() == {}
+    assert "Assumption 4" not in str(gr.check(gr.filters.Platoon(**seen, input_bound=1.0), model, net))
+
+
+def test_false_noise_bounds_are_named() -> None:
+    model, net = gr.platoon.model(9, 0.1), gr.Network.band(9, 2)
+    told = gr.filters.Platoon(
+        attacked=1, process_noise=0.05, measurement_noise=0.4, initial_error=10.0, reference=[0.0, 20.0], gs=0.5, gv=1.0
+    )
+    rng = np.random.default_rng(1)
+    noise = np.zeros((301, 9, 7))
+    angle = rng.uniform(0, 2 * np.pi, (301, 9, 2))
+    noise[:, :, 2:4] = 0.5 * np.stack([np.cos(angle[:, :, 0]), np.sin(angle[:, :, 0])], axis=2)
+    noise[:, :, 5:7] = 0.5 * np.stack([np.cos(angle[:, :, 1]), np.sin(angle[:, :, 1])], axis=2)
+    start = np.column_stack([-20.0 * np.arange(9), np.full(9, 20.0)])
+    run = gr.simulate(model, net, told, steps=300, start=start, noise=noise.reshape(301, 63))
+    assert any("measurement_noise" in w for w in run.warnings)
+    assert run.bound is not None and np.isnan(run.bound[0, -1]).all()
 
 
 def test_collision_margin_is_certified() -> None:

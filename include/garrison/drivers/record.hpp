@@ -56,6 +56,7 @@ struct GARRISON_EXPORT Record {
   std::int64_t nonfinite = 0;         ///< measurements that were infinite or beyond kHuge
   std::int64_t overflows = 0;         ///< samples with an estimate that was not finite, or beyond kHuge
   std::int64_t resets = 0;            ///< agents that rejoined because of that, over all samples
+  unsigned refuted = 0;               ///< assumptions that some agent refuted: Runner::refuted of all trials
   std::vector<std::string> warnings;  ///< of the family, for people
   bool interrupted = false;           ///< stopped by the caller before the end
   std::int64_t bytes_per_step = 0;    ///< of the bodies of all messages of one sample, when none is lost

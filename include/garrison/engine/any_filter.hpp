@@ -31,6 +31,9 @@ class GARRISON_EXPORT Prepared {
   virtual std::unique_ptr<Runner> runner(int threads) const = 0;
   /// Refuses initial estimates (n x N) that the family's promises do not cover.
   virtual void check_start(const Matrix& x0) const = 0;
+  /// Refuses recorded measurements (rows of Model::total_outputs() numbers) from which the family cannot tell
+  /// what it promises. @throws InvalidInput
+  virtual void check_log(std::span<const double> measurements) const = 0;
   /// @throws InvalidInput when there is no such agent
   virtual std::unique_ptr<Agent> agent(int id) const = 0;
   /// Refuses an attack on messages that the family's messages have no place for. @throws InvalidInput
@@ -67,6 +70,8 @@ class GARRISON_EXPORT AnyFilter {
   virtual std::vector<std::string> signal_names() const = 0;
   /// What a user should know of a run that ended without an error; empty where the family has nothing to say.
   virtual std::vector<std::string> warnings(const Model& model, const VerdictLog& log) const = 0;
+  /// Which assumptions can be false when `bits` were refuted (Runner::refuted), in words; empty for 0.
+  virtual std::vector<std::string> refuted(unsigned bits) const = 0;
   virtual std::vector<std::string> detail_names() const = 0;
   /// 1, or 0 for families that have a sample at the start too.
   virtual int first_sample() const = 0;

@@ -137,6 +137,12 @@ class Engine final : public Runner {
   }
   std::int64_t overflows() const override { return overflows_; }
   std::int64_t resets() const override { return resets_; }
+  unsigned refuted() const override {
+    unsigned bits = 0;
+    if constexpr (requires { F::template refuted<n>(states_[0]); })
+      for (const State& s : states_) bits |= F::template refuted<n>(s);
+    return bits;
+  }
   std::int64_t bytes_per_step() const override {
     return variable_ && samples_ > 0 ? bytes_ / samples_ : bytes_;
   }

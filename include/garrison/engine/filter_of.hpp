@@ -69,6 +69,10 @@ class PreparedOf final : public Prepared {
   void check_start(const Matrix& x0) const override {
     if constexpr (requires { F::check_start(*gains_, x0); }) F::check_start(*gains_, x0);
   }
+  void check_log(std::span<const double> measurements) const override {
+    if constexpr (requires { F::check_log(*gains_, model_, measurements); })
+      F::check_log(*gains_, model_, measurements);
+  }
   std::unique_ptr<Agent> agent(int id) const override {
     constexpr int kMostRounds = 1000;  // it keeps the messages of two samples
     if (F::rounds(*gains_) > kMostRounds)
@@ -184,6 +188,12 @@ class FilterOf final : public AnyFilter {
   std::vector<std::string> warnings(const Model& model, const VerdictLog& log) const override {
     if constexpr (requires { F::warnings(model, log); })
       return F::warnings(model, log);
+    else
+      return {};
+  }
+  std::vector<std::string> refuted(unsigned bits) const override {
+    if constexpr (requires { F::refuted_words(bits); })
+      return bits == 0 ? std::vector<std::string>{} : F::refuted_words(bits);
     else
       return {};
   }

@@ -45,6 +45,9 @@ class GARRISON_EXPORT Runner {
   virtual std::int64_t overflows() const = 0;
   /// Agents that rejoined because of that, summed over samples.
   virtual std::int64_t resets() const = 0;
+  /// What the data of any agent have shown to be false so far: bits of the family's own (`refuted`), 0 =
+  /// nothing.
+  virtual unsigned refuted() const = 0;
   /// Bytes of the bodies of all messages of one sample, all rounds, when none is lost; known after `reset`.
   /// Where bodies vary in size (sets): the mean over the samples so far.
   virtual std::int64_t bytes_per_step() const = 0;

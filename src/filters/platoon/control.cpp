@@ -39,21 +39,20 @@ void control(const Local& l, const Shared& shared, const View& view, VehicleStat
   const Motion own{s.x[0], s.x[1]};
   const VehicleMessage* ahead = l.id > 0 ? view[g.range - 1].message : nullptr;
   const VehicleMessage* behind = l.id + 1 < l.agents ? view[g.range + 1].message : nullptr;
-  s.u = std::isnan(s.alpha) ? 0.0 : steer(l, f, own, ahead, behind, s);
+  if (f.steers()) s.u = s.alpha.known() ? steer(l, f, own, ahead, behind, s) : 0.0;
   s.gap[0] = s.gap[1] = kNaN;
   if (l.id == 0) return;
   const auto certify = [&](const Gap& gap) {
-    const double least = gap.value - gap.error;
-    const double off = std::abs(gap.value - f.spacing) + gap.error;
+    const double error = gap.error + rounding(std::abs(own.s) + std::abs(gap.value));
+    const double least = gap.value - error;
+    const double off = std::abs(gap.value - f.spacing) + error;
     if (!(s.gap[0] >= least)) s.gap[0] = least;
     if (!(s.gap[1] <= off)) s.gap[1] = off;
   };
-  if (s.has_link) certify({-s.link[0], g.mu});
-  if (ahead != nullptr && ahead->covered() && !std::isnan(s.alpha) && s.trouble == 0 &&
-      shared.options.bound != BoundKind::printed) {
-    const double other = s.t == 0 ? ahead->alpha : predicted_bound(g, ahead->alpha);
-    certify({ahead->prediction()[0] - own.s, other + s.alpha});
-  }
+  if (s.has_link) certify({-s.link[0], relative_noise(g).position});
+  if (ahead != nullptr && ahead->covered() && s.alpha.known() && s.trouble == 0 &&
+      shared.options.bound != BoundKind::printed)
+    certify({ahead->prediction()[0] - own.s, ahead->bound + s.alpha.position});
 }
 
 }  // namespace garrison::platoon

@@ -18,10 +18,8 @@ class Detection {
   void neighbour_ahead() noexcept {
     const int own = g_.range;
     if (id_ == 0 || !view_[own].measured || !view_[own - 1].measured) return;
-    const VehicleMessage& ahead = *view_[own - 1].message;
     if (sets_.attacked.contains(id_) || sets_.attacked.contains(id_ - 1)) return;
-    const double norm = std::hypot(s_.link[0] + ahead.y()[0] - s_.y[0], s_.link[1] + ahead.y()[1] - s_.y[1]);
-    if (!exceeds(norm, pair_level(g_, 1), length(s_.y) + length(ahead.y()))) return;
+    if (!contradict(g_, 1, view_[own - 1].y, s_.y)) return;
     if (sets_.free.contains(id_)) return accuse(id_ - 1);
     if (sets_.free.contains(id_ - 1)) return accuse(id_);
     suspect(id_ - 1);
@@ -31,11 +29,11 @@ class Detection {
   /// (28): the vehicle's own measurement is further from its prediction than any honest one can be.
   void own_innovation() noexcept {
     s_.innovation = kNaN;
-    s_.level = innovation_level(g_, s_.alpha);
+    s_.level = innovation_level(g_, s_.foreseen.norm);
     bool fired = s_.impossible;
     if (s_.has_y) {
-      s_.innovation = std::hypot(s_.y[0] - s_.prediction[0], s_.y[1] - s_.prediction[1]);
-      fired = exceeds(s_.innovation, s_.level, length(s_.y) + s_.prediction.stableNorm());
+      s_.innovation = length(s_.y[0] - s_.prediction[0], s_.y[1] - s_.prediction[1]);
+      fired = exceeds(s_.innovation, s_.level, length(s_.y) + length(s_.prediction.data()));
     }
     if (!fired || sets_.attacked.contains(id_)) return;
     if (!sets_.free.contains(id_)) return accuse(id_);
@@ -47,9 +45,9 @@ class Detection {
     for (int p = 0; p < view_.size(); ++p) {
       if (p == g_.range || !view_[p].measured || known(view_.id_of(p))) continue;
       const double* y = view_[p].y;
-      const double norm = std::hypot(y[0] - s_.prediction[0], y[1] - s_.prediction[1]);
-      if (exceeds(norm, innovation_level(g_, s_.alpha, std::abs(p - g_.range)),
-                  length(y) + s_.prediction.stableNorm()))
+      const double norm = length(y[0] - s_.prediction[0], y[1] - s_.prediction[1]);
+      if (exceeds(norm, innovation_level(g_, s_.foreseen.norm, std::abs(p - g_.range)),
+                  length(y) + length(s_.prediction.data())))
         accuse(view_.id_of(p));
     }
   }
@@ -60,10 +58,7 @@ class Detection {
     for (int p = 0; p < view_.size(); ++p) {
       for (int q = p + 1; q < view_.size() && view_[p].measured; ++q) {
         if (!view_[q].measured) continue;
-        const double* a = view_[p].y;
-        const double* b = view_[q].y;
-        if (exceeds(std::hypot(a[0] - b[0], a[1] - b[1]), pair_level(g_, q - p), length(a) + length(b)))
-          fired.fire(p, q);
+        if (contradict(g_, q - p, view_[p].y, view_[q].y)) fired.fire(p, q);
       }
     }
     if (!fired.any()) return;
@@ -111,7 +106,6 @@ class Detection {
   }
 
  private:
-  static double length(const double* y) noexcept { return std::hypot(y[0], y[1]); }
   bool known(int id) const noexcept { return sets_.attacked.contains(id) || sets_.free.contains(id); }
   void accuse(int id) noexcept { note(sets_.attacked, id); }
   void suspect(int id) noexcept { note(sets_.suspected, id); }

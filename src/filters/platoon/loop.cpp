@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/solvers.hpp"
+#include "garrison/filters/platoon/detector.hpp"
 #include "garrison/filters/platoon/formation.hpp"
 
 namespace garrison::platoon {
@@ -44,8 +45,8 @@ double radius(const Mat<2>& Q) {
 
 double norm(const Mat<2>& Q) {
   // Largest singular value: sum and difference of the two.
-  const double plus = std::hypot(Q(0, 0) + Q(1, 1), Q(1, 0) - Q(0, 1));
-  const double minus = std::hypot(Q(0, 0) - Q(1, 1), Q(1, 0) + Q(0, 1));
+  const double plus = length(Q(0, 0) + Q(1, 1), Q(1, 0) - Q(0, 1));
+  const double minus = length(Q(0, 0) - Q(1, 1), Q(1, 0) + Q(0, 1));
   return (plus + minus) / 2.0;
 }
 
@@ -105,7 +106,7 @@ LoopFactors loop_factors(int vehicles, double period, double gs, double gv) {
   for (const Mat<2>& Ql : Q) {
     const Mat<2> M = lyapunov(Ql);
     const double half = M.trace() / 2.0;
-    const double root = std::hypot((M(0, 0) - M(1, 1)) / 2.0, M(0, 1));
+    const double root = length((M(0, 0) - M(1, 1)) / 2.0, M(0, 1));
     f.M_max = std::max(f.M_max, half + root);
     f.M_min = std::min(f.M_min, half - root);
     MP = std::max(MP, norm(M * Ql));

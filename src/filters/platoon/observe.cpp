@@ -15,8 +15,13 @@ double median(double* values, int count) noexcept {
   return count % 2 == 1 ? values[count / 2] : (values[count / 2 - 1] + values[count / 2]) / 2.0;
 }
 
-/// S3: the componentwise median of what sensors not yet proved attacked say, while less than half can lie.
-bool take_median(const Shared& shared, const View& view, VehicleState& s) noexcept {
+/// S3: the entrywise median of what sensors not yet proved attacked say.
+struct Quorum {
+  Vec<2> middle;
+  bool heard;    ///< there is one
+  bool certain;  ///< less than half of it can lie
+};
+Quorum quorum(const Shared& shared, const View& view, const VehicleState& s) noexcept {
   double column[2][2 * kMostRange + 1];
   int count = 0;
   for (int p = 0; p < view.size(); ++p) {
@@ -24,37 +29,37 @@ bool take_median(const Shared& shared, const View& view, VehicleState& s) noexce
     for (int k = 0; k < 2; ++k) column[k][count] = view[p].y[k];
     ++count;
   }
-  if (2 * (shared.setting.attacked - s.sets.attacked.count()) >= count || count == 0) return false;
-  for (int k = 0; k < 2; ++k) s.x[k] = median(column[k], count);
-  s.alpha = median_bound(shared.setting);
-  return true;
+  if (count == 0) return {s.prediction, false, false};
+  const int liars = std::max(0, shared.setting.attacked - s.sets.attacked.count());
+  return {{median(column[0], count), median(column[1], count)}, true, 2 * liars < count};
 }
 
-/// V_1 behind a gap: nothing of the past counts. Where too little is heard the estimate is the mean of what
-/// is, and stays without a bound.
+/// What less than half can move is further from the prediction than both bounds allow: one of them is false.
+void compare(const Setting& g, const Quorum& heard, VehicleState& s) noexcept {
+  const Bound level = s.foreseen + median_error(g);
+  const double size = length(heard.middle.data()) + length(s.prediction.data());
+  if (exceeds(std::abs(heard.middle[0] - s.prediction[0]), level.position, size) ||
+      exceeds(std::abs(heard.middle[1] - s.prediction[1]), level.velocity, size))
+    s.trouble |= kQuorum;
+}
+
+/// V_1 behind a gap: nothing of the past counts. Where too many of those heard may lie there is no bound.
 void start_anew(const Shared& shared, const View& view, VehicleState& s) noexcept {
   s.beta = kNaN;
   s.source = -1;
   s.x = s.prediction;
   std::fill_n(s.gains.get(), view.size(), 0.0);
   s.verdict = Verdict::not_tested;
-  if (take_median(shared, view, s)) return;
-  Vec<2> sum = Vec<2>::Zero();
-  int count = 0;
-  for (int p = 0; p < view.size(); ++p) {
-    if (!view[p].measured || s.sets.attacked.contains(view.id_of(p))) continue;
-    for (int k = 0; k < 2; ++k) sum[k] += view[p].y[k];
-    ++count;
-  }
-  if (count > 0) s.x = sum / count;
+  const Quorum heard = quorum(shared, view, s);
+  s.x = heard.middle;
+  if (heard.certain) s.alpha = median_error(shared.setting);
 }
 
 /// V_1: saturated innovations of everybody in range.
 void update_inner(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
   const Setting& g = shared.setting;
-  const double before = s.alpha;
-  if (std::isnan(before)) return start_anew(shared, view, s);
-  s.beta = threshold(g, before);
+  if (!s.foreseen.known()) return start_anew(shared, view, s);
+  s.beta = threshold(g, s.foreseen.norm);
   s.source = -1;
   Window w;
   w.proved = s.sets.attacked.count();
@@ -73,32 +78,34 @@ void update_inner(const Local& l, const Shared& shared, const View& view, Vehicl
       w.free_in_reach += free ? 1 : 0;
       if (attacked || !view[p].measured) continue;
       const double eta[2] = {view[p].y[0] - s.prediction[0], view[p].y[1] - s.prediction[1]};
-      const double norm = std::hypot(eta[0], eta[1]);
+      const double norm = length(eta);
       if (!(norm < kHuge)) continue;  // a lie in a message: as good as nothing
       k = gain(s.beta, norm, attacked, free);
       step[0] += k * eta[0];
       step[1] += k * eta[1];
       if (free) {
         ++w.free;
-        free_noise += (distance + 1) * g.mu;
+        free_noise += reached_noise(g, distance).norm;
       } else {
-        noise[w.undecided++] = (distance + 1) * g.mu;
+        noise[w.undecided++] = reached_noise(g, distance).norm;
       }
     }
   }
   for (int k = 0; k < 2; ++k) s.x[k] = s.prediction[k] + step[k] / (2.0 * g.range);
-  switch (shared.options.bound) {
-    case BoundKind::safe:
-      s.alpha = safe_bound(g, s.beta, before, w);
-      break;
-    case BoundKind::tight:
-      s.alpha = tight_bound(g, s.beta, before, w, free_noise, noise);
-      break;
-    case BoundKind::printed:
-      s.alpha = printed_bound(g, s.beta, before, w);
-      break;
+  if (shared.options.bound == BoundKind::printed) {
+    s.alpha = {printed_bound(g, s.beta, s.alpha.norm, w), kInfinity, kInfinity};
+  } else {
+    s.alpha = SafeStep(g, s.beta, s.foreseen.norm, w)(s.foreseen, reached_noise(g, g.range));
+    if (shared.options.bound == BoundKind::tight)
+      s.alpha.norm = tight_bound(g, s.beta, s.foreseen.norm, w, free_noise, noise);
+    s.alpha = s.alpha.sharpened();
   }
-  if (shared.options.median && median_bound(g) < s.alpha) take_median(shared, view, s);
+  const Quorum heard = quorum(shared, view, s);
+  if (heard.certain && shared.options.bound != BoundKind::printed) compare(g, heard, s);
+  if (heard.certain && shared.options.median && median_bound(g) < s.alpha.norm) {
+    s.x = heard.middle;
+    s.alpha = median_error(g);
+  }
   const bool own = s.gains[static_cast<std::size_t>(g.range)] >= 1.0 && !s.sets.suspected.contains(l.id);
   s.verdict = own ? Verdict::cleared : Verdict::suspected;
 }
@@ -108,13 +115,11 @@ void update_outer(const Local& l, const Shared& shared, const View& view, Vehicl
   const Setting& g = shared.setting;
   s.source = -1;
   s.beta = kNaN;
-  const bool free = s.sets.free.contains(l.id);
   // Behind a gap the prediction is worth nothing: gain 1 in place of 1/varpi.
-  const bool gap = std::isnan(s.alpha);
-  const double varpi = gap ? 1.0 : g.varpi;
-  if (free && s.has_y) {
+  const double varpi = s.foreseen.known() ? g.varpi : 1.0;
+  if (s.sets.free.contains(l.id) && s.has_y) {
     for (int k = 0; k < 2; ++k) s.x[k] = s.prediction[k] + (s.y[k] - s.prediction[k]) / varpi;
-    s.alpha = gap ? g.mu : free_bound(g, s.alpha);
+    s.alpha = moved(s.foreseen, varpi, absolute_noise(g));
     return;
   }
   BestSource best(shared.options.tie_by_bound);
@@ -123,20 +128,25 @@ void update_outer(const Local& l, const Shared& shared, const View& view, Vehicl
       continue;
     const int j = view.id_of(p);
     if (in_V1(j, l.agents, g.range) || s.sets.free.contains(j))
-      best.offer(j, std::abs(p - g.range), view[p].message->alpha);
+      best.offer(j, std::abs(p - g.range), view[p].message->bound);
   }
   s.source = best.id();
-  if (s.source < 0) {  // nobody within reach: the prediction stands
-    s.x = s.prediction;
-    s.alpha = predicted_bound(g, s.alpha);
-    return;
-  }
+  s.x = s.prediction;
+  s.alpha = s.foreseen;
+  if (s.source < 0) return;  // nobody within reach: the prediction stands
   const Seen& j = view[s.source - l.id + g.range];
-  for (int k = 0; k < 2; ++k)
-    s.x[k] = s.prediction[k] + (j.message->prediction()[k] + j.link[k] - s.prediction[k]) / varpi;
-  const int distance = std::abs(s.source - l.id);
-  s.alpha = gap ? anew_bound(g, j.message->alpha, distance)
-                : borrowed_bound(g, s.alpha, j.message->alpha, distance);
+  for (int k = 0; k < 2; ++k) s.x[k] += (j.message->prediction()[k] + j.link[k] - s.prediction[k]) / varpi;
+  const double bound = j.message->bound;
+  s.alpha =
+      moved(s.foreseen, varpi, Bound{bound, bound, bound} + relative_noise(g) * std::abs(s.source - l.id));
+}
+
+/// Size of what was added up for the estimate: it can be near zero where its terms are not.
+double size_of_sums(const View& view, const VehicleState& s) noexcept {
+  double links = 0.0;
+  for (int p = 0; p < view.size(); ++p)
+    if (view[p].linked) links = std::max(links, length(view[p].link));
+  return length(s.x.data()) + length(s.prediction.data()) + links + (std::isnan(s.beta) ? 0.0 : s.beta);
 }
 
 }  // namespace
@@ -150,7 +160,8 @@ void observe(const Local& l, const Shared& shared, const View& view, VehicleStat
   }
   if (!s.has_y) s.verdict = Verdict::silent;
   if (s.sets.attacked.contains(l.id)) s.verdict = Verdict::attacked;
-  if (!(s.alpha < kHuge)) s.alpha = kNaN;  // a bound that has grown this far says nothing
+  s.alpha = s.alpha + rounding(size_of_sums(view, s));
+  if (!(s.alpha.norm < kHuge)) s.alpha = {};  // a bound that has grown this far says nothing
 }
 
 }  // namespace garrison::platoon

@@ -26,7 +26,8 @@ double borrowed_limit(const Setting& s, double source, int distance) {
 
 /// One step of the safe bound with empty sets.
 double blind(const Setting& s, double rho) {
-  return safe_bound(s, threshold(s, rho), rho, {0, 2 * s.range + 1, 0, 0});
+  const double E = predicted(s, rho);
+  return safe_bound(s, threshold(s, E), E, {0, 2 * s.range + 1, 0, 0});
 }
 
 bool feasible(const Setting& s) { return !std::isnan(beta_interval_safe(s).lo); }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "garrison/filters/platoon/bounds.hpp"
 #include "garrison/filters/platoon/view.hpp"
 #include "garrison/filters/platoon/world.hpp"
 
@@ -11,6 +12,21 @@ namespace garrison::platoon {
 namespace {
 
 bool usable(const double* y) noexcept { return std::abs(y[0]) < kHuge && std::abs(y[1]) < kHuge; }
+
+double size(const Vec<2>& x) noexcept { return std::abs(x[0]) + std::abs(x[1]); }
+
+/// (15) and what is known of its error. An input that nobody tells is taken for zero, within its bound.
+void predict(const Setting& g, VehicleState& s) noexcept {
+  double u = std::isnan(s.applied) ? s.u : s.applied;
+  if (std::isnan(u)) {
+    u = 0.0;
+    if (std::isnan(g.input)) s.alpha = {};
+  }
+  s.prediction[0] = s.x[0] + g.period * s.x[1];
+  s.prediction[1] = s.x[1] + g.period * u;
+  s.foreseen =
+      predicted(g, s.alpha) + rounding(size(s.prediction) + g.period * std::abs(s.x[1]) + std::abs(s.x[1]));
+}
 
 void tell(LabelSet& set, const std::vector<int>& ids) {
   for (const int id : ids) set.insert(id);
@@ -21,7 +37,9 @@ void tell(LabelSet& set, const std::vector<int>& ids) {
 void start(const Local& l, const Shared& shared, const Vec<2>& x0, VehicleState& s, VehicleMessage& m) {
   VehicleState fresh;
   fresh.x = fresh.prediction = x0;
-  fresh.alpha = shared.setting.q;
+  const double q = shared.setting.q + rounding(size(x0));
+  fresh.alpha = fresh.foreseen = {q, q, q};
+  if (!shared.formation.steers()) fresh.u = kNaN;
   fresh.sets.attacked = LabelSet(shared.room);
   fresh.sets.suspected = LabelSet(shared.room);
   fresh.sets.free = LabelSet(shared.room_free);
@@ -44,12 +62,7 @@ void start(const Local& l, const Shared& shared, const Vec<2>& x0, VehicleState&
 void sense(const Local& l, const Shared& shared, VehicleState& s, const double* y, std::int64_t t,
            VehicleMessage& m) noexcept {
   const Outputs outputs = Outputs::of(l.id, l.outputs);
-  const double T = shared.setting.period;
-  if (t > 0) {
-    const double u = std::isnan(s.applied) ? s.u : s.applied;
-    s.prediction[0] = s.x[0] + T * s.x[1];  // (15)
-    s.prediction[1] = s.x[1] + T * u;
-  }
+  if (t > 0) predict(shared.setting, s);
   s.t = t;
   s.has_y = usable(y);
   const bool missing = std::isnan(y[0]) || std::isnan(y[1]);
@@ -67,7 +80,7 @@ void sense(const Local& l, const Shared& shared, VehicleState& s, const double* 
     m.numbers[2 + k] = s.link[k];
     m.numbers[4 + k] = s.prediction[k];
   }
-  m.alpha = s.alpha;
+  m.bound = s.foreseen.norm;
   m.doubt = s.trouble != 0;
   m.sets = s.sets;
 }
@@ -99,7 +112,8 @@ void rejoin(const Local& l, const Shared& shared, VehicleState& s, const Inbox<V
             std::int64_t t) noexcept {
   if (!(std::abs(s.x[0]) < kHuge) || !(std::abs(s.x[1]) < kHuge)) s.x.setZero();
   s.prediction = s.x;
-  s.alpha = kNaN;
+  s.alpha = s.foreseen = {};
+  if (s.t != t) s.has_y = s.has_link = false;  // it only listened: what it measured last is of another sample
   s.t = t;
   const View view(l.id, l.agents, shared.setting.range, s, inbox);
   observe(l, shared, view, s);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "garrison/core/random.hpp"
+#include "garrison/filters/platoon/detector.hpp"
 
 namespace garrison::platoon {
 namespace {
@@ -21,20 +22,21 @@ Law law_of(const std::string& name) {
   return Law::none;
 }
 
-/// A vector within `bound`; a hair below it, so that rounding cannot break the assumption.
-void draw(Law law, const Random& random, std::int64_t t, std::uint32_t key, double bound, double* out) {
+/// A vector in the ellipse whose half axes are the bounds on its entries; a hair below them, so that rounding
+/// cannot break the assumption.
+void draw(Law law, const Random& random, std::int64_t t, std::uint32_t key, const Bound& bound, double* out) {
   const double u = random.uniform(t, key, 0);
   const double w = random.uniform(t, key, 1);
-  const double most = bound * (1.0 - 1e-12);
-  if (law == Law::none) {
-    out[0] = out[1] = 0.0;
-  } else if (law == Law::one_sided) {
-    out[0] = most * u * std::numbers::sqrt2 / 2.0;
-    out[1] = most * w * std::numbers::sqrt2 / 2.0;
-  } else {
-    const double radius = law == Law::extreme ? most : most * std::sqrt(u);
-    out[0] = radius * std::cos(2.0 * std::numbers::pi * w);
-    out[1] = radius * std::sin(2.0 * std::numbers::pi * w);
+  const double most[2] = {bound.position * (1.0 - 1e-12), bound.velocity * (1.0 - 1e-12)};
+  const double angle = 2.0 * std::numbers::pi * w;
+  for (int k = 0; k < 2; ++k) {
+    if (law == Law::none)
+      out[k] = 0.0;
+    else if (law == Law::one_sided)
+      out[k] = most[k] * (k == 0 ? u : w) * std::numbers::sqrt2 / 2.0;
+    else
+      out[k] = (law == Law::extreme ? most[k] : most[k] * std::sqrt(u)) *
+               (k == 0 ? std::cos(angle) : std::sin(angle));
   }
 }
 
@@ -56,10 +58,11 @@ class Vehicles final : public World {
       x[0] = o.x0.size() == 0 ? spot.s : o.x0(2 * i);
       x[1] = o.x0.size() == 0 ? spot.v : o.x0(2 * i + 1);
       double shift[2];
-      draw(o.start_error > 0.0 ? Law::uniform : Law::none, random, 0, key(i, 0), o.start_error, shift);
+      draw(o.start_error > 0.0 ? Law::uniform : Law::none, random, 0, key(i, 0),
+           {o.start_error, o.start_error, o.start_error}, shift);
       start_(0, i) += shift[0];
       start_(1, i) += shift[1];
-      const double error = std::hypot(start_(0, i) - x[0], start_(1, i) - x[1]);
+      const double error = length(start_(0, i) - x[0], start_(1, i) - x[1]);
       if (error > s.q * (1.0 + 1e-9))
         refuse("start",
                "an initial estimate of vehicle " + std::to_string(i) + " that is off by " + text(error),
@@ -75,7 +78,7 @@ class Vehicles final : public World {
     if (t > 0) {
       for (int i = 0; i < setting_.vehicles; ++i) {
         double d[2];
-        disturb(t - 1, i, 0, process_, setting_.eps, d);
+        disturb(t - 1, i, 0, process_, {setting_.eps, setting_.eps, setting_.eps}, d);
         double* x = state(i);
         x[0] += T * x[1] + d[0];
         x[1] += T * control[static_cast<std::size_t>(i)] + d[1];
@@ -87,10 +90,10 @@ class Vehicles final : public World {
       const double* ahead = i > 0 ? state(i - 1) : x;
       const double w = recorded_ == nullptr ? 0.0 : (*recorded_)(t, kDisturbances * i + 4);
       double n[2];
-      disturb(t, i, 2, measurement_, setting_.mu, n);
+      disturb(t, i, 2, measurement_, absolute_noise(setting_), n);
       for (int k = 0; k < 2; ++k) y[at++] = x[k] + n[k] + w * x[k];
       if (i > 0) {
-        disturb(t, i, 5, measurement_, setting_.mu, n);
+        disturb(t, i, 5, measurement_, relative_noise(setting_), n);
         for (int k = 0; k < 2; ++k) y[at++] = x[k] - ahead[k] + n[k];
       }
       if (y.size() > 4 * static_cast<std::size_t>(setting_.vehicles)) y[at++] = kNaN;
@@ -103,7 +106,7 @@ class Vehicles final : public World {
     return 8U * static_cast<std::uint32_t>(vehicle) + static_cast<std::uint32_t>(column);
   }
   /// Two of a vehicle's disturbances, beginning with `column`.
-  void disturb(std::int64_t t, int vehicle, int column, const Random& random, double bound,
+  void disturb(std::int64_t t, int vehicle, int column, const Random& random, const Bound& bound,
                double* out) const {
     if (recorded_ == nullptr) return draw(law_, random, t, key(vehicle, column), bound, out);
     for (int k = 0; k < 2; ++k) out[k] = (*recorded_)(t, kDisturbances * vehicle + column + k);

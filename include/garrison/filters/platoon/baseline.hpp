@@ -15,6 +15,7 @@
 #include "garrison/core/params.hpp"
 #include "garrison/core/world.hpp"
 #include "garrison/filters/platoon/vehicle.hpp"
+#include "garrison/filters/platoon/world.hpp"
 
 namespace garrison {
 
@@ -125,6 +126,10 @@ struct GARRISON_EXPORT PlatoonBaseline {
   static Gains design(const Params& params, const Model& model, const Network& network);
   /// Assumption 4 alone.
   static Check check(const Params& params, const Model& model, const Network& network);
+  /// As Platoon::check_log. @throws InvalidInput
+  static void check_log(const Gains&, const Model& model, std::span<const double> measurements) {
+    platoon::check_inputs("platoon_baseline", model, measurements);
+  }
   static std::unique_ptr<World> world(const Gains& gains, const WorldOptions& options);
   static int rounds(const Gains&) { return 1; }
 

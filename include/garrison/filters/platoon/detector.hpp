@@ -21,13 +21,25 @@ inline bool exceeds(double norm, double level, double size) noexcept {
   return norm > level + kGuard * (1.0 + size);
 }
 
-/// (27): level of ||y_ij + y_jj - y_ii|| for two sensors `distance` places apart; 3 mu for neighbours.
-inline double pair_level(const Setting& s, int distance) noexcept { return (distance + 2) * s.mu; }
+/// sqrt(x^2 + y^2) by operations that round alike everywhere, which std::hypot does not.
+inline double length(double x, double y) noexcept { return std::sqrt(x * x + y * y); }
+inline double length(const double* y) noexcept { return length(y[0], y[1]); }
 
-/// g_i of (28), against ||y_ii - xbar_i||: the print has A xhat_i(t-1) in place of xbar_i(t) and so forgets
-/// the control input, which accuses clean sensors (our notes, E4). `distance` > 0: y_{i|j}, S6 of our notes.
-inline double innovation_level(const Setting& s, double alpha, int distance = 0) noexcept {
-  return s.eps + (distance + 1) * s.mu + norm_A(s) * alpha;
+/// (27): whether y_{i|j} = a and y_{i|k} = b of two sensors `distance` places apart contradict each other: in
+/// length by more than 3 mu for neighbours, or in an entry where separate bounds are known.
+inline bool contradict(const Setting& s, int distance, const double* a, const double* b) noexcept {
+  const Bound level = absolute_noise(s) * 2.0 + relative_noise(s) * distance;
+  const double size = length(a) + length(b);
+  const double off[2] = {a[0] - b[0], a[1] - b[1]};
+  return exceeds(length(off), level.norm, size) || exceeds(std::abs(off[0]), level.position, size) ||
+         exceeds(std::abs(off[1]), level.velocity, size);
+}
+
+/// g_i of (28), against ||y_ii - xbar_i||, from the bound E on the error of xbar_i: the print has A
+/// xhat_i(t-1) in place of xbar_i(t) and so forgets the control input, which accuses clean sensors (our
+/// notes, E4). `distance` > 0: y_{i|j}, S6 of our notes.
+inline double innovation_level(const Setting& s, double E, int distance = 0) noexcept {
+  return E + reached_noise(s, distance).norm;
 }
 
 /// Maximal runs of successive labels in a sorted list.

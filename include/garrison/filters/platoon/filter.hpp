@@ -18,7 +18,8 @@
 // bound again from then on. A vehicle that lies in its messages is outside all of this: it can have anybody
 // isolated by forging `attacked`, and its prediction steers its neighbours; drivers drop bounds when that is
 // simulated. A vehicle whose data contradict the assumptions (more than b attackers, a sensor both attacked
-// and free) says so in the signal `trouble` and reports no bound from then on.
+// and free) says so in the signal `trouble` and from then on reports no bound and accuses nobody; the run
+// says which assumptions can be false.
 #pragma once
 
 #include <memory>
@@ -49,12 +50,17 @@ struct GARRISON_EXPORT Platoon {
     int attacked = 1;
     double process_noise = kNaN;
     double measurement_noise = kNaN;
+    double absolute_position_noise = kNaN;
+    double absolute_velocity_noise = kNaN;
+    double relative_position_noise = kNaN;
+    double relative_velocity_noise = kNaN;
     double initial_error = kNaN;
     double varpi = 2.0;
     std::vector<double> reference;
     double spacing = 20.0;
     double gs = kNaN;
     double gv = kNaN;
+    double input_bound = kNaN;
     bool detector = true;
     std::string bound = "safe";
     std::string tie = "low";
@@ -91,13 +97,35 @@ struct GARRISON_EXPORT Platoon {
                                          .doc = "||d_i(t)|| <= eps",
                                          .required = true,
                                          .least = 0.0}),
-          field(&Params::measurement_noise,
-                {.name = "measurement_noise",
-                 .symbol = "mu",
-                 .unit = "m, m/s",
-                 .doc = "length of the noise vector of every absolute and relative sensor is at most mu",
-                 .required = true,
+          field(&Params::measurement_noise, {.name = "measurement_noise",
+                                             .symbol = "mu",
+                                             .unit = "m, m/s",
+                                             .doc = "length of the noise vector of every absolute and "
+                                                    "relative sensor is at most mu; may be left "
+                                                    "out when the four bounds on entries are given",
+                                             .least = 0.0}),
+          field(&Params::absolute_position_noise,
+                {.name = "absolute_position_noise",
+                 .symbol = "",
+                 .unit = "m",
+                 .doc = "bound on the noise of the absolute sensors' position; left out: measurement_noise",
                  .least = 0.0}),
+          field(&Params::absolute_velocity_noise, {.name = "absolute_velocity_noise",
+                                                   .symbol = "",
+                                                   .unit = "m/s",
+                                                   .doc = "the same for their velocity",
+                                                   .least = 0.0}),
+          field(&Params::relative_position_noise,
+                {.name = "relative_position_noise",
+                 .symbol = "",
+                 .unit = "m",
+                 .doc = "bound on the noise of the relative sensors' position; left out: measurement_noise",
+                 .least = 0.0}),
+          field(&Params::relative_velocity_noise, {.name = "relative_velocity_noise",
+                                                   .symbol = "",
+                                                   .unit = "m/s",
+                                                   .doc = "the same for their velocity",
+                                                   .least = 0.0}),
           field(&Params::initial_error, {.name = "initial_error",
                                          .symbol = "q",
                                          .unit = "m, m/s",
@@ -112,25 +140,28 @@ struct GARRISON_EXPORT Platoon {
                  .doc = "1/varpi is the observer gain of vehicles that hear fewer than 2L others",
                  .least = 1.0,
                  .open = true}),
-          field(&Params::reference,
-                {.name = "reference",
-                 .symbol = "x_0",
-                 .unit = "m, m/s",
-                 .doc = "position and velocity of the reference at time 0, or at times 0, 1, ...; constant "
-                        "velocity after the last pair",
-                 .required = true}),
+          field(
+              &Params::reference,
+              {.name = "reference",
+               .symbol = "x_0",
+               .unit = "m, m/s",
+               .doc = "position and velocity of the reference at time 0, or at times 0, 1, ...; constant "
+                      "velocity after the last pair. Without reference, gs and gv the filter only observes"}),
           field(&Params::spacing,
                 {.name = "spacing", .symbol = "Delta", .unit = "m", .doc = "desired gap between vehicles"}),
-          field(&Params::gs, {.name = "gs",
-                              .symbol = "g_s",
-                              .unit = "1/s^2",
-                              .doc = "controller gain on positions, > 0",
-                              .required = true}),
+          field(&Params::gs,
+                {.name = "gs", .symbol = "g_s", .unit = "1/s^2", .doc = "controller gain on positions, > 0"}),
           field(&Params::gv, {.name = "gv",
                               .symbol = "g_v",
                               .unit = "1/s",
-                              .doc = "controller gain on velocities, > T g_s",
-                              .required = true}),
+                              .doc = "controller gain on velocities, > T g_s"}),
+          field(&Params::input_bound, {.name = "input_bound",
+                                       .symbol = "",
+                                       .unit = "m/s^2",
+                                       .doc = "|u_i(t)| <= input_bound where inputs are not recorded, for a "
+                                              "filter that only observes (no "
+                                              "reference, gs and gv): T input_bound enters eps",
+                                       .least = 0.0}),
           field(&Params::detector, {.name = "detector",
                                     .symbol = "",
                                     .unit = "",
@@ -203,6 +234,12 @@ struct GARRISON_EXPORT Platoon {
   static Gains design(const Params& params, const Model& model, const Network& network);
   /// Admissible thresholds, theorems 1, 2 and 4, Assumption 4.
   static Check check(const Params& params, const Model& model, const Network& network);
+  /// Refuses recordings of vehicles whose inputs are neither recorded nor bounded: the filter would take what
+  /// it commands itself for what they did. A column of inputs that are all NaN says that they did.
+  /// @throws InvalidInput
+  static void check_log(const Gains& gains, const Model& model, std::span<const double> measurements);
+  /// What `refuted` means, and which assumptions can be false.
+  static std::vector<std::string> refuted_words(unsigned bits);
   static std::unique_ptr<World> world(const Gains& gains, const WorldOptions& options);
   static int rounds(const Gains&) { return 1; }
 
@@ -227,9 +264,9 @@ struct GARRISON_EXPORT Platoon {
   }
   /// No bound, no test and no steering until the next sample in which enough is heard (observe).
   template <int n>
-  static void uncover(const Gains&, State<n>& s) noexcept {
-    s.alpha = kNaN;
-    s.u = 0.0;
+  static void uncover(const Gains& g, State<n>& s) noexcept {
+    s.alpha = {};
+    s.u = g.formation.steers() ? 0.0 : kNaN;
   }
   /// What vehicle `id` needs of the gains: the rest of the priors is dropped.
   static Gains part(const Gains& all, int id, std::span<const int>) {
@@ -243,11 +280,16 @@ struct GARRISON_EXPORT Platoon {
     return report_of(l, g, s);
   }
   template <int n>
+  static unsigned refuted(const State<n>& s) noexcept {
+    return s.trouble;
+  }
+  template <int n>
   static const Vec<n>& estimate(const State<n>& s) noexcept {
     return s.x;
   }
   template <int n>
   static void accused_into(const State<n>& s, AgentSet& set) noexcept {
+    if (s.trouble != 0) return;  // nothing is proved where an assumption is false
     for (const int id : s.sets.attacked.listed()) set.insert(id);
   }
   template <int n>
@@ -261,7 +303,7 @@ struct GARRISON_EXPORT Platoon {
   /// Per component, so that a deviation of both by it is just what (28) tolerates at the next sample.
   template <int n>
   static double alarm_level(const Local&, const Gains& g, const State<n>& s) noexcept {
-    return platoon::innovation_level(g.setting, s.alpha) / 1.4142135623730951;
+    return platoon::innovation_level(g.setting, predicted(g.setting, s.alpha).norm) / 1.4142135623730951;
   }
 
   static constexpr std::size_t signal_count = 9;
@@ -273,7 +315,7 @@ struct GARRISON_EXPORT Platoon {
   /// vehicle ahead, and largest certified difference to the desired one.
   template <int n>
   static void signals(const Local&, const Gains&, const State<n>& s, double* out) noexcept {
-    const double all[] = {s.alpha,
+    const double all[] = {s.alpha.norm,
                           s.beta,
                           s.u,
                           s.prediction[0],
@@ -285,7 +327,8 @@ struct GARRISON_EXPORT Platoon {
     std::copy(std::begin(all), std::end(all), out);
   }
   static std::vector<std::string> detail_names() { return {"attacked", "suspected", "free", "gains"}; }
-  /// The three sets as sorted ids, and k_{i,m} (14) of vehicles that hear 2L others (empty for the rest).
+  /// The three sets as sorted ids (also where they are no longer published), and k_{i,m} (14) of vehicles
+  /// that hear 2L others (empty for the rest).
   template <int n>
   static void detail(const Local& l, const Gains& g, const State<n>& s, std::size_t which,
                      std::vector<double>& out) {

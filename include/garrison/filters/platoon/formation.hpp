@@ -39,6 +39,8 @@ struct Formation {
     v("gv", gv);
   }
 
+  /// False: there is nothing to steer by, the vehicles are only observed.
+  bool steers() const noexcept { return !std::isnan(gs); }
   Motion reference_at(std::int64_t t) const noexcept {
     const auto known = static_cast<std::int64_t>(reference.size());
     if (t < known) return reference[static_cast<std::size_t>(t)];

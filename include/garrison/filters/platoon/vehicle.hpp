@@ -82,6 +82,7 @@ enum Trouble : unsigned {
   kNoRoom = 16,         ///< more suspects than b attackers can cause
   kNoCover = 32,        ///< fired pairs that b attackers cannot explain
   kHeard = 64,          ///< a vehicle in range says one of these
+  kQuorum = 128,  ///< a median that liars cannot move is further from the prediction than all bounds allow
 };
 
 /// The three sets of Algorithm 2. With Options::cover, `suspected` holds pairs: e stands for (e, e+1).
@@ -99,9 +100,10 @@ struct Sets {
 struct VehicleState {
   Vec<2> x = Vec<2>::Zero();           ///< xhat_i(t)
   Vec<2> prediction = Vec<2>::Zero();  ///< xbar_i(t)
-  double alpha = kNaN;                 ///< alpha_i(t); NaN: a gap lies behind this estimate
+  Bound alpha;                         ///< alpha_i(t); NaN: a gap lies behind this estimate
+  Bound foreseen;                      ///< the same of xbar_i(t), E
   double beta = kNaN;                  ///< beta_i(t); NaN outside V_1
-  double u = 0.0;                      ///< u_i(t) of Algorithm 3
+  double u = 0.0;                      ///< u_i(t) of Algorithm 3; NaN: the filter only observes
   double applied = kNaN;               ///< recorded input since t; NaN = u
   double y[2] = {0.0, 0.0};            ///< y_ii
   double link[2] = {0.0, 0.0};         ///< y_{i-1,i}
@@ -125,6 +127,7 @@ struct VehicleState {
     v("estimate", x);
     v("prediction", prediction);
     v("alpha", alpha);
+    v("foreseen", foreseen);
     v("beta", beta);
     v("u", u);
     v("applied", applied);
@@ -154,15 +157,15 @@ struct VehicleMessage {
   bool has_link = false;
   bool doubt = false;      ///< the sender's data contradict the assumptions
   double numbers[6] = {};  ///< y_ii, y_{i-1,i}, xbar_i(t)
-  double alpha = kNaN;     ///< alpha_i(t-1); NaN: nothing is known of xbar_i(t)
-  Sets sets;               ///< of t-1
+  double bound = kNaN;  ///< on the error of xbar_i(t), what (6) has alpha_i(t-1) for; NaN: nothing is known
+  Sets sets;            ///< of t-1
 
   template <class V>
   void visit(V& v) {
     v.numbers("absolute", std::span<double>(numbers, 2));
     v.numbers("relative", std::span<double>(numbers + 2, 2));
     v.numbers("prediction", std::span<double>(numbers + 4, 2));
-    v.optional("bound", alpha);
+    v.optional("bound", bound);
     v.flag("has_absolute", has_y);
     v.flag("has_relative", has_link);
     v.flag("doubt", doubt);
@@ -170,7 +173,7 @@ struct VehicleMessage {
     v.labels("suspected", sets.suspected);
     v.labels("free", sets.free);
   }
-  bool covered() const { return !std::isnan(alpha); }
+  bool covered() const { return !std::isnan(bound); }
   const double* y() const { return numbers; }
   const double* link() const { return numbers + 2; }
   const double* prediction() const { return numbers + 4; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "garrison/core/model.hpp"
 #include "garrison/core/world.hpp"
@@ -28,6 +29,11 @@ struct Outputs {
 GARRISON_EXPORT Model model(int vehicles, double period, bool inputs = false);
 /// T of such a model. @throws InvalidInput when it is not one
 GARRISON_EXPORT double period_of(const Model& model);
+
+/// Refuses recordings from which `owner`, a filter that counts on its own commands, cannot tell what the
+/// vehicles did: without inputs, or with gaps in them. @throws InvalidInput
+GARRISON_EXPORT void check_inputs(const char* owner, const Model& model,
+                                  std::span<const double> measurements);
 
 /// Columns per vehicle of recorded disturbances, vehicle by vehicle: d_i (2), n_ii (2), w_i, n_{i-1,i} (2).
 /// The absolute sensor shows (1 + w_i) x_i + n_ii; what stands for vehicle 0's relative sensor is not read.

@@ -44,7 +44,7 @@ TEST_CASE("inside the safe interval the bound maps q below q, outside it does no
     Setting s = test::random_platoon(rng).setting;
     const auto all = beta_interval_safe(s);
     const Window nobody{0, 2 * s.range + 1, 0, 0};
-    const auto next = [&](double beta) { return safe_bound(s, beta, s.q, nobody); };
+    const auto next = [&](double beta) { return safe_bound(s, beta, predicted(s, s.q), nobody); };
     CHECK(next(all.lo * (1.0 + 1e-9)) < s.q);
     CHECK(next(all.lo * (1.0 - 1e-9)) > s.q);
     CHECK(next(all.hi * (1.0 - 1e-9)) < s.q);
@@ -52,12 +52,13 @@ TEST_CASE("inside the safe interval the bound maps q below q, outside it does no
     std::vector<double> noise;
     for (int d = s.range; d >= 0; --d)
       for (int k = 0; k < (d == 0 ? 1 : 2); ++k) noise.push_back((d + 1) * s.mu);
-    CHECK(tight_bound(s, s.beta, s.q, nobody, 0.0, noise.data()) <=
-          safe_bound(s, s.beta, s.q, nobody) * (1 + 1e-12));
+    CHECK(tight_bound(s, s.beta, predicted(s, s.q), nobody, 0.0, noise.data()) <=
+          safe_bound(s, s.beta, predicted(s, s.q), nobody) * (1 + 1e-12));
     const double limit = safe_limit(s);
     if (s.adaptive) {
       REQUIRE_FALSE(std::isnan(limit));
-      CHECK(safe_bound(s, threshold(s, limit), limit, nobody) == doctest::Approx(limit).epsilon(1e-9));
+      CHECK(safe_bound(s, threshold(s, predicted(s, limit)), predicted(s, limit), nobody) ==
+            doctest::Approx(limit).epsilon(1e-9));
       Setting best = s;
       best.beta = best_threshold(s);
       CHECK(safe_limit(best) <= limit * (1.0 + 1e-6));
