@@ -242,7 +242,7 @@ struct GARRISON_EXPORT Structural {
     if (g.settle == 0)
       settle(l, g, s);
     else
-      begin(l, g, s);
+      begin(l, g, s, kStartVariance);
     m.measured = m.withheld = false;
     m.rest = g.settle;
     m.numbers.setZero(nn + 1);
@@ -310,7 +310,7 @@ struct GARRISON_EXPORT Structural {
     }
     if (!usable<n>(s.x)) s.x.setZero();
     s.prior = s.x;
-    begin(l, g, s);
+    begin(l, g, s, kStartVariance);
     uncover<n>(g, s);
   }
   template <int n>
@@ -371,6 +371,8 @@ struct GARRISON_EXPORT Structural {
  private:
   /// Deviations, in stationary ones, above which a test would see nothing.
   static constexpr double kBlind = 10.0;
+  /// The most that P is taken to be, in stationary variances.
+  static constexpr double kMostVariance = 1e16;
   /// Start errors that are reckoned with, in stationary variances.
   static constexpr double kStartVariance = 1e4;
   /// What of the messages that are due has come.
@@ -404,15 +406,38 @@ struct GARRISON_EXPORT Structural {
     return sum;
   }
 
-  /// P of an estimate of which nothing is known.
+  /// P of an estimate of which nothing is known: a diagonal, `factor` times the stationary variances.
   template <int n>
-  static void begin(const Local& l, const Gains& g, State<n>& s) noexcept {
+  static void begin(const Local& l, const Gains& g, State<n>& s, double factor) noexcept {
     if (!carries(g)) return;
     const int nn = dimension<n>(l);
     const double* settled = stationary(g, l.id, nn);
+    const std::size_t next = static_cast<std::size_t>(nn) + 1;
+    double most = 0.0;
+    for (std::size_t k = 0; k < s.P.size(); k += next) most = std::max(most, settled[k]);
     std::fill(s.P.begin(), s.P.end(), 0.0);
-    for (std::size_t k = 0; k < s.P.size(); k += static_cast<std::size_t>(nn + 1))
-      s.P[k] = kStartVariance * settled[k];
+    for (std::size_t k = 0; k < s.P.size(); k += next)
+      s.P[k] = factor * (settled[k] > 0.0 ? settled[k] : most);
+  }
+  /// Whether P is a covariance that can be worked with: messages of a liar may have made it anything.
+  template <int n>
+  static bool sound(const Local& l, const Gains& g, const State<n>& s) noexcept {
+    const int nn = dimension<n>(l);
+    const double* settled = stationary(g, l.id, nn);
+    const auto at = [nn](int i, int k) {
+      return static_cast<std::size_t>(i) * static_cast<std::size_t>(nn) + static_cast<std::size_t>(k);
+    };
+    double most = 0.0;
+    for (int i = 0; i < nn; ++i) most = std::max(most, settled[at(i, i)]);
+    bool all = true;
+    for (int i = 0; i < nn; ++i)
+      for (int k = 0; k <= i; ++k) {
+        const double size = s.P[at(i, i)] * s.P[at(k, k)];
+        const double slack = 1e-9 * (size + most * most);
+        all &= s.P[at(i, i)] >= 0.0 && s.P[at(i, i)] <= kMostVariance * most;
+        all &= s.P[at(i, k)] * s.P[at(i, k)] <= size + slack;
+      }
+    return all;
   }
   /// P = the covariance of the stationary error.
   template <int n>
@@ -544,6 +569,7 @@ struct GARRISON_EXPORT Structural {
     const double growth = out ? g.doubt : 1.0;
     for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
     structural::add_congruence(G, nn, 1, prior, nn, more, s.P.data());
+    if (!sound(l, g, s)) begin(l, g, s, kMostVariance);
     return !out;
   }
   /// Whether a measurement that is heard is over its level, the bound of what is expected of it being

@@ -2,7 +2,7 @@
 // Tests go on through gaps, and keep what they promise.
 #include <doctest/doctest.h>
 
-#include "garrison/attacks/measurement.hpp"
+#include "garrison/attacks/message.hpp"
 #include "runs.hpp"
 
 using namespace garrison;
@@ -94,4 +94,67 @@ TEST_CASE("with losses and delays nothing alarms more often than asked for") {
     CHECK(test::alarm_rate(r, 1).mean <= 0.013);
   }
   CHECK(tested / systems > 0.8);
+}
+
+TEST_CASE("what a message says of the bound has its price, and a liar's numbers stay harmless") {
+  test::Rng rng(73);
+  for (const int n : {2, 16, 17}) {
+    const Matrix A = 0.9 * Matrix::Identity(n, n);
+    const Model model =
+        test::known_model(A, test::normal_matrix(rng, 2 * n, n), 0.1 * Matrix::Identity(n, n), 0.3);
+    const Network network = Network::complete(2 * n);
+    Matrix y = record_of(rng, model, 60, 0.0, -1);
+    y(49, 1) = kNaN;
+    const Record r = replay(model, network, *make_filter("structural", {}), y, Matrix(), {});
+    CAPTURE(n);
+    const int carried = n <= 16 ? n * (n + 1) / 2 : 0;
+    CHECK(r.bytes_per_step == 2 * n * (2 * n - 1) * (8 * (n + 1 + carried) + 1 + 1 + 2));
+    CHECK(std::isnan(r.threshold[static_cast<std::size_t>(51 * 2 * n)]) == (n > 16));
+  }
+  const Model model = test::known_model(0.9 * Matrix::Identity(2, 2), test::normal_matrix(rng, 4, 2),
+                                        0.1 * Matrix::Identity(2, 2), 0.3);
+  const Matrix y = record_of(rng, model, 200, 0.2, -1);
+  for (const bool isolate : {false, true})
+    for (const double lie : {-1e3, 0.0, 1e3, 1e149}) {
+      RunOptions o;
+      o.message_attacks.push_back(falsify(Schedule(20, {0}, 60), "covariance", lie, {}));
+      o.keep.signals = true;
+      const Record r = replay(model, Network::complete(4), *make_filter("structural", {{"isolate", isolate}}),
+                              y, Matrix(), o);
+      CAPTURE(lie);
+      CHECK(r.link.refused == 0);
+      for (std::size_t i = 0; i < 4; ++i) {
+        CHECK(r.threshold[4 * 200 + i] < 20.0);
+        CHECK(std::abs(r.estimate[(4 * 200 + i) * 2]) < 20.0);
+      }
+    }
+}
+
+TEST_CASE("a run says which sensors were hardly tested, and that too many were accused") {
+  const Model model =
+      test::known_model(Matrix::Constant(1, 1, 0.9), Matrix::Ones(3, 1), Matrix::Constant(1, 1, 0.1), 1.0);
+  test::Rng rng(74);
+  const Matrix y = record_of(rng, model, 200, 0.0, -1);
+  const auto warnings = [&](const ParamMap& params, const Matrix& data) {
+    return replay(model, Network::complete(3), *make_filter("structural", params), data, Matrix(), {})
+        .warnings;
+  };
+  CHECK(warnings({}, y).empty());
+  const auto hardly = warnings({{"settle", std::int64_t{194}}}, y);
+  REQUIRE(hardly.size() == 3);
+  CHECK(hardly[2].find("sensor 2 was tested in 3 % of the samples") == 0);
+  Matrix off = y;
+  off.bottomRows(100).leftCols(2).array() += 50.0;
+  const auto many = warnings({}, off);
+  REQUIRE(many.size() == 1);
+  CHECK(many[0].find("more than half of the sensors were accused for 100 samples in a row") == 0);
+  const Model lone =
+      test::known_model(Matrix::Constant(1, 1, 1.0), Matrix::Ones(1, 1), Matrix::Constant(1, 1, 0.04), 0.25);
+  Matrix glitch = Matrix::Zero(60, 1);
+  glitch(30) = 8.0;
+  const auto needed = replay(lone, Network(1, std::vector<Edge>{}),
+                             *make_filter("structural", {{"isolate", true}}), glitch, Matrix(), {})
+                          .warnings;
+  REQUIRE(needed.size() == 1);
+  CHECK(needed[0].find("sensor 0 was accused, but it alone sees a mode that does not decay") == 0);
 }

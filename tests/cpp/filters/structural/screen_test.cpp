@@ -81,7 +81,7 @@ TEST_CASE("after a glitch, a burst, a common burst, a long attack or a false ala
         {"glitch", {bias(Schedule(30, {0}, 31), 8.0)}},
         {"burst", {bias(Schedule(30, {0}, 36), 8.0)}},
         {"common burst", {bias(Schedule(30, both, 36), 8.0)}},
-        {"long attack", {bias(Schedule(30, {0}, plant.steps - 90), 20.0)}},
+        {"long attack", {bias(Schedule(30, {0}, plant.steps - 110), 20.0)}},
         {"long common attack", {bias(Schedule(30, both, plant.steps - 110), 20.0)}},
         {"long drift", {ramp(Schedule(30, {0}, plant.steps - 110), 0.1)}}};
     const double clean = rms(run(plant, false, {}, 0.001), 40);
@@ -89,16 +89,14 @@ TEST_CASE("after a glitch, a burst, a common burst, a long attack or a false ala
       CAPTURE(plant.name);
       CAPTURE(what);
       const Record r = run(plant, true, attack, 0.001);
-      MESSAGE(plant.name << " / " << what << ": " << rms(r, 40) / clean << " accused " << accused(r, 40));
       CHECK(rms(r, 40) < 1.2 * clean);
       CHECK(accused(r, 40) < 0.1);
     }
-    // One sample in a hundred alarms, all the time.
+    // One sample in a hundred alarms, all the time, and the sensor is left out for `clear_after` samples
+    // each: what a lone sensor costs most.
     const Record r = run(plant, true, {}, 0.01);
-    MESSAGE(plant.name << " / " << ": " << rms(r, plant.steps) / clean << " accused "
-                       << accused(r, plant.steps));
-    CHECK(rms(r, plant.steps) < 1.5 * clean);
-    CHECK(accused(r, plant.steps) < 0.15);
+    CHECK(rms(r, plant.steps) < (two ? 1.3 : 2.5) * clean);
+    CHECK(accused(r, plant.steps) < 0.07);
   }
 }
 
