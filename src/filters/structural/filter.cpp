@@ -59,6 +59,18 @@ void require_detectable(const Model& model) {
            "add a sensor on the state that it moves");
 }
 
+/// How fast P grows while sensor i is left out: faster than an error that nothing corrects; where the others
+/// see all that does not decay, slower than what their measurements take away.
+double doubt_without(const Setting& s, Index i, double rho) {
+  Matrix others = s.C;
+  others.row(i).setZero();
+  double lost = 0.0;
+  for (const auto& mode : unseen_modes(s.A, others, 1.0)) lost = std::max(lost, std::abs(mode));
+  if (lost > 0.0) return kDoubt * std::max(1.0, lost * lost);
+  const double growth = std::max(1.0, structural::spectral_radius(s.A));
+  return std::min(kDoubt * growth * growth, rho > 0.0 ? 1.0 / std::sqrt(rho) : kInfinity);
+}
+
 /// What agents need to carry a bound of their error's covariance from `covariance(i)` on.
 template <class Covariance>
 void add_spread(Structural::Gains& g, const Setting& s, const Covariance& covariance) {
@@ -73,9 +85,9 @@ void add_spread(Structural::Gains& g, const Setting& s, const Covariance& covari
   const double m = g.sample_level;
   const double density = std::exp(-0.5 * m * m) / std::sqrt(2.0 * std::numbers::pi);
   g.surprise = 2.0 * m * density / structural::false_alarm_of_level(m);
-  // Faster than an error that nothing corrects, slower than what the others' measurements take away.
-  const double growth = std::max(1.0, structural::spectral_radius(s.A));
-  g.doubt = std::min(kDoubt * growth * growth, g.rho > 0.0 ? 1.0 / std::sqrt(g.rho) : kInfinity);
+  g.doubt.assign(static_cast<std::size_t>(s.N()), 1.0);
+  for (Index i = 0; i < s.N() && g.isolate; ++i)
+    g.doubt[static_cast<std::size_t>(i)] = doubt_without(s, i, g.rho);
 }
 
 /// Standard deviations of what is tested, and the window's matrices: exact, or bounds of them.

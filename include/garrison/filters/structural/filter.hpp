@@ -91,11 +91,11 @@ struct GARRISON_EXPORT Structural {
         covariance;               ///< n x n per agent: of its stationary error, or a bound; empty = not known
     std::vector<double> process;  ///< E, n x n
     std::vector<double> noise;    ///< R_jj per agent
+    std::vector<double> doubt;    ///< by which P grows, per sample, while agent j's measurement is left out
     double level = kNaN;          ///< m, or the chi-square level
     double sample_level = kNaN;   ///< m
     double rho = kNaN;            ///< rho(Ahat)
     double surprise = 0.0;        ///< E[q^2 | |q| >= m s] / s^2 - 1 of a Gaussian q
-    double doubt = 1.0;           ///< by which P grows, per sample, while a measurement is left out
     int window = 1;
     int alarm_after = 1;
     int clear_after = 5;
@@ -119,11 +119,11 @@ struct GARRISON_EXPORT Structural {
       v("covariance", covariance);
       v("process", process);
       v("noise", noise);
+      v("doubt", doubt);
       v("level", level);
       v("sample_level", sample_level);
       v("rho", rho);
       v("surprise", surprise);
-      v("doubt", doubt);
       v.range("window", window, 1, 100000);
       v.range("alarm_after", alarm_after, 1, INT32_MAX);
       v.range("clear_after", clear_after, 1, INT32_MAX);
@@ -529,9 +529,11 @@ struct GARRISON_EXPORT Structural {
     };
     // That a measurement was over its level says of an honest sensor that the estimate is off.
     bool out = false;
+    double growth = 1.0;
     const auto leave = [&](const Heard& j, bool by_level) {
       char& before = s.left_out[static_cast<std::size_t>(&j - heard)];
       out = true;
+      if (carried) growth = std::max(growth, g.doubt[static_cast<std::size_t>(j.id)]);
       if (by_level && !before && carried) {
         const double* c = row(g, j.id, nn);
         const double spread = structural::quadratic(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
@@ -566,7 +568,6 @@ struct GARRISON_EXPORT Structural {
       }
     }
     if (!carried) return !out;
-    const double growth = out ? g.doubt : 1.0;
     for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
     structural::add_congruence(G, nn, 1, prior, nn, more, s.P.data());
     if (!sound(l, g, s)) begin(l, g, s, kMostVariance);

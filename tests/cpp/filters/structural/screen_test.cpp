@@ -121,3 +121,20 @@ TEST_CASE(
                        doctest::Contains("structural.test: got residual together with isolate"),
                        InvalidInput);
 }
+
+TEST_CASE("a sensor that a whole path depends on is believed again after an attack that was believed") {
+  const Matrix A = Matrix::Constant(1, 1, 1.03);
+  Matrix C = Matrix::Zero(6, 1);
+  C(0) = 1.0;
+  const Model model = test::known_model(A, C, Matrix::Constant(1, 1, 0.04), 0.25);
+  const auto error = [&](bool isolate, std::vector<Attack> attacks) {
+    RunOptions o;
+    o.trials = 10;
+    o.seed = 12;
+    o.attacks = std::move(attacks);
+    const auto filter = make_filter("structural", {{"isolate", isolate}, {"false_alarm", 0.001}});
+    return rms(simulate(model, Network::path(6), *filter, {500, {}, 0.0, "normal"}, o), 40);
+  };
+  for (const double size : {8.0, 20.0, 200.0})
+    CHECK(error(true, {bias(Schedule(50, {0}, 100), size)}) < 1.5 * error(false, {}));
+}
