@@ -3,6 +3,7 @@
 #include "garrison/filters/structural/filter.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "blocks.hpp"
 #include "garrison/analysis/modes.hpp"
@@ -18,7 +19,7 @@ using structural::Setting;
 
 constexpr Index kExact = 1200;  // N n up to which the joint covariance is formed
 constexpr double kSettled = 0.01;
-constexpr int kMostSettle = 1000;
+constexpr double kDoubt = 1.1;
 
 std::string at(int i, int j) {
   return std::string("[").append(std::to_string(i)).append(", ").append(std::to_string(j)).append("]");
@@ -57,6 +58,37 @@ void require_detectable(const Model& model) {
            "every mode of modulus >= 1 is seen by some agent", "add a sensor on the state that it moves");
 }
 
+/// How fast P grows while sensor i is left out: faster than an error that nothing corrects; where the others
+/// see all that does not decay, slower than what their measurements take away.
+double doubt_without(const Setting& s, Index i, double rho) {
+  Matrix others = s.C;
+  others.row(i).setZero();
+  double lost = 0.0;
+  for (const auto& mode : unseen_modes(s.A, others, 1.0)) lost = std::max(lost, std::abs(mode));
+  if (lost > 0.0) return kDoubt * std::max(1.0, lost * lost);
+  const double growth = std::max(1.0, structural::spectral_radius(s.A));
+  return std::min(kDoubt * growth * growth, rho > 0.0 ? 1.0 / std::sqrt(rho) : kInfinity);
+}
+
+/// What agents need to carry a bound of their error's covariance from `covariance(i)` on.
+template <class Covariance>
+void add_spread(Structural::Gains& g, const Setting& s, const Covariance& covariance) {
+  if (s.n() > Structural::kCarried && !g.isolate) return;
+  for (Index i = 0; i < s.N(); ++i) {
+    const Matrix Q = covariance(i);
+    g.covariance.insert(g.covariance.end(), Q.data(), Q.data() + Q.size());
+    g.noise.push_back(s.R(i, i));
+  }
+  g.process.assign(s.E.data(), s.E.data() + s.E.size());
+  // A Gaussian that is over its level has this much more than its variance.
+  const double m = g.sample_level;
+  const double density = std::exp(-0.5 * m * m) / std::sqrt(2.0 * std::numbers::pi);
+  g.surprise = 2.0 * m * density / structural::false_alarm_of_level(m);
+  g.doubt.assign(static_cast<std::size_t>(s.N()), 1.0);
+  for (Index i = 0; i < s.N() && g.isolate; ++i)
+    g.doubt[static_cast<std::size_t>(i)] = doubt_without(s, i, g.rho);
+}
+
 /// Standard deviations of what is tested, and the window's matrices: exact, or bounds of them.
 void add_test(Structural::Gains& g, const Setting& s, const GainMatrices& K, const std::vector<Matrix>& P,
               double false_alarm) {
@@ -70,14 +102,19 @@ void add_test(Structural::Gains& g, const Setting& s, const GainMatrices& K, con
     const auto x = structural::stationary(s, K, g.window - 1);
     residual = x.residual_std;
     innovation = x.innovation_std;
+    const auto covariances = g.innovation && g.window > 1
+                                 ? structural::innovation_covariances(s, K, x, g.window - 1)
+                                 : x.covariances;
+    add_spread(g, s, [&](Index i) -> Matrix { return x.Q.block(i * n, i * n, n, n); });
     for (Index i = 0; i < N && g.window > 1; ++i) {
-      const Matrix S = structural::window_precision(x.covariances, static_cast<int>(i));
+      const Matrix S = structural::window_precision(covariances, static_cast<int>(i));
       g.precision.insert(g.precision.end(), S.data(), S.data() + S.size());
     }
   } else if (!P.empty()) {
     if (g.window > 1)
       refuse("structural.window", std::to_string(g.window), "1 for N n > " + std::to_string(kExact),
              "the covariance in time of so large a network is not computed");
+    add_spread(g, s, [&](Index i) { return P[static_cast<std::size_t>(i)]; });
     for (Index i = 0; i < N; ++i) {
       // Jensen: P_i >= cov(e_i), so these are bounds and alarms are rarer than asked for (notes, section 3).
       Matrix mixed = Matrix::Zero(n, n);
@@ -208,6 +245,11 @@ Structural::Gains Structural::part(const Gains& all, int id, std::span<const int
   g.std[i] = all.std[i];
   g.innovation_std.assign(N, kNaN);
   g.innovation_std[i] = all.innovation_std[i];
+  if (!all.covariance.empty()) {
+    const auto first = static_cast<std::ptrdiff_t>(n * n * i);
+    g.covariance.assign(all.covariance.begin() + first,
+                        all.covariance.begin() + first + static_cast<std::ptrdiff_t>(n * n));
+  }
   const std::size_t square = all.precision.size() / N;
   std::fill(g.precision.begin(), g.precision.end(), 0.0);
   std::copy_n(all.precision.begin() + static_cast<std::ptrdiff_t>(square * i), square,
@@ -222,7 +264,10 @@ Structural::Gains Structural::design(const Params& p, const Model& model, const 
   g.window = p.window;
   g.alarm_after = p.alarm_after;
   g.clear_after = p.clear_after;
-  g.innovation = p.test == "innovation";
+  if (p.isolate && p.test == "residual")
+    refuse("structural.test", "residual together with isolate", "innovation, or auto",
+           "a residual is tested after the measurement has moved the estimate, so that others seem to lie");
+  g.innovation = p.test == "innovation" || p.isolate;
   g.isolate = p.isolate;
   g.accuse_missing = p.accuse_missing;
   for (int i = 0; i < model.agents(); ++i) g.has_sensor.push_back(model.outputs(i) > 0 ? 1 : 0);
@@ -249,8 +294,8 @@ Structural::Gains Structural::design(const Params& p, const Model& model, const 
     g.innovation_std = g.std;
   }
   const double rest = g.rho > 0.0 && g.rho < 1.0 ? std::ceil(std::log(kSettled) / std::log(g.rho)) : 1.0;
-  g.settle =
-      p.settle >= 0 ? std::min(p.settle, kMostRest) : static_cast<int>(std::min<double>(rest, kMostSettle));
+  g.recover = static_cast<int>(std::min<double>(rest, kMostRest));
+  g.settle = p.settle >= 0 ? std::min(p.settle, kMostRest) : g.recover;
   return g;
 }
 

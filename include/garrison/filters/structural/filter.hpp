@@ -15,6 +15,7 @@
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
 #include "garrison/filters/structural/setting.hpp"
+#include "garrison/filters/structural/spread.hpp"
 
 namespace garrison {
 
@@ -26,16 +27,21 @@ namespace garrison {
 /// instead of the paper's (17). Large networks (N n > 1200) use the Riccati bound of s_i: fewer false alarms
 /// than asked for, never more. The network says who may hear whom; W and U may use fewer of its links.
 ///
-/// A missing estimate gives its weight to the agent's own; a missing measurement counts as predicted. The
-/// test rests for `settle` samples after the start and after a missing message or measurement, here or at any
-/// agent that this one hears of, because the error is not stationary then (threshold NaN, verdict "not
-/// tested"; messages carry how long their sender still rests). With `isolate` an agent leaves its own
-/// measurement out, and withholds it, while its alarm lasts; this can make the error unstable where the
-/// sensor is indispensable.
+/// A missing estimate gives its weight to the agent's own; a missing measurement counts as predicted. From
+/// then on, until it is stationary again, an agent carries a bound P_i >= cov(e_i) of its own error (Jensen)
+/// and tests against m times the deviation that follows from it: fewer false alarms than asked, never more
+/// (docs/adr/0008). Messages tell P_i and how long their sender is off. Nothing is tested for `settle`
+/// samples after the start, or where the bounded deviation is above 10 times the stationary one, since such a
+/// test would see nothing (threshold NaN, verdict "not tested").
+///
+/// With `isolate` innovations are tested before they are used: an agent leaves out every measurement, its own
+/// or one it hears, that is over its level, and withholds its own while its alarm lasts. P_i grows meanwhile,
+/// so that a sensor which is right again is let in again, and one that is necessary is never left out for
+/// ever.
 ///
 /// One agent that lies in its messages moves its neighbours' estimates in proportion to its lie and its
-/// weight, and can keep their tests at rest by claiming to rest itself; it accuses nobody else, as every
-/// agent judges itself.
+/// weight, and can blind their tests by claiming a large bound; it accuses nobody else, as every agent judges
+/// itself.
 struct GARRISON_EXPORT Structural {
   static constexpr std::string_view name = "structural";
   static constexpr std::string_view title = "Single-time-scale estimator with exact residual tests";
@@ -49,7 +55,7 @@ struct GARRISON_EXPORT Structural {
     std::vector<double> sharing;
     std::vector<double> gain;
     double false_alarm = 0.01;
-    std::string test = "residual";
+    std::string test = "auto";
     int window = 1;
     int alarm_after = 1;
     int clear_after = 5;
@@ -81,13 +87,20 @@ struct GARRISON_EXPORT Structural {
     std::vector<double> std;      ///< of what is tested; NaN = not known, no test
     std::vector<double> innovation_std;
     std::vector<double> precision;  ///< window * window numbers per agent, when window > 1
-    double level = kNaN;            ///< m, or the chi-square level
-    double sample_level = kNaN;     ///< m
-    double rho = kNaN;              ///< rho(Ahat)
+    std::vector<double>
+        covariance;               ///< n x n per agent: of its stationary error, or a bound; empty = not known
+    std::vector<double> process;  ///< E, n x n
+    std::vector<double> noise;    ///< R_jj per agent
+    std::vector<double> doubt;    ///< by which P grows, per sample, while agent j's measurement is left out
+    double level = kNaN;          ///< m, or the chi-square level
+    double sample_level = kNaN;   ///< m
+    double rho = kNaN;            ///< rho(Ahat)
+    double surprise = 0.0;        ///< E[q^2 | |q| >= m s] / s^2 - 1 of a Gaussian q
     int window = 1;
     int alarm_after = 1;
     int clear_after = 5;
-    int settle = 0;
+    int settle = 0;   ///< samples after the start
+    int recover = 0;  ///< samples after a gap until rho^k < 0.01
     bool innovation = false;
     bool isolate = false;
     bool accuse_missing = false;
@@ -103,13 +116,19 @@ struct GARRISON_EXPORT Structural {
       v("std", std);
       v("innovation_std", innovation_std);
       v("precision", precision);
+      v("covariance", covariance);
+      v("process", process);
+      v("noise", noise);
+      v("doubt", doubt);
       v("level", level);
       v("sample_level", sample_level);
       v("rho", rho);
+      v("surprise", surprise);
       v.range("window", window, 1, 100000);
       v.range("alarm_after", alarm_after, 1, INT32_MAX);
       v.range("clear_after", clear_after, 1, INT32_MAX);
       v.range("settle", settle, 0, kMostRest);
+      v.range("recover", recover, 0, kMostRest);
       v("innovation", innovation);
       v("isolate", isolate);
       v("accuse_missing", accuse_missing);
@@ -118,6 +137,9 @@ struct GARRISON_EXPORT Structural {
   };
   /// Longest rest that a message can tell of.
   static constexpr int kMostRest = 65535;
+  /// States up to which P_i is carried without `isolate`: 136 numbers of a message. Beyond, a gap ends the
+  /// tests until the error is stationary again.
+  static constexpr int kCarried = 16;
 
   template <int n>
   struct State {
@@ -128,13 +150,18 @@ struct GARRISON_EXPORT Structural {
     double innovation = kNaN;
     double statistic = kNaN;
     double threshold = kNaN;
-    int rest = 0;   // samples before the next test
+    int start = 0;  // samples before the first test
+    int rest = 0;   // samples before the error is stationary
     int above = 0;  // tests in a row
     int below = 0;
     int filled = 0;  // residuals in the window
     int oldest = 0;
+    bool broken = false;  // a gap has emptied the window, which is not full yet
     bool alarm = false;
-    std::vector<double> last;  // window of residuals, a ring
+    std::vector<double> last;    // window of residuals, a ring
+    std::vector<char> left_out;  // in the sample before, per Heard
+    std::vector<double> P;       // n x n
+    std::vector<double> work;    // room for four n x n
     AgentSet accused;
 
     template <class V>
@@ -147,13 +174,17 @@ struct GARRISON_EXPORT Structural {
       v("innovation", innovation);
       v("statistic", statistic);
       v("threshold", threshold);
+      v.range("start", start, 0, kMostRest);
       v.range("rest", rest, 0, kMostRest);
       v.range("above", above, 0, INT32_MAX);
       v.range("below", below, 0, INT32_MAX);
       v.range("filled", filled, 0, window);
       v.range("oldest", oldest, 0, window - 1);
+      v("broken", broken);
       v("alarm", alarm);
       v("last", last);
+      v("left_out", left_out);
+      v("P", P);
       v("accused", accused);
     }
   };
@@ -161,15 +192,20 @@ struct GARRISON_EXPORT Structural {
   struct Message {
     static constexpr int size = n == Dynamic ? Dynamic : n + 1;
     bool measured = false;  ///< the last number is y; otherwise there is none
-    int rest = 0;           ///< samples before the sender's next test
+    bool withheld = false;  ///< there is a y, which the sender does not trust
+    int rest = 0;           ///< samples before the sender's error is stationary
     Vec<size> numbers;      ///< estimate, then y
+    std::vector<double>
+        covariance;  ///< lower triangle of P_i, n(n+1)/2 numbers; empty where it is not carried
 
     template <class V>
     void visit(V& v) {
       const auto states = static_cast<std::size_t>(numbers.size()) - 1;
       v.numbers("estimate", std::span<double>(numbers.data(), states));
       v.numbers("measurement", std::span<double>(numbers.data() + states, 1));
+      v.numbers("covariance", covariance);
       v.flag("measured", measured);
+      v.flag("withheld", withheld);
       v.count("rest", rest, kMostRest);
     }
   };
@@ -182,22 +218,36 @@ struct GARRISON_EXPORT Structural {
   static structural::Setting setting(const Params& params, const Model& model, const Network& network);
   /// The gain matrices in params.gain.
   static structural::GainMatrices gains_of(const Params& params, const structural::Setting& setting);
+  /// Sensors that were hardly tested, or accused more often than can be right.
+  static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
   static int rounds(const Gains&) { return 1; }
   /// What agent `id` needs of the gains: its own row, and the sensors of those it hears.
   static Gains part(const Gains& all, int id, std::span<const int> neighbours);
 
   template <int n>
   static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
+    const int nn = dimension<n>(l);
     State<n> fresh;
     fresh.x = fresh.prior = x0;
-    fresh.rest = g.settle;
     if (g.window > 1) fresh.last.assign(static_cast<std::size_t>(g.window), 0.0);
+    const auto id = static_cast<std::size_t>(l.id);
+    fresh.left_out.assign(static_cast<std::size_t>(g.offsets[id + 1] - g.offsets[id]), 0);
+    if (carries(g)) {
+      fresh.P.assign(structural::entries(nn), 0.0);
+      fresh.work.assign(4 * structural::entries(nn), 0.0);
+    }
     fresh.accused.resize(l.agents);
     s = std::move(fresh);
-    m.measured = false;
+    s.start = s.rest = g.settle;
+    if (g.settle == 0)
+      settle(l, g, s);
+    else
+      begin(l, g, s, kStartVariance);
+    m.measured = m.withheld = false;
     m.rest = g.settle;
-    m.numbers.setZero(dimension<n>(l) + 1);
-    m.numbers.head(dimension<n>(l)) = x0;
+    m.numbers.setZero(nn + 1);
+    m.numbers.head(nn) = x0;
+    m.covariance.assign(carries(g) ? structural::packed(nn) : 0, 0.0);
   }
 
   template <int n>
@@ -206,58 +256,43 @@ struct GARRISON_EXPORT Structural {
     const int nn = dimension<n>(l);
     s.y = l.outputs > 0 && std::abs(y[0]) < kHuge ? y[0] : kNaN;
     for (int k = 0; k < nn; ++k) m.numbers[k] = s.x[k];
-    m.measured = !std::isnan(s.y) && !(g.isolate && s.alarm);
+    m.withheld = !std::isnan(s.y) && g.isolate && s.alarm;
+    m.measured = !std::isnan(s.y) && !m.withheld;
     m.numbers[nn] = m.measured ? s.y : 0.0;
     m.rest = s.rest;
+    if (carries(g)) structural::pack(s.P.data(), nn, m.covariance.data());
   }
 
   template <int n>
   static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
                    Message<n>& m) noexcept {
     const int nn = dimension<n>(l);
-    const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
-    const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
-    // (3): the mean first, then A; a missing estimate's weight goes to the own one.
-    double own = heard->weight;
-    bool complete = true;
-    for (int k = 0; k < nn; ++k) m.numbers[k] = 0.0;
-    std::size_t at = 0;
-    for (const Heard* j = heard + 1; j != end; ++j) {
-      const bool here = at < inbox.size() && inbox.sender(at) == j->id;
-      if (!here) {
-        own += j->weight;
-        complete = complete && j->weight == 0.0 && (j->first < 0 || !g.sensing(j->id));
-        continue;
-      }
-      s.rest = std::max(s.rest, inbox[at].rest);  // what is off there is off here from now on
-      const auto& letter = inbox[at++].numbers;
-      for (int k = 0; k < nn; ++k) m.numbers[k] += j->weight * letter[k];
+    const auto id = static_cast<std::size_t>(l.id);
+    const bool measured = !std::isnan(s.y);
+    const Seen seen = predict(l, g, s, inbox, m);
+    const bool settled = s.rest == 0 && s.start == 0 && seen.estimates;
+    const bool carried = carries(g) && (g.isolate || !(settled && seen.measurements));
+    if (carried) predict_spread(l, g, s, inbox);
+    const double* c = row(g, l.id, nn);
+    s.innovation = measured ? s.y - dot(g, l.id, s.prior, nn) : kNaN;
+    bool over = false;
+    if (g.innovation) {
+      const double bounded =
+          carried ? std::sqrt(structural::quadratic(s.work.data(), c, nn) + g.noise[id]) : kNaN;
+      over = examine(g, s, id, s.innovation, settled ? g.innovation_std[id] : bounded, settled);
     }
-    for (int k = 0; k < nn; ++k) m.numbers[k] += own * s.x[k];
-    for (int i = 0; i < nn; ++i) {
-      double next = 0.0;
-      for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * m.numbers[k];
-      s.prior[i] = next;
+    const bool used = measured && !(g.isolate && (s.alarm || over));
+    const bool whole = update(l, g, s, inbox, used, carried) && seen.estimates && seen.measurements;
+    s.residual = measured ? s.y - dot(g, l.id, s.x, nn) : kNaN;
+    if (!g.innovation) {
+      const bool exact = settled && whole;
+      const double own = used ? 1.0 - 2.0 * reaction(g, l.id, nn) : 1.0;
+      const double bounded =
+          carried ? std::sqrt(structural::quadratic(s.P.data(), c, nn) + own * g.noise[id]) : kNaN;
+      over = examine(g, s, id, s.residual, exact ? g.std[id] : bounded, exact);
     }
-    // (4): own measurement, then those of the others in order of id.
-    s.x = s.prior;
-    const bool used = !std::isnan(s.y) && !(g.isolate && s.alarm);
-    const bool has_sensor = l.outputs > 0;
-    s.innovation = std::isnan(s.y) ? kNaN : s.y - dot(g, l.id, s.prior, nn);
-    if (used) add(g, *heard, s.innovation, nn, s.x);
-    complete = complete && (used || !has_sensor);
-    at = 0;
-    for (const Heard* j = heard + 1; j != end; ++j) {
-      if (at >= inbox.size() || inbox.sender(at) != j->id) continue;
-      const auto& letter = inbox[at++];
-      if (j->first < 0) continue;
-      if (letter.measured)
-        add(g, *j, letter.numbers[nn] - dot(g, j->id, s.prior, nn), nn, s.x);
-      else if (g.sensing(j->id))
-        complete = false;
-    }
-    s.residual = std::isnan(s.y) ? kNaN : s.y - dot(g, l.id, s.x, nn);
-    judge(l, g, s, complete, used);
+    judge(l, g, s, over);
+    pass(l, g, s, whole);
     for (int k = 0; k < nn; ++k) m.numbers[k] = s.x[k];
   }
 
@@ -275,11 +310,13 @@ struct GARRISON_EXPORT Structural {
     }
     if (!usable<n>(s.x)) s.x.setZero();
     s.prior = s.x;
+    begin(l, g, s, kStartVariance);
     uncover<n>(g, s);
   }
   template <int n>
   static void uncover(const Gains& g, State<n>& s) noexcept {
-    s.rest = std::max(s.rest, g.settle);
+    s.start = std::max({s.start, g.settle, g.recover});
+    s.rest = std::max(s.rest, s.start);
     s.filled = s.oldest = s.above = 0;
   }
 
@@ -319,9 +356,7 @@ struct GARRISON_EXPORT Structural {
     const double threshold = g.level * g.std[static_cast<std::size_t>(l.id)];
     if (std::isnan(threshold)) return kInfinity;
     if (g.innovation) return threshold;
-    const Heard& own = g.heard[static_cast<std::size_t>(g.offsets[static_cast<std::size_t>(l.id)])];
-    double left = 1.0;  // r = (1 - c'Kc) innovation
-    for (int k = 0; k < nn; ++k) left -= l.C[k] * g.columns[static_cast<std::size_t>(own.first + k)];
+    const double left = 1.0 - reaction(g, l.id, nn);  // r = (1 - c'Kc) innovation
     return left != 0.0 ? threshold / std::abs(left) : kInfinity;
   }
   static constexpr std::size_t signal_count = 3;
@@ -334,45 +369,250 @@ struct GARRISON_EXPORT Structural {
   }
 
  private:
+  /// Deviations, in stationary ones, above which a test would see nothing.
+  static constexpr double kBlind = 10.0;
+  /// The most that P is taken to be, in stationary variances.
+  static constexpr double kMostVariance = 1e16;
+  /// Start errors that are reckoned with, in stationary variances.
+  static constexpr double kStartVariance = 1e4;
+  /// What of the messages that are due has come.
+  struct Seen {
+    bool estimates = true;
+    bool measurements = true;
+  };
+
+  static bool carries(const Gains& g) noexcept { return !g.covariance.empty(); }
+  /// The stationary covariance of agent `id`; the gains of one agent hold no other's.
+  static const double* stationary(const Gains& g, int id, int nn) noexcept {
+    const bool alone = g.covariance.size() == structural::entries(nn);
+    return g.covariance.data() + (alone ? 0 : static_cast<std::ptrdiff_t>(structural::entries(nn)) * id);
+  }
+  static const double* row(const Gains& g, int id, int nn) noexcept {
+    return g.rows.data() + static_cast<std::ptrdiff_t>(id) * nn;
+  }
   template <int n>
   static double dot(const Gains& g, int id, const Vec<n>& x, int nn) noexcept {
-    const double* c = g.rows.data() + static_cast<std::ptrdiff_t>(id) * nn;
+    const double* c = row(g, id, nn);
     double sum = 0.0;
     for (int k = 0; k < nn; ++k) sum += c[k] * x[k];
     return sum;
   }
-  template <int n>
-  static void add(const Gains& g, const Heard& j, double innovation, int nn, Vec<n>& x) noexcept {
-    const double* column = g.columns.data() + j.first;
-    for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
+  /// c_i'K_i c_i
+  static double reaction(const Gains& g, int id, int nn) noexcept {
+    const Heard& own = g.heard[static_cast<std::size_t>(g.offsets[static_cast<std::size_t>(id)])];
+    const double* c = row(g, id, nn);
+    double sum = 0.0;
+    for (int k = 0; k < nn; ++k) sum += c[k] * g.columns[static_cast<std::size_t>(own.first + k)];
+    return sum;
   }
 
-  /// The test and its memory. While the own measurement is left out, its innovation is what is tested.
+  /// P of an estimate of which nothing is known: a diagonal, `factor` times the stationary variances.
   template <int n>
-  static void judge(const Local& l, const Gains& g, State<n>& s, bool complete, bool used) noexcept {
-    const auto id = static_cast<std::size_t>(l.id);
-    const bool missing = std::isnan(s.y);
-    s.statistic = s.threshold = kNaN;
-    const bool isolated = g.isolate && s.alarm;
-    const double tested = g.innovation || isolated ? s.innovation : s.residual;
-    if (!complete && !isolated) s.rest = std::max(s.rest, g.settle + 1);
-    if (g.window > 1) remember(g, s, missing || !used ? kNaN : tested);
-    if (!missing) s.statistic = g.window > 1 && !isolated ? window_statistic(g, s, id) : std::abs(tested);
-    bool over = g.accuse_missing && missing && l.outputs > 0;
-    bool judged = over;
-    if (s.rest > 0) {
-      --s.rest;
-    } else if (!missing) {
-      const double level = isolated       ? g.sample_level * g.innovation_std[id]
-                           : g.window > 1 ? g.level
-                                          : g.level * g.std[id];
-      if (!std::isnan(level) && !std::isnan(s.statistic)) {
-        s.threshold = level;
-        over = !(s.statistic < level);
-        judged = true;
+  static void begin(const Local& l, const Gains& g, State<n>& s, double factor) noexcept {
+    if (!carries(g)) return;
+    const int nn = dimension<n>(l);
+    const double* settled = stationary(g, l.id, nn);
+    const std::size_t next = static_cast<std::size_t>(nn) + 1;
+    double most = 0.0;
+    for (std::size_t k = 0; k < s.P.size(); k += next) most = std::max(most, settled[k]);
+    std::fill(s.P.begin(), s.P.end(), 0.0);
+    for (std::size_t k = 0; k < s.P.size(); k += next)
+      s.P[k] = factor * (settled[k] > 0.0 ? settled[k] : most);
+  }
+  /// Whether P is a covariance that can be worked with: messages of a liar may have made it anything.
+  template <int n>
+  static bool sound(const Local& l, const Gains& g, const State<n>& s) noexcept {
+    const int nn = dimension<n>(l);
+    const double* settled = stationary(g, l.id, nn);
+    const auto at = [nn](int i, int k) {
+      return static_cast<std::size_t>(i) * static_cast<std::size_t>(nn) + static_cast<std::size_t>(k);
+    };
+    double most = 0.0;
+    for (int i = 0; i < nn; ++i) most = std::max(most, settled[at(i, i)]);
+    bool all = true;
+    for (int i = 0; i < nn; ++i)
+      for (int k = 0; k <= i; ++k) {
+        const double size = s.P[at(i, i)] * s.P[at(k, k)];
+        const double slack = 1e-9 * (size + most * most);
+        all &= s.P[at(i, i)] >= 0.0 && s.P[at(i, i)] <= kMostVariance * most;
+        all &= s.P[at(i, k)] * s.P[at(i, k)] <= size + slack;
+      }
+    return all;
+  }
+  /// P = the covariance of the stationary error.
+  template <int n>
+  static void settle(const Local& l, const Gains& g, State<n>& s) noexcept {
+    if (carries(g)) std::copy_n(stationary(g, l.id, dimension<n>(l)), s.P.size(), s.P.data());
+  }
+
+  /// (3): the mean first, then A; a missing estimate's weight goes to the own one.
+  template <int n>
+  static Seen predict(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
+                      Message<n>& m) noexcept {
+    const int nn = dimension<n>(l);
+    const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
+    const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
+    Seen seen;
+    seen.measurements = l.outputs == 0 || !std::isnan(s.y);
+    double own = heard->weight;
+    for (int k = 0; k < nn; ++k) m.numbers[k] = 0.0;
+    std::size_t at = 0;
+    for (const Heard* j = heard + 1; j != end; ++j) {
+      const bool expected = j->first >= 0 && g.sensing(j->id);
+      if (at >= inbox.size() || inbox.sender(at) != j->id) {
+        own += j->weight;
+        seen.estimates = seen.estimates && j->weight == 0.0;
+        seen.measurements = seen.measurements && !expected;
+        continue;
+      }
+      const auto& letter = inbox[at++];
+      s.rest = std::max(s.rest, letter.rest);  // what is off there is off here from now on
+      seen.measurements = seen.measurements && (letter.measured || !expected);
+      for (int k = 0; k < nn; ++k) m.numbers[k] += j->weight * letter.numbers[k];
+    }
+    for (int k = 0; k < nn; ++k) m.numbers[k] += own * s.x[k];
+    for (int i = 0; i < nn; ++i) {
+      double next = 0.0;
+      for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * m.numbers[k];
+      s.prior[i] = next;
+    }
+    return seen;
+  }
+  /// Jensen: A (sum_j W_ij P_j) A' + E >= cov(e before the update), into the first n x n of `work`.
+  template <int n>
+  static void predict_spread(const Local& l, const Gains& g, State<n>& s,
+                             const Inbox<Message<n>>& inbox) noexcept {
+    const int nn = dimension<n>(l);
+    const std::size_t size = structural::entries(nn);
+    double* prior = s.work.data();
+    double* mean = prior + size;
+    double* half = mean + size;
+    const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
+    const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
+    std::fill_n(mean, size, 0.0);
+    double own = heard->weight;
+    std::size_t at = 0;
+    for (const Heard* j = heard + 1; j != end; ++j) {
+      if (at >= inbox.size() || inbox.sender(at) != j->id)
+        own += j->weight;
+      else
+        structural::add_packed(inbox[at++].covariance.data(), j->weight, nn, mean);
+    }
+    for (std::size_t k = 0; k < size; ++k) mean[k] += own * s.P[k];
+    std::copy_n(g.process.data(), size, prior);
+    structural::add_congruence(l.A, 1, nn, mean, nn, half, prior);
+  }
+
+  /// (4): own measurement, then those of the others in order of id; false when one of them was left out. With
+  /// `carried` also P_i = G prior G' + sum of what the noises add, G = I - sum K_i c_j c_j'.
+  template <int n>
+  static bool update(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, bool used,
+                     bool carried) noexcept {
+    const int nn = dimension<n>(l);
+    const std::size_t size = structural::entries(nn);
+    const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
+    const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
+    double* prior = s.work.data();
+    double* G = prior + size;
+    double* more = G + size;
+    if (carried) {
+      std::fill_n(G, 2 * size, 0.0);
+      for (int k = 0; k < nn; ++k) G[static_cast<std::ptrdiff_t>(k) * (nn + 1)] = 1.0;
+      std::fill(s.P.begin(), s.P.end(), 0.0);
+    }
+    const auto use = [&](const Heard& j, double innovation) {
+      const double* column = g.columns.data() + j.first;
+      for (int k = 0; k < nn; ++k) s.x[k] += column[k] * innovation;
+      if (!carried) return;
+      structural::add_outer(column, row(g, j.id, nn), -1.0, nn, G);
+      structural::add_outer(column, column, g.noise[static_cast<std::size_t>(j.id)], nn, s.P.data());
+    };
+    // That a measurement was over its level says of an honest sensor that the estimate is off.
+    bool out = false;
+    double growth = 1.0;
+    const auto leave = [&](const Heard& j, bool by_level) {
+      char& before = s.left_out[static_cast<std::size_t>(&j - heard)];
+      out = true;
+      if (carried) growth = std::max(growth, g.doubt[static_cast<std::size_t>(j.id)]);
+      if (by_level && !before && carried) {
+        const double* c = row(g, j.id, nn);
+        const double spread = structural::quadratic(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
+        if (spread > 0.0) structural::add_seen_outer(prior, c, g.surprise / spread, nn, more);
+      }
+      before = 1;
+    };
+    const auto keep = [&](const Heard& j) { s.left_out[static_cast<std::size_t>(&j - heard)] = 0; };
+    s.x = s.prior;
+    const bool measured = !std::isnan(s.y);
+    if (used) {
+      use(*heard, s.innovation);
+      keep(*heard);
+    } else if (measured) {
+      leave(*heard, true);
+    }
+    std::size_t at = 0;
+    for (const Heard* j = heard + 1; j != end; ++j) {
+      if (at >= inbox.size() || inbox.sender(at) != j->id) continue;
+      const auto& letter = inbox[at++];
+      if (j->first < 0) continue;
+      if (!letter.measured) {
+        if (letter.withheld && g.isolate) leave(*j, false);
+        continue;
+      }
+      const double innovation = letter.numbers[nn] - dot(g, j->id, s.prior, nn);
+      if (g.isolate && carried && s.start == 0 && surprising(g, *j, prior, innovation, nn)) {
+        leave(*j, true);
+      } else {
+        use(*j, innovation);
+        keep(*j);
       }
     }
-    if (!judged) return;
+    if (!carried) return !out;
+    for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
+    structural::add_congruence(G, nn, 1, prior, nn, more, s.P.data());
+    if (!sound(l, g, s)) begin(l, g, s, kMostVariance);
+    return !out;
+  }
+  /// Whether a measurement that is heard is over its level, the bound of what is expected of it being
+  /// `prior`.
+  static bool surprising(const Gains& g, const Heard& j, const double* prior, double innovation,
+                         int nn) noexcept {
+    const double variance =
+        structural::quadratic(prior, row(g, j.id, nn), nn) + g.noise[static_cast<std::size_t>(j.id)];
+    return variance > 0.0 && std::abs(innovation) >= g.sample_level * std::sqrt(variance);
+  }
+
+  /// One test of `value`, of which `std` is the deviation (`exact`) or bounds it: sets statistic and
+  /// threshold, true for an alarm. The matrix of a window is that of the stationary error; while a gap is
+  /// behind it, the sample alone is tested.
+  template <int n>
+  static bool examine(const Gains& g, State<n>& s, std::size_t id, double value, double std,
+                      bool exact) noexcept {
+    s.threshold = kNaN;
+    s.statistic = std::abs(value);
+    bool window = false;
+    if (g.window > 1) {
+      const bool stationary = exact || (s.start > 0 && s.rest <= s.start);
+      remember(g, s, stationary ? value : kNaN);
+      window = stationary && !s.broken;
+      if (window) s.statistic = window_statistic(g, s, id);
+    }
+    if (s.start > 0 || std::isnan(s.statistic)) return false;
+    if (window) {
+      if (exact) s.threshold = g.level;
+    } else {
+      const double usual = g.innovation ? g.innovation_std[id] : g.std[id];
+      if (std <= kBlind * usual || (g.isolate && s.alarm)) s.threshold = g.sample_level * std;
+    }
+    return s.statistic >= s.threshold;
+  }
+
+  /// The memory of the tests: the verdict.
+  template <int n>
+  static void judge(const Local& l, const Gains& g, State<n>& s, bool over) noexcept {
+    const bool absent = g.accuse_missing && l.outputs > 0 && std::isnan(s.y);
+    if (!absent && std::isnan(s.threshold)) return;
+    over = over || absent;
     s.above = over ? s.above + 1 : 0;
     s.below = over ? 0 : s.below + 1;
     if (s.above >= g.alarm_after) s.alarm = true;
@@ -381,9 +621,32 @@ struct GARRISON_EXPORT Structural {
     if (s.alarm) s.accused.insert(l.id);
   }
 
+  /// Counts how long the error is not stationary: after a gap (`whole` is false) until what it added to P has
+  /// fallen below 1 % of the deviation.
+  template <int n>
+  static void pass(const Local& l, const Gains& g, State<n>& s, bool whole) noexcept {
+    if (s.start > 0) --s.start;
+    const int nn = dimension<n>(l);
+    if (!whole) {
+      double ratio = 1.0;
+      const double* settled = carries(g) ? stationary(g, l.id, nn) : nullptr;
+      for (int k = 0; k < nn && settled != nullptr; ++k) {
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * (nn + 1);
+        if (settled[at] > 0.0) ratio = std::max(ratio, s.P[static_cast<std::size_t>(at)] / settled[at]);
+      }
+      const double more =
+          g.rho > 0.0 && g.rho < 1.0 ? std::ceil(-0.5 * std::log(ratio) / std::log(g.rho)) : 0.0;
+      const double most = std::min<double>(kMostRest, std::max(1, g.recover) + more);
+      s.rest = std::max(s.rest, static_cast<int>(most));
+      return;
+    }
+    if (s.rest > 0 && --s.rest == 0) settle(l, g, s);
+  }
+
   template <int n>
   static void remember(const Gains& g, State<n>& s, double residual) noexcept {
     if (std::isnan(residual)) {
+      s.broken = s.broken || s.start == 0;
       s.filled = s.oldest = 0;
       return;
     }
@@ -392,6 +655,7 @@ struct GARRISON_EXPORT Structural {
       ++s.filled;
     else
       s.oldest = (s.oldest + 1) % g.window;
+    s.broken = s.broken && s.filled < g.window;
   }
 
   /// v'S^-1 v over the window, NaN until it is full.

@@ -92,22 +92,25 @@ TEST_CASE("an isolated sensor no longer moves the estimates") {
   CHECK(worst(false) > 2.0 * worst(true));
 }
 
-TEST_CASE("no verdict while the error is not stationary") {
+TEST_CASE(
+    "no verdict at the start; after a loss the level is that of a bound until all is stationary again") {
   test::Rng rng(54);
   const Model model = model_of(rng, 2, 3, 0.9);
-  const auto filter = make_filter("structural", {{"settle", std::int64_t{7}}});
+  const auto filter = make_filter("structural", {{"settle", std::int64_t{40}}});
   RunOptions o;
   o.start = Matrix::Constant(2, 1, 100.0);
-  Matrix y = Matrix::Zero(40, 3);
-  y(20, 1) = kNaN;
+  Matrix y = Matrix::Zero(400, 3);
+  y(60, 1) = kNaN;
   const Record r = replay(model, Network::path(3), *filter, y, Matrix(), o);
-  for (int t = 1; t <= 7; ++t) CHECK(std::isnan(r.threshold[static_cast<std::size_t>(3 * t)]));
-  CHECK_FALSE(std::isnan(r.threshold[3 * 8]));
-  // Row 20 is time 21. Agent 0 hears agent 1 only; agent 2 too: all three miss y_1.
-  for (std::size_t i = 0; i < 3; ++i) {
-    CHECK(std::isnan(r.threshold[3 * 21 + i]));
-    CHECK(std::isnan(r.threshold[3 * 28 + i]));
-    CHECK_FALSE(std::isnan(r.threshold[3 * 29 + i]));
+  const auto level = [&](int t, int i) { return r.threshold[static_cast<std::size_t>(3 * t + i)]; };
+  for (int t = 1; t <= 40; ++t) CHECK(std::isnan(level(t, 0)));
+  for (int i = 0; i < 3; ++i) CHECK(level(41, i) > 0.0);
+  // Row 60 is time 61. Agents 0 and 2 hear agent 1: all three miss y_1.
+  CHECK(std::isnan(level(61, 1)));
+  for (const int i : {0, 2}) CHECK(level(61, i) > level(60, i));
+  for (int i = 0; i < 3; ++i) {
+    CHECK(level(62, i) > level(60, i));
+    CHECK(level(400, i) == level(60, i));
   }
 }
 

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person must know of the verdicts of a run.
+#include <algorithm>
+#include <cstdio>
+
+#include "garrison/analysis/modes.hpp"
+#include "garrison/filters/structural/filter.hpp"
+
+namespace garrison {
+namespace {
+
+constexpr int kMostNamed = 5;  // sensors named one by one
+constexpr int kLong = 10;      // samples in a row after which a majority of alarms is worth a warning
+
+struct Counts {
+  std::vector<std::int64_t> measured, tested, accused;  // samples of each agent
+  int longest = 0;                                      // most samples in a row with most sensors accused
+};
+
+Counts count(const VerdictLog& log, int sensors) {
+  const auto N = static_cast<std::size_t>(log.agents);
+  Counts c{std::vector<std::int64_t>(N), std::vector<std::int64_t>(N), std::vector<std::int64_t>(N)};
+  std::size_t at = 0;
+  for (int trial = 0; trial < log.trials; ++trial)
+    for (int t = 0, row = 0; t < log.times; ++t) {
+      int accused = 0;
+      for (std::size_t i = 0; i < N; ++i) {
+        const auto verdict = static_cast<Verdict>(log.verdict[at++]);
+        if (t == 0 || verdict == Verdict::silent) continue;
+        ++c.measured[i];
+        c.tested[i] += verdict == Verdict::not_tested ? 0 : 1;
+        c.accused[i] += verdict == Verdict::attacked ? 1 : 0;
+        accused += verdict == Verdict::attacked ? 1 : 0;
+      }
+      row = sensors > 2 && 2 * accused > sensors ? row + 1 : 0;
+      c.longest = std::max(c.longest, row);
+    }
+  return c;
+}
+
+std::string percent(std::int64_t part, std::int64_t whole) {
+  char word[32];
+  std::snprintf(word, sizeof word, "%.0f %%", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+  return word;
+}
+
+}  // namespace
+
+std::vector<std::string> Structural::warnings(const Model& model, const VerdictLog& log) {
+  if (log.verdict.empty()) return {};
+  int sensors = 0;
+  for (int i = 0; i < model.agents(); ++i) sensors += model.outputs(i) > 0 ? 1 : 0;
+  const Counts c = count(log, sensors);
+  std::vector<std::string> all;
+  int more = 0;
+  for (std::size_t i = 0; i < c.measured.size(); ++i) {
+    if (2 * c.tested[i] >= c.measured[i]) continue;
+    if (static_cast<int>(all.size()) < kMostNamed)
+      all.push_back("sensor " + std::to_string(i) + " was tested in " + percent(c.tested[i], c.measured[i]) +
+                    " of the samples; in the others it was used untested");
+    else
+      ++more;
+  }
+  if (more > 0)
+    all.push_back(std::to_string(more) + " more sensors were tested in less than half of the samples");
+  if (c.longest >= kLong)
+    all.push_back("more than half of the sensors were accused for " + std::to_string(c.longest) +
+                  " samples in a row: more than can be told from a wrong model or a wrong estimate");
+  for (const int i : undetectable_agents(model))
+    if (c.accused[static_cast<std::size_t>(i)] > 0)
+      all.push_back("sensor " + std::to_string(i) +
+                    " was accused, but it alone sees a mode that does not decay: with `isolate` it is used "
+                    "again when the estimate is no longer surer than it, whether it is right by then or not");
+  return all;
+}
+
+}  // namespace garrison
