@@ -106,9 +106,8 @@ def _leaf(name: str, got: Any, expected: Any, relative: float) -> FieldResult:
     if got is None or isinstance(got, bool):
         return FieldResult.failure(name, f"got {got!r}, expected a number")
     numbers = array(expected)
-    if isinstance(numbers, list):  # ragged: lists of index lists
-        same = got == expected
-        return FieldResult(name, 0.0 if same else 1.0, same, "" if same else "lists differ")
+    if isinstance(numbers, list):
+        return FieldResult.failure(name, f"got {got!r}, expected a list")
     if _whole(expected) and _whole(got):
         same = got == expected
         return FieldResult(name, 0.0 if same else 1.0, same, "" if same else f"got {got!r}, expected {expected!r}")
@@ -141,5 +140,10 @@ def compare(
         for k, (g, e) in enumerate(zip(got, expected, strict=True)):
             results += compare(g, e, tolerances, f"{name}[{k}]", informative)
         return results
+    if isinstance(expected, list) and isinstance(got, list) and isinstance(array(expected), list):  # ragged
+        if len(got) != len(expected):
+            return [FieldResult.failure(name, f"got {len(got)} entries, expected {len(expected)}")]
+        pairs = zip(got, expected, strict=True)
+        return [r for k, (g, e) in enumerate(pairs) for r in compare(g, e, tolerances, f"{name}[{k}]", informative)]
     own = [tolerance for end, tolerance in tolerances.items() if name.endswith(end)]
     return [_leaf(name, got, expected, own[0] if own else RELATIVE)]
