@@ -167,7 +167,7 @@ def _coast(i: Inputs, expected: Any) -> Any:
     then = theory.ellipsoid(np.zeros(len(A)), P, i["r"])
     bounded = theory.Propagation.bounded_entries(A, i["k"], Gam, i["bw"])
     gaussian = theory.Propagation.gaussian_entries(A, i["k"], Gam, i["zc"], i["zc"])
-    return [by.age(then, i["k"]).box.tolist() for by in (bounded, gaussian)]
+    return [_plain(by.age(then, i["k"]).box) for by in (bounded, gaussian)]
 
 
 def _meter_rows(i: Inputs, flows_only: bool) -> Array:

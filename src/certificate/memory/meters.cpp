@@ -30,6 +30,16 @@ Matrix hat(const Matrix& H) {
   return Q * Q.transpose();
 }
 
+/// The rows that are left; `out` need not be sorted.
+template <class Index>
+Matrix without(const MatrixRef& H, const std::vector<Index>& out) {
+  Matrix rest(H.rows() - static_cast<Eigen::Index>(out.size()), H.cols());
+  Eigen::Index at = 0;
+  for (Eigen::Index r = 0; r < H.rows(); ++r)
+    if (std::find(out.begin(), out.end(), static_cast<Index>(r)) == out.end()) rest.row(at++) = H.row(r);
+  return rest;
+}
+
 void require_rows(const MatrixRef& H) {
   if (H.rows() < 1 || H.cols() < 1) refuse("H", detail::shape(H), "at least 1 x 1");
   detail::require_shape("H", H, H.rows(), H.cols());
@@ -93,11 +103,7 @@ class Search {
     Matrix room(k, 3);
     if (!(detail::extreme_eigenvalues(block, room).second > 1.0 - kNear)) return false;
     // 1 - eigenvalue is the square of the smallest singular value that is left: ask the rows themselves.
-    Matrix rest(H_.rows() - k, H_.cols());
-    Eigen::Index at = 0;
-    for (Eigen::Index r = 0; r < H_.rows(); ++r)
-      if (std::find(set_.begin(), set_.end(), static_cast<int>(r)) == set_.end()) rest.row(at++) = H_.row(r);
-    return !determines(rest);
+    return !determines(without(H_, set_));
   }
 
   const Matrix& H_;
@@ -135,7 +141,8 @@ Meters meters(const MatrixRef& H, std::span<const int> source) {
   std::vector<std::vector<double>> across(rows_of.size());
   for (Eigen::Index a = 0; a < count; ++a) {
     found.leverage(a) = block_norm(a, a);
-    if (found.leverage(a) > 1.0 - kNear) found.critical.push_back(static_cast<int>(a));
+    if (found.leverage(a) > 1.0 - kNear && !determines(without(H, rows_of[static_cast<std::size_t>(a)])))
+      found.critical.push_back(static_cast<int>(a));
     for (Eigen::Index b = 0; b < count; ++b)
       if (b != a) across[static_cast<std::size_t>(a)].push_back(block_norm(a, b));
   }

@@ -142,7 +142,9 @@ void SubsetsWindowWorkspace::Room::collect(const Window& w, const WindowLevels& 
   double bias = 0.0;
   for (int r = 0; r < w.rows(); ++r)
     if (sources.uses(w, r) && w.bias(r) > 0.0) bias += frame.length(f.col(r)) * w.bias(r);
-  all.add(c, shape, apart ? 1.0 + bias : z.z2 + std::min(length, bias), box);
+  const double radius =
+      apart ? 1.0 + bias : z.z2 + (w.prior_length() > 0.0 ? length : std::min(length, bias));
+  all.add(c, shape, radius, box);
 }
 
 const WindowWitness& SubsetsWindowWorkspace::Room::answer(const Window& w, const WindowAssumption& a) {
