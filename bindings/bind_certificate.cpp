@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Certificates: where the state is, whatever at most s sensors say.
-#include "bindings.hpp"
+#include "certificate.hpp"
 #include "garrison/certificate/gaussian_table.hpp"
 #include "garrison/certificate/informed.hpp"
 #include "garrison/certificate/order_rule.hpp"
@@ -27,6 +27,20 @@ std::optional<Vector> center_of(const Region& r) {
 }
 std::optional<Vector> box_of(const Region& r) {
   return r.answered() && r.box.size() > 0 ? std::optional(r.box) : std::nullopt;
+}
+
+std::optional<Matrix> shape_of(const Region& r) {
+  return r.answered() && r.shape.size() > 0 ? std::optional(r.shape) : std::nullopt;
+}
+
+Region given_region(const Vector& center, double radius, const std::optional<Vector>& box) {
+  if (center.size() < 1 || !center.allFinite())
+    refuse("center", std::to_string(center.size()) + " numbers", "at least one, all finite");
+  if (radius < 0.0) refuse("radius", text(radius), "a number >= 0, infinity or NaN");
+  if (box && (box->size() != center.size() || !box->allFinite() || box->minCoeff() < 0.0))
+    refuse("box", std::to_string(box->size()) + " numbers",
+           std::to_string(center.size()) + " finite numbers >= 0");
+  return Region{center, radius, box.value_or(Vector())};
 }
 
 double checked_bound_around(const Region& r, const VectorRef& estimate) {
@@ -68,18 +82,16 @@ void bind_quantiles(py::module_& m) {
 
 void bind_regions(py::module_& m) {
   py::class_<Region>(m, "Region",
-                     "||x - center|| <= radius, and |x_k - center_k| <= box_k where there is a box.\n"
+                     "||x - center|| <= radius, |x_k - center_k| <= box_k where there is a box, and\n"
+                     "(x - center)' shape^-1 (x - center) <= stretch^2 where there is a shape.\n"
                      "radius inf: the rows at hand cannot answer; nan: the data refute the assumption.")
-      .def(py::init([](const Vector& center, double radius) {
-             if (center.size() < 1 || !center.allFinite())
-               refuse("center", std::to_string(center.size()) + " numbers", "at least one, all finite");
-             if (radius < 0.0) refuse("radius", text(radius), "a number >= 0, infinity or NaN");
-             return Region{center, radius, {}};
-           }),
-           py::arg("center"), py::arg("radius"))
+      .def(py::init(&given_region), py::arg("center"), py::arg("radius"), py::arg("box") = py::none(),
+           "center (n,), radius >= 0, box (n,) >= 0. Raises InvalidInput.")
       .def_property_readonly("center", &center_of, "(n,), None without an answer")
       .def_readonly("radius", &Region::radius)
       .def_property_readonly("box", &box_of, "(n,), None where there is none")
+      .def_property_readonly("shape", &shape_of, "(n, n), None where there is none")
+      .def_readonly("stretch", &Region::stretch)
       .def_property_readonly("answered", &Region::answered, "radius is finite")
       .def_property_readonly("refuted", &Region::refuted, "radius is nan: more than s are attacked")
       .def("bound_around", &checked_bound_around, py::arg("estimate"),
@@ -305,9 +317,29 @@ void bind_messages(py::module_& m) {
           },
           py::arg("A"), py::arg("steps"), py::arg("Q"), py::arg("delta"),
           "w ~ N(0, Q); fails with probability delta per use. Raises InvalidInput.")
+      .def_static(
+          "bounded_entries",
+          [](const MatrixRef& A, int steps, const MatrixRef& Gam, double bw) {
+            return Propagation::bounded_entries(A, steps, Gam, bw);
+          },
+          py::arg("A"), py::arg("steps"), py::arg("Gam"), py::arg("bw"),
+          "w = Gam w~ with |w~_i| <= bw; Gam (n, q). Raises InvalidInput.")
+      .def_static(
+          "gaussian_entries",
+          [](const MatrixRef& A, int steps, const MatrixRef& Gam, double zc, double z2) {
+            return Propagation::gaussian_entries(A, steps, Gam, zc, z2);
+          },
+          py::arg("A"), py::arg("steps"), py::arg("Gam"), py::arg("zc"), py::arg("z2"),
+          "w = Gam w~, w~ ~ N(0, I): zc for each coordinate, z2 for the vector. Raises InvalidInput.")
       .def(
           "age", [](const Propagation& p, const Region& then, int age) { return p.age(then, age); },
-          py::arg("then"), py::arg("age"), "The Region of today for one that held `age` steps ago.");
+          py::arg("then"), py::arg("age"),
+          "The Region of today for one that held `age` steps ago; its box is never wider than what the ball, "
+          "the box and "
+          "the ellipsoid give.");
+  m.def("ellipsoid", &ellipsoid, py::arg("center"), py::arg("shape"), py::arg("stretch"),
+        "The Region (x - center)' shape^-1 (x - center) <= stretch^2, with its box and ball. Raises "
+        "InvalidInput.");
   py::class_<Recovery>(
       m, "Recovery",
       "L: excess over the table after lost messages. A state is (lam, x): every agent behind the\n"
@@ -375,4 +407,5 @@ void bind_certificate(py::module_& m) {
   bind_system(c);
   bind_tables(c);
   bind_messages(c);
+  bind_certificate_memory(c);
 }

@@ -9,7 +9,10 @@
 
 namespace garrison::certificate {
 
-/// ||x - center|| <= radius, and per coordinate |x_k - center_k| <= box_k where `box` is not empty.
+/// ||x - center|| <= radius, and per coordinate |x_k - center_k| <= box_k where `box` is not empty, and
+/// (x - center)' shape^-1 (x - center) <= stretch^2 where `shape` is not empty: n x n, positive semidefinite;
+/// x - center lies in its range. All three hold together. The ball mixes the units of the coordinates: where
+/// there is a box, report the box.
 ///
 /// Two kinds of "no answer", never mixed: radius = infinity: the rows at hand cannot answer; radius = NaN:
 /// the data refute the assumption that at most s sources are attacked (or the rare event of the noise
@@ -18,6 +21,8 @@ struct Region {
   Vector center;
   double radius = kInfinity;
   Vector box;
+  Matrix shape{};
+  double stretch = kInfinity;
 
   bool answered() const { return std::isfinite(radius); }
   bool refuted() const { return std::isnan(radius); }

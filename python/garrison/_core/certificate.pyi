@@ -9,49 +9,76 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "Bank",
     "ErrorSystem",
     "GaussianTable",
     "Kernels",
+    "Meters",
+    "ObserverTable",
     "Propagation",
     "Recovery",
     "Region",
+    "SmallestAttack",
     "Table",
     "TwoNumbers",
+    "Window",
+    "WindowWitness",
     "Witness",
+    "accepted",
     "after_injection",
+    "anytime_window",
     "averaged",
+    "bank_steady",
     "calibrated_levels",
+    "cells",
     "chi",
+    "ellipsoid",
     "error_system",
     "gaussian_levels",
     "gaussian_table",
+    "hull_window",
     "informed",
     "informed_gaussian",
+    "intersection",
     "interval",
     "kernels",
     "leverage_ball",
+    "leverage_window",
     "lists_complete",
+    "meters",
+    "observer_table",
     "order_bound",
     "order_rule",
+    "order_rule_box",
+    "range_row",
     "scan",
+    "smallest_undetectable",
     "sub_gaussian_chi",
     "sub_gaussian_levels",
     "sub_gaussian_two_sided",
+    "subsets_window",
+    "subsets_window_width",
     "table",
     "two_sided",
+    "window_levels",
     "witness_subsets",
 ]
 
 class Region:
     """
-    ||x - center|| <= radius, and |x_k - center_k| <= box_k where there is a box.
+    ||x - center|| <= radius, |x_k - center_k| <= box_k where there is a box, and
+    (x - center)' shape^-1 (x - center) <= stretch^2 where there is a shape.
     radius inf: the rows at hand cannot answer; nan: the data refute the assumption.
     """
     def __init__(
         self,
         center: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
         radius: typing.SupportsFloat | typing.SupportsIndex,
-    ) -> None: ...
+        box: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] | None = None,
+    ) -> None:
+        """
+        center (n,), radius >= 0, box (n,) >= 0. Raises InvalidInput.
+        """
     def bound_around(self, estimate: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]) -> float:
         """
         Bound on ||estimate - x|| for any estimate (n,); inf without an answer, nan when refuted.
@@ -78,6 +105,13 @@ class Region:
         """
         radius is nan: more than s are attacked
         """
+    @property
+    def shape(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"] | None:
+        """
+        (n, n), None where there is none
+        """
+    @property
+    def stretch(self) -> float: ...
 
 class Witness:
     """
@@ -213,6 +247,16 @@ class Propagation:
         ||w|| <= bw, ages 0..steps. Raises InvalidInput.
         """
     @staticmethod
+    def bounded_entries(
+        A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        steps: typing.SupportsInt | typing.SupportsIndex,
+        Gam: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        bw: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> Propagation:
+        """
+        w = Gam w~ with |w~_i| <= bw; Gam (n, q). Raises InvalidInput.
+        """
+    @staticmethod
     def gaussian(
         A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
         steps: typing.SupportsInt | typing.SupportsIndex,
@@ -222,9 +266,20 @@ class Propagation:
         """
         w ~ N(0, Q); fails with probability delta per use. Raises InvalidInput.
         """
+    @staticmethod
+    def gaussian_entries(
+        A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        steps: typing.SupportsInt | typing.SupportsIndex,
+        Gam: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        zc: typing.SupportsFloat | typing.SupportsIndex,
+        z2: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> Propagation:
+        """
+        w = Gam w~, w~ ~ N(0, I): zc for each coordinate, z2 for the vector. Raises InvalidInput.
+        """
     def age(self, then: Region, age: typing.SupportsInt | typing.SupportsIndex) -> Region:
         """
-        The Region of today for one that held `age` steps ago.
+        The Region of today for one that held `age` steps ago; its box is never wider than what the ball, the box and the ellipsoid give.
         """
 
 class Recovery:
@@ -320,6 +375,329 @@ class TwoNumbers:
     @property
     def rho(self) -> float: ...
 
+class Window:
+    """
+    The measurements of several steps as one regression z = N theta + o. Call begin, a prior, then for each step add its
+    rows and advance. x(k+1) = A x(k) + u + Gam w~(k).
+    """
+    def __init__(
+        self,
+        states: typing.SupportsInt | typing.SupportsIndex,
+        noise: typing.SupportsInt | typing.SupportsIndex,
+        steps: typing.SupportsInt | typing.SupportsIndex,
+        sources: typing.SupportsInt | typing.SupportsIndex,
+        capacity: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None:
+        """
+        For at most `steps` steps of `states` numbers, Gam (states, noise), and `capacity` measurements of sources 0..sources-1.
+        Raises InvalidInput.
+        """
+    def add(
+        self,
+        source: typing.SupportsInt | typing.SupportsIndex,
+        c: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        y: typing.SupportsFloat | typing.SupportsIndex,
+        variance: typing.SupportsFloat | typing.SupportsIndex,
+        bias: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        bounded: bool = False,
+    ) -> bool:
+        """
+        A measurement y = c x + v of the present step: c (n,), v ~ N(0, variance) and at most bias on top, or
+        bounded: |v| <= bias alone. False: it says nothing (nan, c = 0, no such source, full, ..) and is left out.
+        """
+    def advance(
+        self,
+        A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        Gam: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        u: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    ) -> None:
+        """
+        To the next step: A (n, n), Gam (n, noise), u (n,). Raises InvalidInput.
+        """
+    def begin(
+        self,
+        steps: typing.SupportsInt | typing.SupportsIndex,
+        process_bound: typing.SupportsFloat | typing.SupportsIndex = ...,
+    ) -> None:
+        """
+        Empties the window. w~ ~ N(0, I), or |w~_i| <= process_bound. Raises InvalidInput.
+        """
+    def prior_gaussian(
+        self,
+        c0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        P0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    ) -> None:
+        """
+        x(0) - c0 ~ N(0, P0); c0 (n,), P0 (n, n) positive definite; right after begin. Raises InvalidInput.
+        """
+    def prior_set(
+        self,
+        c0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        P0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        r0: typing.SupportsFloat | typing.SupportsIndex,
+        weight: typing.SupportsFloat | typing.SupportsIndex = 4.0,
+    ) -> None:
+        """
+        (x(0) - c0)' P0^-1 (x(0) - c0) <= r0^2 for certain; weight: as how many deviations r0 counts. Raises InvalidInput.
+        """
+    @property
+    def E(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, unknowns): x = E theta + o
+        """
+    @property
+    def N(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (rows, unknowns)
+        """
+    @property
+    def bias(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (rows,): bounds on top of the noise, in deviations
+        """
+    @property
+    def gaussian(self) -> list[bool]:
+        """
+        per row: N(0, 1) noise
+        """
+    @property
+    def o(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def prior_length(self) -> float:
+        """
+        bound on the errors of a set prior together
+        """
+    @property
+    def rows(self) -> int:
+        """
+        how many, process noise and prior included
+        """
+    @property
+    def source(self) -> list[int]:
+        """
+        per row; -1: honest (process noise, prior)
+        """
+    @property
+    def step_of(self) -> list[int]:
+        """
+        per row; -1: process noise
+        """
+    @property
+    def z(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (rows,)
+        """
+
+class WindowWitness:
+    """
+    Answer of a certificate with memory.
+    """
+    @property
+    def box(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None:
+        """
+        (n,): |x_i - center_i| <= box_i; None without an answer
+        """
+    @property
+    def center(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None:
+        """
+        (n,), None without an answer
+        """
+    @property
+    def count(self) -> int:
+        """
+        consistent subsets, leaves or living members behind it
+        """
+    @property
+    def mu(self) -> float:
+        """
+        1 - lambda of W2M: what the attackers leave of the information; nan where it does not apply
+        """
+    @property
+    def proved(self) -> list[int]:
+        """
+        sources that were dropped, with those given; where the region is refuted they prove nothing of any single one
+        """
+    @property
+    def proved_at(self) -> dict[int, list[int]]:
+        """
+        {step: sources}, with a moving set
+        """
+    @property
+    def radius(self) -> float:
+        """
+        of the ball; inf: the rows cannot answer; nan: more than s are attacked
+        """
+    @property
+    def region(self) -> Region: ...
+    @property
+    def shape(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"] | None:
+        """
+        (n, n): (x - center)' shape^-1 (x - center) <= stretch^2; None without an answer
+        """
+    @property
+    def stretch(self) -> float: ...
+
+class Bank:
+    """
+    B: one Kalman filter per set of s sources left out; the attacked set never changes. sources: a list of (C (k, n),
+    variances (k,)).
+    """
+    def __init__(
+        self,
+        A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        Q: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        sources: collections.abc.Sequence[
+            tuple[
+                typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+                typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+            ]
+        ],
+        s: typing.SupportsInt | typing.SupportsIndex,
+        limit: typing.SupportsInt | typing.SupportsIndex = 5000,
+    ) -> None:
+        """
+        A, Q (n, n). Raises InvalidInput, also when C(sources, s) > limit.
+        """
+    def merge(
+        self, most: typing.SupportsInt | typing.SupportsIndex, z2: typing.SupportsFloat | typing.SupportsIndex
+    ) -> None:
+        """
+        At most `most` members from now on, each leaving out more. Raises InvalidInput.
+        """
+    def restart(self, region: Region) -> None:
+        """
+        All members anew from a Region that contains x. Raises InvalidInput without an answer.
+        """
+    def start_gaussian(
+        self,
+        c0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        P0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    ) -> None:
+        """
+        x - c0 ~ N(0, P0) before the first update. Raises InvalidInput.
+        """
+    def start_set(
+        self,
+        c0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        P0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+        r0: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None:
+        """
+        (x - c0)' P0^-1 (x - c0) <= r0^2 before the first update. Raises InvalidInput.
+        """
+    def update(
+        self,
+        y: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        z1: typing.SupportsFloat | typing.SupportsIndex,
+        z2: typing.SupportsFloat | typing.SupportsIndex,
+        zc: typing.SupportsFloat | typing.SupportsIndex,
+        *,
+        A: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+        u: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] | None = None,
+        Q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+        sources: collections.abc.Sequence[
+            tuple[
+                typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+                typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+            ]
+        ]
+        | None = None,
+        predict: bool = True,
+    ) -> WindowWitness:
+        """
+        One step. y: all outputs one after the other, nan = missing; A, Q, sources: where they differ from the
+        design's; u (n,): known input. Returns a WindowWitness; raises InvalidInput.
+        """
+    @property
+    def count(self) -> int:
+        """
+        living members
+        """
+    @property
+    def left_out(self) -> list[list[int]]:
+        """
+        per living member: the sources it does not read
+        """
+
+class ObserverTable:
+    """
+    Row t = 0..T; infinite from where it overflows or exceeds 1e12.
+    """
+    @property
+    def d(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (T+1, n+1): |e_i(t)|, and ||e(t)|| (last)
+        """
+    @property
+    def eta(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (T+1, m): |C_r A e(t)|
+        """
+    @property
+    def level(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (T+1, m): where innovations are clipped; row 0 is 0
+        """
+
+class Meters:
+    """
+    What a static set of meters withstands.
+    """
+    @property
+    def bound(self) -> list[float]:
+        """
+        share of the information that k sources hold at most, k = 0..12
+        """
+    @property
+    def critical(self) -> list[int]:
+        """
+        sources nobody checks
+        """
+    @property
+    def leverage(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (sources,)
+        """
+    @property
+    def liars(self) -> int:
+        """
+        any so many may lie and are contradicted
+        """
+    @property
+    def removable(self) -> int:
+        """
+        any so many may be missing (a lower bound)
+        """
+
+class SmallestAttack:
+    """
+    The smallest set of meters that can lie unseen.
+    """
+    @property
+    def example(self) -> list[int]: ...
+    @property
+    def searched(self) -> int:
+        """
+        no smaller one than this, or as large, for certain
+        """
+    @property
+    def size(self) -> int | None:
+        """
+        None: none found
+        """
+
+def accepted(
+    paths: collections.abc.Sequence[collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]],
+    liars: typing.SupportsInt | typing.SupportsIndex,
+) -> bool:
+    """
+    Whether a flooded number is its owner's, for paths (owner, relay, ..) that brought the same one; the budget is then
+    s + liars. Raises InvalidInput.
+    """
+
 def after_injection(
     norm_A: typing.SupportsFloat | typing.SupportsIndex,
     b: typing.SupportsFloat | typing.SupportsIndex,
@@ -330,6 +708,21 @@ def after_injection(
     R: norm_A b + bw + |kappa|, the bound after predicting and injecting a known innovation.
     """
 
+def anytime_window(
+    window: Window,
+    s: typing.SupportsInt | typing.SupportsIndex,
+    z1: typing.SupportsFloat | typing.SupportsIndex,
+    z2: typing.SupportsFloat | typing.SupportsIndex,
+    zc: typing.SupportsFloat | typing.SupportsIndex,
+    *,
+    leaves: typing.SupportsInt | typing.SupportsIndex,
+    proved: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+    honest: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+) -> WindowWitness:
+    """
+    A: from leverage_window (1 leaf) to subsets_window (all), within a budget of `leaves`. Raises InvalidInput.
+    """
+
 def averaged(
     weights: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     estimates: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
@@ -338,6 +731,26 @@ def averaged(
     """
     R: Region around the weighted sum of estimates (q, n) whose errors are at most bounds (q,), inf = not known;
     weights (q,) of any sign with sum 1. Raises InvalidInput.
+    """
+
+def bank_steady(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    Q: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    sources: collections.abc.Sequence[
+        tuple[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        ]
+    ],
+    s: typing.SupportsInt | typing.SupportsIndex,
+    z1: typing.SupportsFloat | typing.SupportsIndex,
+    z2: typing.SupportsFloat | typing.SupportsIndex,
+    zc: typing.SupportsFloat | typing.SupportsIndex,
+    limit: typing.SupportsInt | typing.SupportsIndex = 100000,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    B2, design time: (n + 1,): per coordinate and in the 2-norm (last), what a living member's error never exceeds;
+    inf: not detectable without some 2s sources. z2, zc at delta / C(sources, s). Raises InvalidInput.
     """
 
 def calibrated_levels(
@@ -351,11 +764,31 @@ def calibrated_levels(
     Exact for exchangeable samples; delta >= 2/(T+1). Raises InvalidInput, also beyond 2e8 sums.
     """
 
+def cells(
+    regions: collections.abc.Sequence[Region], s: typing.SupportsInt | typing.SupportsIndex
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+]:
+    """
+    C: (lo, hi), (n,) each: per coordinate the hull of the points in at least len(regions) - s of the boxes; nan:
+    more than s wrong; inf: not enough. Raises InvalidInput.
+    """
+
 def chi(
     delta: typing.SupportsFloat | typing.SupportsIndex, degrees: typing.SupportsInt | typing.SupportsIndex
 ) -> float:
     """
     c with P(chi-square > c^2) = delta; delta in (0, 1), degrees >= 1.
+    """
+
+def ellipsoid(
+    center: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    shape: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    stretch: typing.SupportsFloat | typing.SupportsIndex,
+) -> Region:
+    """
+    The Region (x - center)' shape^-1 (x - center) <= stretch^2, with its box and ball. Raises InvalidInput.
     """
 
 def error_system(
@@ -394,6 +827,19 @@ def gaussian_table(
     Theorem TG: w ~ N(0, Q) (n, n), v_j ~ N(0, R[j]) (N,); z: level of the event. Raises InvalidInput.
     """
 
+def hull_window(
+    window: Window,
+    s: typing.SupportsInt | typing.SupportsIndex,
+    limit: typing.SupportsInt | typing.SupportsIndex = 2000,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+]:
+    """
+    Bounded noise, exactly: (lo, hi), (n,) each, by linear programs over all sets of s sources left out. nan: more
+    than s are attacked; inf: the rows cannot answer. Raises InvalidInput.
+    """
+
 def informed(
     system: ErrorSystem,
     start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -417,6 +863,11 @@ def informed_gaussian(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
     """
     Theorem I, Gaussian noise. P0 (N n, N n): zero unless t0 was fixed in advance. Raises InvalidInput.
+    """
+
+def intersection(regions: collections.abc.Sequence[Region]) -> Region:
+    """
+    The Region that all of these leave, which hold on the same event; refuted when it is empty.
     """
 
 def interval(
@@ -454,6 +905,22 @@ def leverage_ball(
     be attacked, which then must never change. Returns a Witness; raises InvalidInput.
     """
 
+def leverage_window(
+    window: Window,
+    s: typing.SupportsInt | typing.SupportsIndex,
+    z1: typing.SupportsFloat | typing.SupportsIndex,
+    z2: typing.SupportsFloat | typing.SupportsIndex,
+    zc: typing.SupportsFloat | typing.SupportsIndex,
+    *,
+    moving: bool = False,
+    proved: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+    honest: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+) -> WindowWitness:
+    """
+    W2M: the state of the window's last step, at most s sources lie (moving: s in each step). z1, z2, zc:
+    window_levels(), 0 with bounded noise. proved, honest: sources known to be so. Returns a WindowWitness; raises InvalidInput.
+    """
+
 def lists_complete(
     step: typing.SupportsInt | typing.SupportsIndex,
     diameter: typing.SupportsInt | typing.SupportsIndex,
@@ -461,6 +928,33 @@ def lists_complete(
 ) -> int:
     """
     t0 of theorem I: the step from which all lists are complete.
+    """
+
+def meters(
+    H: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    source: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+) -> Meters:
+    """
+    H (rows, n), divided by the deviations, reference removed; source (rows,). Raises InvalidInput.
+    """
+
+def observer_table(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    L: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    Gam: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    bv: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    *,
+    s: typing.SupportsInt | typing.SupportsIndex,
+    bw: typing.SupportsFloat | typing.SupportsIndex,
+    start: typing.SupportsFloat | typing.SupportsIndex,
+    T: typing.SupportsInt | typing.SupportsIndex,
+    lags: typing.SupportsInt | typing.SupportsIndex,
+    source: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+) -> ObserverTable:
+    """
+    O: bounds of one observer with gain L (n, m) and clipped innovations, sets that move every step. |v| <= bv (m,),
+    ||w~|| <= bw, ||e(0)|| <= start; source (m,): of each row. Raises InvalidInput.
     """
 
 def order_bound(
@@ -480,6 +974,24 @@ def order_rule(
     The (f+1)-th smallest of upper bounds of which at most f are wrong; inf with f or fewer, nan = none.
     """
 
+def order_rule_box(
+    regions: collections.abc.Sequence[Region],
+    estimate: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    f: typing.SupportsInt | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    (n,): bounds on |estimate_i - x_i| from regions of which at most f are wrong. Raises InvalidInput.
+    """
+
+def range_row(
+    p: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    c0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    rho: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float, float] | None:
+    """
+    (h, offset, bias): |x - p| = offset + h x within bias for x in the proved ball (c0, rho); None when it reaches p.
+    """
+
 def scan(
     r: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     R: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
@@ -489,6 +1001,15 @@ def scan(
 ) -> tuple[float, float]:
     """
     W1, one state, Gaussian noise: (lo, hi) of x - xhat from r (m,) = C (y - C xhat); R (m,) variances.
+    """
+
+def smallest_undetectable(
+    H: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    most: typing.SupportsInt | typing.SupportsIndex,
+    tries: typing.SupportsFloat | typing.SupportsIndex = 10000000.0,
+) -> SmallestAttack:
+    """
+    Exact search up to `most` meters, given up after `tries` sets. Raises InvalidInput.
     """
 
 def sub_gaussian_chi(
@@ -512,6 +1033,36 @@ def sub_gaussian_two_sided(delta: typing.SupportsFloat | typing.SupportsIndex) -
     sqrt(2 ln(2/delta)): two_sided for noise with a sub-Gaussian proxy variance.
     """
 
+def subsets_window(
+    window: Window,
+    s: typing.SupportsInt | typing.SupportsIndex,
+    z1: typing.SupportsFloat | typing.SupportsIndex,
+    z2: typing.SupportsFloat | typing.SupportsIndex,
+    zc: typing.SupportsFloat | typing.SupportsIndex,
+    *,
+    z3: typing.SupportsFloat | typing.SupportsIndex | None = None,
+    proved: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+    limit: typing.SupportsInt | typing.SupportsIndex = 3000,
+) -> WindowWitness:
+    """
+    W3M: the same by all sets of s sources left out, the attacked set fixed in the window; sharper. z3: chi of all
+    residuals of such a set. Raises InvalidInput, also when there are more than `limit` sets.
+    """
+
+def subsets_window_width(
+    window: Window,
+    s: typing.SupportsInt | typing.SupportsIndex,
+    z1: typing.SupportsFloat | typing.SupportsIndex,
+    zc: typing.SupportsFloat | typing.SupportsIndex,
+    *,
+    z3: typing.SupportsFloat | typing.SupportsIndex | None = None,
+    limit: typing.SupportsInt | typing.SupportsIndex = 60000,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    W3D, design time: (n,) half widths that subsets_window never exceeds whatever s attackers do; inf: not
+    observable without some 2s sources. Raises InvalidInput.
+    """
+
 def table(
     kernels: Kernels,
     *,
@@ -531,6 +1082,15 @@ def table(
 def two_sided(delta: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
     z with P(|N(0,1)| > z) = delta; delta in (0, 1).
+    """
+
+def window_levels(
+    delta: typing.SupportsFloat | typing.SupportsIndex,
+    rows: typing.SupportsInt | typing.SupportsIndex,
+    states: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[float, float, float]:
+    """
+    (z1, z2, zc) of the window certificates that fail together with probability <= delta. Raises InvalidInput.
     """
 
 def witness_subsets(

@@ -10,6 +10,10 @@
 #include "../every_filter.hpp"
 #include "../random_system.hpp"
 #include "garrison/certificate/interval.hpp"
+#include "garrison/certificate/memory/anytime_window.hpp"
+#include "garrison/certificate/memory/bank.hpp"
+#include "garrison/certificate/memory/leverage_window.hpp"
+#include "garrison/certificate/memory/subsets_window.hpp"
 #include "garrison/certificate/order_rule.hpp"
 #include "garrison/certificate/propagate.hpp"
 #include "garrison/certificate/relay.hpp"
@@ -264,5 +268,61 @@ TEST_CASE("the witness and the relays of a sample do not allocate") {
       CHECK(count == 0);
       CHECK(answered == 20);
     }
+  }
+}
+
+TEST_CASE("the certificates with memory of a sample do not allocate, whatever the window holds") {
+  using namespace garrison::certificate;
+  for (const int n : {1, 2, 4}) {
+    CAPTURE(n);
+    test::Rng rng(static_cast<std::uint64_t>(n));
+    constexpr int kSteps = 6;
+    constexpr int kSources = 6;
+    const Matrix A = 0.9 * Matrix::Identity(n, n);
+    const Matrix Gam = 0.1 * Matrix::Identity(n, n);
+    const Vector u = Vector::Ones(n);
+    const Matrix C = Matrix::Ones(n, kSources) + test::normal_matrix(rng, n, kSources);
+    const Matrix P0 = Matrix::Identity(n, n);
+    const Vector c0 = Vector::Zero(n);
+    Window window(n, n, kSteps, kSources, kSteps * kSources);
+    LeverageWindowWorkspace by_leverage(window);
+    SubsetsWindowWorkspace by_subsets(window, 20);
+    AnytimeWindowWorkspace by_search(window, 5);
+    std::vector<BankSource> sources;
+    for (int j = 0; j < kSources; ++j) sources.push_back({C.col(j).transpose(), Vector::Ones(1)});
+    Bank bank(A, 0.01 * P0, sources, 1);
+    bank.start_gaussian(c0, P0);
+    const Vector y = Vector::Zero(kSources);
+    const WindowLevels z{6.0, 6.0, 6.0, kNaN};
+    int answered = 0;
+    count = 0;
+    armed = true;
+    for (int t = 0; t < 12; ++t) {
+      const int steps = std::min(t + 1, kSteps);
+      window.begin(steps);
+      if (t % 2 == 0)
+        window.prior_set(c0, P0, 1.0);
+      else
+        window.prior_gaussian(c0, P0);
+      for (int k = 0; k < steps; ++k) {
+        for (int j = 0; j < kSources; ++j) {
+          const double* c = C.col(j).data();
+          window.add(j, {c, static_cast<std::size_t>(n)},
+                     j == 1   ? 1e3 * t
+                     : k == j ? kNaN
+                              : 0.1,
+                     1.0, j == 2 ? 0.1 : 0.0);
+        }
+        if (k + 1 < steps) window.advance(A, Gam, u);
+      }
+      for (const bool moving : {false, true})
+        answered += leverage_window(window, {1, z, moving, {}, {}}, by_leverage).region.refuted() ? 0 : 1;
+      subsets_window(window, {1, z, false, {}, {}}, by_subsets);
+      anytime_window(window, {1, z, false, {}, {}}, by_search);
+      bank.update(y, z);
+    }
+    armed = false;
+    CHECK(count == 0);
+    CHECK(answered == 24);
   }
 }

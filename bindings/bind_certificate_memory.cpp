@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: Apache-2.0
+// Certificates with memory: windows, banks of filters, meters.
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "certificate.hpp"
+#include "garrison/certificate/memory/anytime_window.hpp"
+#include "garrison/certificate/memory/bank.hpp"
+#include "garrison/certificate/memory/byzantine.hpp"
+#include "garrison/certificate/memory/cells.hpp"
+#include "garrison/certificate/memory/hull_window.hpp"
+#include "garrison/certificate/memory/leverage_window.hpp"
+#include "garrison/certificate/memory/meters.hpp"
+#include "garrison/certificate/memory/observer_table.hpp"
+#include "garrison/certificate/memory/range_row.hpp"
+#include "garrison/certificate/memory/subsets_window.hpp"
+
+using namespace garrison;
+using namespace garrison::certificate;
+
+namespace {
+
+using Ids = std::vector<int>;
+using Sources = std::vector<BankSource>;
+
+/// Sources of an answer that hold for the whole window; by step with a moving set.
+Ids always(const WindowWitness& w) {
+  Ids ids;
+  for (const Proof& proof : w.proofs)
+    if (proof.step == kAlways) ids.push_back(proof.source);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+std::map<int, Ids> by_step(const WindowWitness& w) {
+  std::map<int, Ids> steps;
+  for (const Proof& proof : w.proofs)
+    if (proof.step != kAlways) steps[proof.step].push_back(proof.source);
+  for (auto& [step, ids] : steps) std::sort(ids.begin(), ids.end());
+  return steps;
+}
+
+template <class T>
+std::optional<T> of_region(const WindowWitness& w, const T Region::* field) {
+  return w.region.answered() ? std::optional(w.region.*field) : std::nullopt;
+}
+
+void bind_window(py::module_& m) {
+  py::class_<Window>(
+      m, "Window",
+      "The measurements of several steps as one regression z = N theta + o. Call begin, a prior, then "
+      "for each step add its\nrows and advance. x(k+1) = A x(k) + u + Gam w~(k).")
+      .def(py::init<int, int, int, int, int>(), py::arg("states"), py::arg("noise"), py::arg("steps"),
+           py::arg("sources"), py::arg("capacity"),
+           "For at most `steps` steps of `states` numbers, Gam (states, noise), and `capacity` measurements "
+           "of "
+           "sources 0..sources-1.\nRaises InvalidInput.")
+      .def("begin", &Window::begin, py::arg("steps"), py::arg("process_bound") = kNaN,
+           "Empties the window. w~ ~ N(0, I), or |w~_i| <= process_bound. Raises InvalidInput.")
+      .def("prior_gaussian", &Window::prior_gaussian, py::arg("c0"), py::arg("P0"),
+           "x(0) - c0 ~ N(0, P0); c0 (n,), P0 (n, n) positive definite; right after begin. Raises "
+           "InvalidInput.")
+      .def("prior_set", &Window::prior_set, py::arg("c0"), py::arg("P0"), py::arg("r0"),
+           py::arg("weight") = 4.0,
+           "(x(0) - c0)' P0^-1 (x(0) - c0) <= r0^2 for certain; weight: as how many deviations r0 counts. "
+           "Raises "
+           "InvalidInput.")
+      .def(
+          "add",
+          [](Window& w, int source, const VectorRef& c, double y, double variance, double bias,
+             bool bounded) {
+            return w.add(source, {c.data(), static_cast<std::size_t>(c.size())}, y, variance, bias, bounded);
+          },
+          py::arg("source"), py::arg("c"), py::arg("y"), py::arg("variance"), py::arg("bias") = 0.0,
+          py::arg("bounded") = false,
+          "A measurement y = c x + v of the present step: c (n,), v ~ N(0, variance) and at most bias on "
+          "top, or\n"
+          "bounded: |v| <= bias alone. False: it says nothing (nan, c = 0, no such source, full, ..) and is "
+          "left out.")
+      .def("advance", &Window::advance, py::arg("A"), py::arg("Gam"), py::arg("u"),
+           "To the next step: A (n, n), Gam (n, noise), u (n,). Raises InvalidInput.")
+      .def_property_readonly("rows", &Window::rows, "how many, process noise and prior included")
+      .def_property_readonly(
+          "N",
+          [](const Window& w) {
+            Matrix N(w.rows(), w.unknowns());
+            for (int r = 0; r < w.rows(); ++r) N.row(r) = w.N(r).transpose();
+            return N;
+          },
+          "(rows, unknowns)")
+      .def_property_readonly(
+          "z",
+          [](const Window& w) {
+            return Vector(
+                Vector::NullaryExpr(w.rows(), [&](Eigen::Index r) { return w.z(static_cast<int>(r)); }));
+          },
+          "(rows,)")
+      .def_property_readonly(
+          "bias",
+          [](const Window& w) {
+            return Vector(
+                Vector::NullaryExpr(w.rows(), [&](Eigen::Index r) { return w.bias(static_cast<int>(r)); }));
+          },
+          "(rows,): bounds on top of the noise, in deviations")
+      .def_property_readonly(
+          "source",
+          [](const Window& w) {
+            Ids of;
+            for (int r = 0; r < w.rows(); ++r) of.push_back(w.source(r));
+            return of;
+          },
+          "per row; -1: honest (process noise, prior)")
+      .def_property_readonly(
+          "step_of",
+          [](const Window& w) {
+            Ids of;
+            for (int r = 0; r < w.rows(); ++r) of.push_back(w.step_of(r));
+            return of;
+          },
+          "per row; -1: process noise")
+      .def_property_readonly(
+          "gaussian",
+          [](const Window& w) {
+            std::vector<bool> is;
+            for (int r = 0; r < w.rows(); ++r) is.push_back(w.noise(r) == RowNoise::gaussian);
+            return is;
+          },
+          "per row: N(0, 1) noise")
+      .def_property_readonly("prior_length", &Window::prior_length,
+                             "bound on the errors of a set prior together")
+      .def_property_readonly(
+          "E", [](const Window& w) { return Matrix(w.E()); }, "(n, unknowns): x = E theta + o")
+      .def_property_readonly("o", &Window::o, "(n,)");
+}
+
+void bind_answer(py::module_& m) {
+  py::class_<WindowWitness>(m, "WindowWitness", "Answer of a certificate with memory.")
+      .def_readonly("region", &WindowWitness::region)
+      .def_property_readonly(
+          "center", [](const WindowWitness& w) { return of_region(w, &Region::center); },
+          "(n,), None without an answer")
+      .def_property_readonly(
+          "shape", [](const WindowWitness& w) { return of_region(w, &Region::shape); },
+          "(n, n): (x - center)' shape^-1 (x - center) <= stretch^2; None without an answer")
+      .def_property_readonly("stretch", [](const WindowWitness& w) { return w.region.stretch; })
+      .def_property_readonly(
+          "box", [](const WindowWitness& w) { return of_region(w, &Region::box); },
+          "(n,): |x_i - center_i| <= box_i; None without an answer")
+      .def_property_readonly(
+          "radius", [](const WindowWitness& w) { return w.region.radius; },
+          "of the ball; inf: the rows cannot answer; nan: more than s are attacked")
+      .def_readonly(
+          "mu", &WindowWitness::mu,
+          "1 - lambda of W2M: what the attackers leave of the information; nan where it does not apply")
+      .def_property_readonly(
+          "proved", &always,
+          "sources that were dropped, with those given; where the region is refuted they prove "
+          "nothing of any single one")
+      .def_property_readonly("proved_at", &by_step, "{step: sources}, with a moving set")
+      .def_readonly("count", &WindowWitness::count, "consistent subsets, leaves or living members behind it");
+}
+
+WindowAssumption assume(int s, double z1, double z2, double zc, double z3, bool moving, const Ids& proved,
+                        const Ids& honest) {
+  return {s, {z1, z2, zc, z3}, moving, proved, honest};
+}
+
+void bind_window_witnesses(py::module_& m) {
+  m.def(
+      "window_levels",
+      [](double delta, int rows, int states) {
+        const WindowLevels z = window_levels(delta, rows, states);
+        return std::tuple(z.z1, z.z2, z.zc);
+      },
+      py::arg("delta"), py::arg("rows"), py::arg("states"),
+      "(z1, z2, zc) of the window certificates that fail together with probability <= delta. Raises "
+      "InvalidInput.");
+  m.def(
+      "leverage_window",
+      [](const Window& w, int s, double z1, double z2, double zc, bool moving, const Ids& proved,
+         const Ids& honest) {
+        const py::gil_scoped_release no_gil;
+        return leverage_window(w, assume(s, z1, z2, zc, kNaN, moving, proved, honest));
+      },
+      py::arg("window"), py::arg("s"), py::arg("z1"), py::arg("z2"), py::arg("zc"), py::kw_only(),
+      py::arg("moving") = false, py::arg("proved") = Ids(), py::arg("honest") = Ids(),
+      "W2M: the state of the window's last step, at most s sources lie (moving: s in each step). z1, z2, "
+      "zc:\n"
+      "window_levels(), 0 with bounded noise. proved, honest: sources known to be so. Returns a "
+      "WindowWitness; raises "
+      "InvalidInput.");
+  m.def(
+      "subsets_window",
+      [](const Window& w, int s, double z1, double z2, double zc, std::optional<double> z3, const Ids& proved,
+         int limit) {
+        if (z3 && std::isnan(*z3)) refuse("z3", "nan", "a number >= 0, or None");
+        const py::gil_scoped_release no_gil;
+        return subsets_window(w, assume(s, z1, z2, zc, z3.value_or(kNaN), false, proved, {}), limit);
+      },
+      py::arg("window"), py::arg("s"), py::arg("z1"), py::arg("z2"), py::arg("zc"), py::kw_only(),
+      py::arg("z3") = py::none(), py::arg("proved") = Ids(), py::arg("limit") = kMostWindowSubsets,
+      "W3M: the same by all sets of s sources left out, the attacked set fixed in the window; sharper. z3: "
+      "chi of all\n"
+      "residuals of such a set. Raises InvalidInput, also when there are more than `limit` sets.");
+  m.def(
+      "subsets_window_width",
+      [](const Window& w, int s, double z1, double zc, std::optional<double> z3, int limit) {
+        const py::gil_scoped_release no_gil;
+        return subsets_window_width(w, assume(s, z1, 0.0, zc, z3.value_or(kNaN), false, {}, {}), limit);
+      },
+      py::arg("window"), py::arg("s"), py::arg("z1"), py::arg("zc"), py::kw_only(),
+      py::arg("z3") = py::none(), py::arg("limit") = 20 * kMostWindowSubsets,
+      "W3D, design time: (n,) half widths that subsets_window never exceeds whatever s attackers do; inf: "
+      "not\n"
+      "observable without some 2s sources. Raises InvalidInput.");
+  m.def(
+      "anytime_window",
+      [](const Window& w, int s, double z1, double z2, double zc, int leaves, const Ids& proved,
+         const Ids& honest) {
+        const py::gil_scoped_release no_gil;
+        return anytime_window(w, assume(s, z1, z2, zc, kNaN, false, proved, honest), leaves);
+      },
+      py::arg("window"), py::arg("s"), py::arg("z1"), py::arg("z2"), py::arg("zc"), py::kw_only(),
+      py::arg("leaves"), py::arg("proved") = Ids(), py::arg("honest") = Ids(),
+      "A: from leverage_window (1 leaf) to subsets_window (all), within a budget of `leaves`. Raises "
+      "InvalidInput.");
+}
+
+void bind_hull(py::module_& m) {
+  m.def(
+      "hull_window",
+      [](const Window& w, int s, int limit) {
+        const py::gil_scoped_release no_gil;
+        const Box box = hull_window(w, s, limit);
+        return std::pair(box.lo, box.hi);
+      },
+      py::arg("window"), py::arg("s"), py::arg("limit") = 2000,
+      "Bounded noise, exactly: (lo, hi), (n,) each, by linear programs over all sets of s sources left out. "
+      "nan: more\n"
+      "than s are attacked; inf: the rows cannot answer. Raises InvalidInput.");
+}
+
+Sources sources_of(const std::vector<std::pair<Matrix, Vector>>& given) {
+  Sources sources;
+  for (const auto& [C, R] : given) sources.push_back({C, R});
+  return sources;
+}
+using Given = std::vector<std::pair<Matrix, Vector>>;
+
+void bind_bank(py::module_& m) {
+  py::class_<Bank>(
+      m, "Bank",
+      "B: one Kalman filter per set of s sources left out; the attacked set never changes. sources: a "
+      "list of (C (k, n),\nvariances (k,)).")
+      .def(py::init([](const MatrixRef& A, const MatrixRef& Q, const Given& sources, int s, int limit) {
+             return Bank(A, Q, sources_of(sources), s, limit);
+           }),
+           py::arg("A"), py::arg("Q"), py::arg("sources"), py::arg("s"), py::arg("limit") = 5000,
+           "A, Q (n, n). Raises InvalidInput, also when C(sources, s) > limit.")
+      .def("start_gaussian", &Bank::start_gaussian, py::arg("c0"), py::arg("P0"),
+           "x - c0 ~ N(0, P0) before the first update. Raises InvalidInput.")
+      .def("restart", &Bank::restart, py::arg("region"),
+           "All members anew from a Region that contains x. Raises InvalidInput without an answer.")
+      .def(
+          "start_set",
+          [](Bank& b, const VectorRef& c0, const MatrixRef& P0, double r0) {
+            // The ellipsoid is what is read; the ball only says that there is an answer.
+            b.restart(Region{c0, 0.0, {}, P0, r0});
+          },
+          py::arg("c0"), py::arg("P0"), py::arg("r0"),
+          "(x - c0)' P0^-1 (x - c0) <= r0^2 before the first update. Raises InvalidInput.")
+      .def(
+          "update",
+          [](Bank& b, const VectorRef& y, double z1, double z2, double zc, const std::optional<Matrix>& A,
+             const std::optional<Vector>& u, const std::optional<Matrix>& Q,
+             const std::optional<Given>& sources, bool predict) {
+            const Sources now = sources_of(sources.value_or(Given()));
+            const BankStep step{A ? &*A : nullptr, u ? &*u : nullptr, Q ? &*Q : nullptr,
+                                sources ? &now : nullptr, predict};
+            return b.checked_update(y, {z1, z2, zc, kNaN}, step);
+          },
+          py::arg("y"), py::arg("z1"), py::arg("z2"), py::arg("zc"), py::kw_only(), py::arg("A") = py::none(),
+          py::arg("u") = py::none(), py::arg("Q") = py::none(), py::arg("sources") = py::none(),
+          py::arg("predict") = true,
+          "One step. y: all outputs one after the other, nan = missing; A, Q, sources: where they differ "
+          "from the\n"
+          "design's; u (n,): known input. Returns a WindowWitness; raises InvalidInput.")
+      .def(
+          "merge", [](Bank& b, int most, double z2) { b.merge(most, {0.0, z2, 0.0, kNaN}); }, py::arg("most"),
+          py::arg("z2"), "At most `most` members from now on, each leaving out more. Raises InvalidInput.")
+      .def_property_readonly(
+          "count", [](const Bank& b) { return b.members().size(); }, "living members")
+      .def_property_readonly(
+          "left_out",
+          [](const Bank& b) {
+            std::vector<Ids> sets;
+            for (const BankMember& member : b.members()) sets.push_back(member.left_out);
+            return sets;
+          },
+          "per living member: the sources it does not read");
+  m.def(
+      "bank_steady",
+      [](const MatrixRef& A, const MatrixRef& Q, const Given& sources, int s, double z1, double z2, double zc,
+         int limit) { return bank_steady(A, Q, sources_of(sources), s, {z1, z2, zc, kNaN}, limit); },
+      py::arg("A"), py::arg("Q"), py::arg("sources"), py::arg("s"), py::arg("z1"), py::arg("z2"),
+      py::arg("zc"), py::arg("limit") = 100000,
+      "B2, design time: (n + 1,): per coordinate and in the 2-norm (last), what a living member's error "
+      "never exceeds;\n"
+      "inf: not detectable without some 2s sources. z2, zc at delta / C(sources, s). Raises InvalidInput.");
+}
+
+void bind_rules(py::module_& m) {
+  m.def(
+      "cells",
+      [](const std::vector<Region>& regions, int s) {
+        const Box box = cells(regions, s);
+        return std::pair(box.lo, box.hi);
+      },
+      py::arg("regions"), py::arg("s"),
+      "C: (lo, hi), (n,) each: per coordinate the hull of the points in at least len(regions) - s of the "
+      "boxes; nan:\n"
+      "more than s wrong; inf: not enough. Raises InvalidInput.");
+  m.def(
+      "intersection", [](const std::vector<Region>& regions) { return intersection(regions); },
+      py::arg("regions"),
+      "The Region that all of these leave, which hold on the same event; refuted when it is empty.");
+  m.def(
+      "order_rule_box",
+      [](const std::vector<Region>& regions, const VectorRef& estimate, int f) {
+        return order_rule(regions, estimate, f);
+      },
+      py::arg("regions"), py::arg("estimate"), py::arg("f"),
+      "(n,): bounds on |estimate_i - x_i| from regions of which at most f are wrong. Raises InvalidInput.");
+  py::class_<ObserverTable>(m, "ObserverTable",
+                            "Row t = 0..T; infinite from where it overflows or exceeds 1e12.")
+      .def_readonly("d", &ObserverTable::d, "(T+1, n+1): |e_i(t)|, and ||e(t)|| (last)")
+      .def_readonly("eta", &ObserverTable::eta, "(T+1, m): |C_r A e(t)|")
+      .def_readonly("level", &ObserverTable::level, "(T+1, m): where innovations are clipped; row 0 is 0");
+  m.def(
+      "observer_table",
+      [](const MatrixRef& A, const MatrixRef& C, const MatrixRef& L, const MatrixRef& Gam,
+         const VectorRef& bv, int s, double bw, double start, int T, int lags,
+         const Ids& source) { return observer_table(A, C, L, Gam, bv, source, {s, bw, start, T, lags}); },
+      py::arg("A"), py::arg("C"), py::arg("L"), py::arg("Gam"), py::arg("bv"), py::kw_only(), py::arg("s"),
+      py::arg("bw"), py::arg("start"), py::arg("T"), py::arg("lags"), py::arg("source") = Ids(),
+      "O: bounds of one observer with gain L (n, m) and clipped innovations, sets that move every step. |v| "
+      "<= bv (m,),\n"
+      "||w~|| <= bw, ||e(0)|| <= start; source (m,): of each row. Raises InvalidInput.");
+}
+
+void bind_networks(py::module_& m) {
+  py::class_<Meters>(m, "Meters", "What a static set of meters withstands.")
+      .def_readonly("leverage", &Meters::leverage, "(sources,)")
+      .def_readonly("critical", &Meters::critical, "sources nobody checks")
+      .def_readonly("bound", &Meters::bound,
+                    "share of the information that k sources hold at most, k = 0..12")
+      .def_readonly("removable", &Meters::removable, "any so many may be missing (a lower bound)")
+      .def_property_readonly("liars", &Meters::liars, "any so many may lie and are contradicted");
+  m.def(
+      "meters", [](const MatrixRef& H, const Ids& source) { return meters(H, source); }, py::arg("H"),
+      py::arg("source") = Ids(),
+      "H (rows, n), divided by the deviations, reference removed; source (rows,). Raises InvalidInput.");
+  py::class_<SmallestAttack>(m, "SmallestAttack", "The smallest set of meters that can lie unseen.")
+      .def_readonly("size", &SmallestAttack::size, "None: none found")
+      .def_readonly("example", &SmallestAttack::example)
+      .def_readonly("searched", &SmallestAttack::searched,
+                    "no smaller one than this, or as large, for certain");
+  m.def("smallest_undetectable", &smallest_undetectable, py::arg("H"), py::arg("most"),
+        py::arg("tries") = 1e7, py::call_guard<py::gil_scoped_release>(),
+        "Exact search up to `most` meters, given up after `tries` sets. Raises InvalidInput.");
+  m.def(
+      "range_row",
+      [](const VectorRef& p, const VectorRef& c0, double rho) {
+        const auto row = range_row(p, c0, rho);
+        return row ? std::optional(std::tuple(row->h, row->offset, row->remainder)) : std::nullopt;
+      },
+      py::arg("p"), py::arg("c0"), py::arg("rho"),
+      "(h, offset, bias): |x - p| = offset + h x within bias for x in the proved ball (c0, rho); None when "
+      "it reaches p.");
+  m.def("accepted", &accepted, py::arg("paths"), py::arg("liars"),
+        "Whether a flooded number is its owner's, for paths (owner, relay, ..) that brought the same one; "
+        "the budget is "
+        "then\ns + liars. Raises InvalidInput.");
+}
+
+}  // namespace
+
+void bind_certificate_memory(py::module_& c) {
+  bind_window(c);
+  bind_answer(c);
+  bind_window_witnesses(c);
+  bind_hull(c);
+  bind_bank(c);
+  bind_rules(c);
+  bind_networks(c);
+}

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/certificate/memory/bank.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "../require.hpp"
+#include "bank_sources.hpp"
+#include "choices.hpp"
+#include "ellipsoid_union.hpp"
+
+namespace garrison::certificate {
+namespace {
+
+/// L with L L' = P, from the eigenvalues: P may be singular.
+Matrix root(const MatrixRef& P) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen{Matrix(P)};
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+}  // namespace
+
+namespace detail {
+
+void require_sources(const std::vector<BankSource>& sources, Eigen::Index n) {
+  if (sources.empty()) refuse("sources", "none", "at least one");
+  for (const BankSource& source : sources) {
+    require_shape("C", source.C, source.C.rows(), n);
+    require_bounds("R", source.R, source.C.rows());
+    if (source.R.size() < 1 || !(source.R.minCoeff() > 1.0 / kHuge))
+      refuse("R", source.R.size() < 1 ? "no output" : text(source.R.minCoeff()), "variances > 0");
+  }
+}
+
+}  // namespace detail
+
+Bank::Bank(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources, int s, int limit)
+    : A_(A),
+      Q_(Q),
+      sources_(sources),
+      s_(s),
+      frame_(std::make_unique<detail::ShapeFrame>(std::max<int>(1, static_cast<int>(A.rows())))) {
+  const Eigen::Index n = A.rows();
+  if (n < 1) refuse("A", detail::shape(A), "at least 1 x 1");
+  detail::require_shape("A", A, n, n);
+  detail::require_covariance("Q", Q, n);
+  detail::require_sources(sources, n);
+  const int m = static_cast<int>(sources.size());
+  if (s < 0 || s > m) refuse("s", std::to_string(s), "a number in 0.." + std::to_string(m));
+  detail::require_least("limit", limit, 1);
+  const double count = detail::choices(m, s);
+  if (!(count <= limit))
+    refuse("members", text(count), "at most limit = " + std::to_string(limit), "raise it, or use cells()");
+  detail::require_room("members", count * static_cast<double>(n * (2 * n + 1)));
+  for (const BankSource& source : sources) outputs_ += static_cast<int>(source.R.size());
+  for (Matrix* M : {&room_, &shape_, &sum_}) M->resize(n, n);
+  for (Vector* v : {&h_, &Ph_, &k_, &Psih_, &v_}) v->resize(n);
+  Region& region = witness_.region;
+  region.center.resize(n);
+  region.box.resize(n);
+  region.shape.resize(n, n);
+  witness_.proofs.reserve(static_cast<std::size_t>(m));
+}
+
+Bank::~Bank() = default;
+Bank::Bank(Bank&&) noexcept = default;
+Bank& Bank::operator=(Bank&&) noexcept = default;
+
+void Bank::all_members(const VectorRef& c0, const MatrixRef& P, const MatrixRef& Psi) {
+  members_.clear();
+  std::vector<char> out(sources_.size(), 0);
+  std::vector<int> ids(sources_.size());
+  for (std::size_t k = 0; k < ids.size(); ++k) ids[k] = static_cast<int>(k);
+  detail::each_choice(std::span<const int>(ids), s_, std::span(out), char{1}, [&] {
+    BankMember member{c0, P, Psi, {}, {}};
+    for (const int id : ids)
+      if (out[static_cast<std::size_t>(id)] != 0) member.left_out.push_back(id);
+    member.accused = member.left_out;
+    members_.push_back(std::move(member));
+    return true;
+  });
+  started_ = true;
+  alive_ = members_.size();
+}
+
+void Bank::start_gaussian(const VectorRef& c0, const MatrixRef& P0) {
+  detail::require_shape("c0", c0, states(), 1);
+  detail::require_covariance("P0", P0, states());
+  all_members(c0, P0, Matrix::Zero(states(), states()));
+}
+
+void Bank::restart(const Region& region) {
+  if (!region.answered()) refuse("region", "no answer", "a region that contains x");
+  detail::require_shape("center", region.center, states(), 1);
+  const bool ellipsoid = region.shape.size() > 0;
+  const double reach = ellipsoid ? region.stretch : region.radius;
+  detail::require_least(ellipsoid ? "stretch" : "radius", reach, 0.0);
+  if (ellipsoid) detail::require_covariance("shape", region.shape, states());
+  const Matrix Psi =
+      ellipsoid ? Matrix(reach * root(region.shape)) : Matrix(reach * Matrix::Identity(states(), states()));
+  const Vector c0 = region.center;
+  all_members(c0, Matrix::Zero(states(), states()), Psi);
+}
+
+/// One row y = h'x + v. False when the innovation is not noise.
+bool Bank::take(BankMember& m, const VectorRef& h, double R, double y, double z1) noexcept {
+  Ph_ = m.P.lazyProduct(h);
+  Psih_ = m.Psi.transpose().lazyProduct(h);
+  const double variance = h.dot(Ph_) + R;
+  const double innovation = y - h.dot(m.c);
+  const double room = z1 * std::sqrt(std::max(variance, 0.0)) + Psih_.norm();
+  if (!(std::abs(innovation) <= room + 1e-12 * (room + std::abs(y)))) return false;
+  // The gain of P + Psi Psi': any gain is valid, P and Psi are carried by the one that is used.
+  k_ = (Ph_ + m.Psi.lazyProduct(Psih_)) / (variance + Psih_.squaredNorm());
+  m.c += innovation * k_;
+  for (Eigen::Index j = 0; j < m.Psi.cols(); ++j) m.Psi.col(j) -= Psih_(j) * k_;
+  const double PR = h.dot(Ph_) + R;  // (I - k h') P (I - k h')' + k R k'
+  for (Eigen::Index j = 0; j < m.P.cols(); ++j)
+    for (Eigen::Index i = 0; i <= j; ++i)
+      m.P(i, j) = m.P(j, i) =
+          0.5 * (m.P(i, j) + m.P(j, i)) - k_(i) * Ph_(j) - Ph_(i) * k_(j) + PR * k_(i) * k_(j);
+  return true;
+}
+
+bool Bank::advance(BankMember& m, const VectorRef& y, const WindowLevels& z, const BankStep& step) noexcept {
+  const std::vector<BankSource>& sources = step.sources != nullptr ? *step.sources : sources_;
+  if (step.predict) {
+    const Matrix& A = step.A != nullptr ? *step.A : A_;
+    v_ = A.lazyProduct(m.c);
+    m.c = v_;
+    if (step.u != nullptr) m.c += *step.u;
+    room_ = A.lazyProduct(m.P);
+    m.P = room_.lazyProduct(A.transpose());
+    m.P += step.Q != nullptr ? *step.Q : Q_;
+    room_ = A.lazyProduct(m.Psi);
+    m.Psi = room_;
+  }
+  Eigen::Index at = 0;
+  auto out = m.left_out.begin();
+  for (std::size_t j = 0; j < sources.size(); ++j) {
+    const BankSource& source = sources[j];
+    const bool skipped = out != m.left_out.end() && *out == static_cast<int>(j);
+    if (skipped) ++out;
+    for (Eigen::Index i = 0; i < source.R.size(); ++i, ++at) {
+      if (skipped || !(std::abs(y(at)) <= kHuge)) continue;
+      h_ = source.C.row(i).transpose();
+      if (!take(m, h_, source.R(i), y(at), z.z1)) return false;
+    }
+  }
+  return true;
+}
+
+const WindowWitness& Bank::update(const VectorRef& y, const WindowLevels& z, const BankStep& step) noexcept {
+  witness_.proofs.clear();
+  witness_.region.radius = witness_.region.stretch = started_ ? kNaN : kInfinity;
+  std::size_t alive = 0;
+  for (std::size_t k = 0; k < alive_; ++k) {
+    if (!advance(members_[k], y, z, step)) continue;
+    if (alive != k) std::swap(members_[alive], members_[k]);
+    ++alive;
+  }
+  alive_ = alive;  // the dead stay behind: nothing is freed
+  witness_.count = static_cast<int>(alive);
+  if (alive > 0) enclose(z);
+  return witness_;
+}
+
+const WindowWitness& Bank::checked_update(const VectorRef& y, const WindowLevels& z, const BankStep& step) {
+  const Eigen::Index n = states();
+  if (y.size() != outputs_) refuse("y", std::to_string(y.size()) + " numbers", std::to_string(outputs_));
+  detail::require_least("z1", z.z1, 0.0);
+  detail::require_least("z2", z.z2, 0.0);
+  detail::require_least("zc", z.zc, 0.0);
+  if (step.A != nullptr) detail::require_shape("A", *step.A, n, n);
+  if (step.u != nullptr) detail::require_shape("u", *step.u, n, 1);
+  if (step.Q != nullptr) detail::require_covariance("Q", *step.Q, n);
+  if (step.sources != nullptr) {
+    detail::require_sources(*step.sources, n);
+    bool same = step.sources->size() == sources_.size();
+    for (std::size_t j = 0; same && j < sources_.size(); ++j)
+      same = (*step.sources)[j].R.size() == sources_[j].R.size();
+    if (!same)
+      refuse("sources", "other numbers of outputs", "those of the design", "mark missing ones by NaN");
+  }
+  return update(y, z, step);
+}
+
+void Bank::enclose(const WindowLevels& z) noexcept {
+  Region& region = witness_.region;
+  const Eigen::Index n = states();
+  const auto half = [&](const BankMember& m, Eigen::Index i) {
+    return z.zc * std::sqrt(std::max(m.P(i, i), 0.0)) + m.Psi.row(i).norm();
+  };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    double lo = kInfinity;
+    double hi = -kInfinity;
+    for (const BankMember& m : members()) {
+      lo = std::min(lo, m.c(i) - half(m, i));
+      hi = std::max(hi, m.c(i) + half(m, i));
+    }
+    region.center(i) = 0.5 * (lo + hi);
+    region.box(i) = 0.5 * (hi - lo);
+  }
+  double most = -1.0;
+  for (const BankMember& m : members()) {
+    sum_ = m.Psi.lazyProduct(m.Psi.transpose());
+    sum_ += m.P;
+    if (!(sum_.trace() > most)) continue;
+    most = sum_.trace();
+    region.shape = sum_;
+  }
+  frame_->set(region.shape);
+  region.stretch = region.radius = 0.0;
+  for (const BankMember& m : members()) {
+    v_ = m.c - region.center;
+    region.stretch =
+        std::max(region.stretch, frame_->length(v_) + z.z2 * frame_->stretch(m.P) + frame_->norm(m.Psi));
+    sum_ = m.Psi.lazyProduct(m.Psi.transpose());
+    region.radius =
+        std::max(region.radius, v_.norm() + z.z2 * std::sqrt(std::max(frame_->eigenvalues(m.P).second, 0.0)) +
+                                    std::sqrt(std::max(frame_->eigenvalues(sum_).second, 0.0)));
+  }
+  region.radius = std::min(region.radius, region.box.norm());
+  if (!std::isfinite(region.radius) || !region.center.allFinite())  // overflow of an unstable plant
+    region.radius = region.stretch = kInfinity;
+  if (static_cast<int>(sources_.size()) < 2 * s_) return;
+  const auto living = members();
+  for (const int source : living.front().accused)
+    if (std::all_of(living.begin(), living.end(), [&](const BankMember& m) {
+          return std::binary_search(m.accused.begin(), m.accused.end(), source);
+        }))
+      witness_.proofs.push_back({source, kAlways});
+}
+
+void Bank::merge(int most, const WindowLevels& z) {
+  detail::require_least("most", most, 1);
+  detail::require_least("z2", z.z2, 0.0);
+  const int n = states();
+  detail::EllipsoidUnion both(n, 2);
+  std::vector<int> sources;
+  const auto together = [&](const BankMember& one, const BankMember& other) {
+    sources.clear();
+    std::set_union(one.left_out.begin(), one.left_out.end(), other.left_out.begin(), other.left_out.end(),
+                   std::back_inserter(sources));
+    return sources.size();
+  };
+  const auto add = [&](const BankMember& m) {
+    Matrix shape(n, n);
+    detail::outer_sum(m.Psi * m.Psi.transpose(), z.z2 * z.z2 * m.P, shape);
+    both.add(m.c, shape, 1.0, shape.diagonal().cwiseMax(0.0).cwiseSqrt());
+  };
+  members_.resize(alive_);
+  Region region = witness_.region;
+  region.center.resize(n);
+  while (members_.size() > static_cast<std::size_t>(most)) {
+    BankMember first = std::move(members_.front());
+    members_.erase(members_.begin());
+    std::size_t at = 0;
+    for (std::size_t k = 1; k < members_.size(); ++k) {
+      const auto size = together(first, members_[k]);
+      const auto least = together(first, members_[at]);
+      if (size < least ||
+          (size == least && (members_[k].c - first.c).norm() < (members_[at].c - first.c).norm()))
+        at = k;
+    }
+    BankMember& other = members_[at];
+    both.clear();
+    add(first);
+    add(other);
+    both.hull(region);
+    Matrix shape(n, n);
+    both.shape(region, shape);
+    both.enclose(shape, region);
+    together(first, other);
+    std::vector<int> accused;
+    std::set_intersection(first.accused.begin(), first.accused.end(), other.accused.begin(),
+                          other.accused.end(), std::back_inserter(accused));
+    other = {region.center, Matrix::Zero(n, n), region.stretch * root(region.shape), sources, accused};
+    std::rotate(members_.begin() + static_cast<std::ptrdiff_t>(at),
+                members_.begin() + static_cast<std::ptrdiff_t>(at) + 1, members_.end());
+  }
+  alive_ = members_.size();
+}
+
+}  // namespace garrison::certificate

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/certificate/memory/meters.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "../require.hpp"
+#include "../top.hpp"
+#include "dense.hpp"
+#include "garrison/certificate/kernels.hpp"
+
+namespace garrison::certificate {
+namespace {
+
+constexpr double kNear = 1e-9;  // of 1: rounding of a leverage
+
+bool determines(const Matrix& H) {
+  if (H.rows() < H.cols()) return false;
+  Eigen::ColPivHouseholderQR<Matrix> qr(H);
+  qr.setThreshold(kNear);
+  return qr.rank() == H.cols();
+}
+
+/// Projector onto the range of H.
+Matrix hat(const Matrix& H) {
+  const Eigen::HouseholderQR<Matrix> qr(H);
+  const Matrix Q = qr.householderQ() * Matrix::Identity(H.rows(), H.cols());
+  return Q * Q.transpose();
+}
+
+/// The rows that are left; `out` need not be sorted.
+template <class Index>
+Matrix without(const MatrixRef& H, const std::vector<Index>& out) {
+  Matrix rest(H.rows() - static_cast<Eigen::Index>(out.size()), H.cols());
+  Eigen::Index at = 0;
+  for (Eigen::Index r = 0; r < H.rows(); ++r)
+    if (std::find(out.begin(), out.end(), static_cast<Index>(r)) == out.end()) rest.row(at++) = H.row(r);
+  return rest;
+}
+
+void require_rows(const MatrixRef& H) {
+  if (H.rows() < 1 || H.cols() < 1) refuse("H", detail::shape(H), "at least 1 x 1");
+  detail::require_shape("H", H, H.rows(), H.cols());
+  detail::require_room("H", static_cast<double>(H.rows()) * static_cast<double>(H.rows()));
+}
+
+/// Depth-first search for sets of `size` rows whose block of the hat matrix has eigenvalue 1.
+class Search {
+ public:
+  Search(const Matrix& H, double tries) : H_(H), hat_(hat(H)), size_(hat_.cwiseAbs()), tries_(tries) {
+    const auto m = static_cast<std::size_t>(H.rows());
+    partners_.resize(m);
+    sums_.resize(m);
+    for (std::size_t i = 0; i < m; ++i) {
+      auto& p = partners_[i];
+      p.resize(m);
+      std::iota(p.begin(), p.end(), 0);
+      p.erase(p.begin() + static_cast<std::ptrdiff_t>(i));
+      const auto row = static_cast<Eigen::Index>(i);
+      std::stable_sort(p.begin(), p.end(), [&](int a, int b) { return size_(row, a) > size_(row, b); });
+      sums_[i].push_back(0.0);
+      for (const int j : p) sums_[i].push_back(sums_[i].back() + size_(row, j));
+    }
+  }
+
+  /// A set, or empty; `complete` turns false when the tries are used up.
+  std::vector<int> find(int size, bool& complete) {
+    for (std::size_t i = 0; i < partners_.size(); ++i) {
+      set_.assign(1, static_cast<int>(i));
+      if (extend(i, 0, size_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)), size - 1, complete))
+        return set_;
+      if (!complete) break;
+    }
+    return {};
+  }
+
+ private:
+  /// Row i of an eigenvector to 1 with the largest entry: sum over the set of |Lam_ij| >= 1.
+  bool extend(std::size_t i, std::size_t from, double total, int need, bool& complete) {
+    if (need == 0) return judge(complete);
+    const auto more = static_cast<std::size_t>(need);
+    for (std::size_t q = from; q + more <= partners_[i].size(); ++q) {
+      if (total + sums_[i][q + more] - sums_[i][q] < 1.0 - kNear) return false;  // partners only get weaker
+      set_.push_back(partners_[i][q]);
+      if (extend(i, q + 1, total + size_(static_cast<Eigen::Index>(i), partners_[i][q]), need - 1, complete))
+        return true;
+      set_.pop_back();
+      if (!complete) return false;
+    }
+    return false;
+  }
+
+  bool judge(bool& complete) {
+    complete = tries_-- > 0.0;
+    if (!complete) return false;
+    const auto k = static_cast<Eigen::Index>(set_.size());
+    Matrix block(k, k);
+    for (Eigen::Index a = 0; a < k; ++a)
+      for (Eigen::Index b = 0; b < k; ++b)
+        block(a, b) = hat_(set_[static_cast<std::size_t>(a)], set_[static_cast<std::size_t>(b)]);
+    Matrix room(k, 3);
+    if (!(detail::extreme_eigenvalues(block, room).second > 1.0 - kNear)) return false;
+    // 1 - eigenvalue is the square of the smallest singular value that is left: ask the rows themselves.
+    return !determines(without(H_, set_));
+  }
+
+  const Matrix& H_;
+  Matrix hat_, size_;
+  double tries_;
+  std::vector<std::vector<int>> partners_;
+  std::vector<std::vector<double>> sums_;
+  std::vector<int> set_;
+};
+
+}  // namespace
+
+Meters meters(const MatrixRef& H, std::span<const int> source) {
+  require_rows(H);
+  const Eigen::Index m = H.rows();
+  if (!source.empty() && static_cast<Eigen::Index>(source.size()) != m)
+    refuse("source", std::to_string(source.size()), std::to_string(m) + " numbers", "one per row");
+  std::vector<std::vector<Eigen::Index>> rows_of;
+  for (Eigen::Index r = 0; r < m; ++r) {
+    const int of = source.empty() ? static_cast<int>(r) : source[static_cast<std::size_t>(r)];
+    if (of < 0 || of >= static_cast<int>(m))
+      refuse("source", std::to_string(of), "0.." + std::to_string(m - 1));
+    if (rows_of.size() <= static_cast<std::size_t>(of)) rows_of.resize(static_cast<std::size_t>(of) + 1);
+    rows_of[static_cast<std::size_t>(of)].push_back(r);
+  }
+  if (!determines(H))
+    refuse("H", "rows that do not determine the state", "full column rank", "remove the reference");
+  const Matrix Lam = hat(H);
+  const auto count = static_cast<Eigen::Index>(rows_of.size());
+  const auto block_norm = [&](Eigen::Index a, Eigen::Index b) {
+    return spectral_norm(Lam(rows_of[static_cast<std::size_t>(a)], rows_of[static_cast<std::size_t>(b)]));
+  };
+  Meters found;
+  found.leverage.resize(count);
+  std::vector<std::vector<double>> across(rows_of.size());
+  for (Eigen::Index a = 0; a < count; ++a) {
+    found.leverage(a) = block_norm(a, a);
+    if (found.leverage(a) > 1.0 - kNear && !determines(without(H, rows_of[static_cast<std::size_t>(a)])))
+      found.critical.push_back(static_cast<int>(a));
+    for (Eigen::Index b = 0; b < count; ++b)
+      if (b != a) across[static_cast<std::size_t>(a)].push_back(block_norm(a, b));
+  }
+  std::vector<double> leverages(found.leverage.begin(), found.leverage.end());
+  const auto bound = [&](int k) {
+    if (k == 0) return 0.0;
+    double rows = 0.0;  // largest row sum of the block norms
+    for (Eigen::Index a = 0; a < count; ++a)
+      rows = std::max(rows, found.leverage(a) + detail::top(across[static_cast<std::size_t>(a)], k - 1));
+    return std::min(detail::top(leverages, k), rows);
+  };
+  for (int k = 0; k <= std::min(static_cast<int>(count), 12); ++k) found.bound.push_back(bound(k));
+  while (found.removable < static_cast<int>(count) && bound(found.removable + 1) < 1.0 - kNear)
+    ++found.removable;
+  return found;
+}
+
+SmallestAttack smallest_undetectable(const MatrixRef& H, int most, double tries) {
+  require_rows(H);
+  detail::require_least("most", most, 1);
+  detail::require_least("tries", tries, 1.0);
+  if (!(H.rowwise().norm().minCoeff() > 1.0 / kHuge))
+    refuse("H", "a row of zeros", "rows that measure something");
+  const Matrix unit = H.rowwise().normalized();
+  if (!determines(unit))
+    refuse("H", "rows that do not determine the state", "full column rank", "remove the reference");
+  Search search(unit, tries);
+  SmallestAttack found;
+  bool complete = true;
+  for (int k = 1; k <= std::min(most, static_cast<int>(H.rows())); ++k) {
+    std::vector<int> set = search.find(k, complete);
+    if (!set.empty()) {
+      found.size = k;
+      found.example = std::move(set);
+      return found;
+    }
+    if (!complete) return found;
+    found.searched = k;
+  }
+  return found;
+}
+
+}  // namespace garrison::certificate

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Least squares over some rows of a window, and the frame G^-1/2 in which its theorems are written. Internal.
+#pragma once
+
+#include <cmath>
+
+#include "dense.hpp"
+#include "garrison/certificate/memory/window.hpp"
+
+namespace garrison::certificate::detail {
+
+/// G = sum of N_r N_r', scaled to a unit diagonal, = L L'. Sized once; nothing allocates after that.
+class WindowFit {
+ public:
+  explicit WindowFit(int unknowns)
+      : G_(unknowns, unknowns),
+        room_(unknowns, unknowns),
+        columns_(unknowns, 3),
+        g_(unknowns),
+        scale_(unknowns),
+        theta_(unknowns) {}
+
+  void clear(int unknowns) {
+    p_ = unknowns;
+    G_.topLeftCorner(p_, p_).setZero();
+    g_.head(p_).setZero();
+  }
+  void add(const Window& w, int r) {
+    const auto N = w.N(r);
+    g_.head(p_) += w.z(r) * N;
+    for (Eigen::Index k = 0; k < p_; ++k)
+      if (N(k) != 0.0) G_.col(k).head(p_) += N(k) * N;
+  }
+  /// The sums of several rows at once.
+  void add(const MatrixRef& G, const VectorRef& g) {
+    G_.topLeftCorner(p_, p_) += G;
+    g_.head(p_) += g;
+  }
+  /// The sums so far.
+  auto G() const { return G_.topLeftCorner(p_, p_); }
+  auto g() const { return g_.head(p_); }
+
+  /// False when the rows do not determine theta: lmin <= 1e-10 lmax of the scaled G.
+  bool solve() {
+    auto G = G_.topLeftCorner(p_, p_);
+    auto scale = scale_.head(p_);
+    for (Eigen::Index k = 0; k < p_; ++k) {
+      if (!(G(k, k) > 0.0 && G(k, k) <= kHuge * kHuge)) return false;
+      scale(k) = std::sqrt(G(k, k));
+    }
+    for (Eigen::Index k = 0; k < p_; ++k) G.col(k).array() /= scale.array() * scale(k);
+    auto copy = room_.topLeftCorner(p_, p_);
+    copy = G;
+    const auto [least, most] = extreme_eigenvalues(copy, columns_);
+    if (!(least > 1e-10 * most) || !cholesky(G)) return false;
+    auto theta = theta_.head(p_);
+    theta.array() = g_.head(p_).array() / scale.array();
+    solve_lower(G, theta);
+    solve_upper(G, theta);
+    theta.array() /= scale.array();
+    return theta.allFinite();
+  }
+
+  auto theta() const { return theta_.head(p_); }
+  /// v becomes G^-1/2 v (up to a rotation).
+  void to_frame(Eigen::Ref<Vector> v) const {
+    v.array() /= scale_.head(p_).array();
+    solve_lower(G_.topLeftCorner(p_, p_), v);
+  }
+
+ private:
+  Matrix G_, room_, columns_;
+  Vector g_, scale_, theta_;
+  Eigen::Index p_ = 0;
+};
+
+}  // namespace garrison::certificate::detail

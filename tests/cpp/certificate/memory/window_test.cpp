@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// A search for a certificate with memory that does not contain the truth, or accuses somebody honest.
+#include <doctest/doctest.h>
+
+#include <iostream>
+
+#include "garrison/certificate/leverage_ball.hpp"
+#include "garrison/certificate/memory/anytime_window.hpp"
+#include "garrison/certificate/memory/hull_window.hpp"
+#include "garrison/certificate/memory/leverage_window.hpp"
+#include "garrison/certificate/memory/subsets_window.hpp"
+#include "random_window.hpp"
+
+using namespace garrison;
+using namespace garrison::certificate;
+
+namespace {
+
+constexpr std::uint64_t kSeed = 20261129;
+
+struct Tally {
+  int sets = 0, answered = 0, proved = 0;
+  double largest = 0.0;
+};
+
+void check(const test::WindowCase& d, const WindowWitness& w, Tally& tally) {
+  ++tally.sets;
+  CHECK_FALSE(w.region.refuted());
+  for (const Proof& proof : w.proofs) {
+    bool lies = false;
+    for (int k = 0; k < d.steps; ++k)
+      lies = lies || ((proof.step == kAlways || proof.step == k) &&
+                      test::contains(d.attacked[static_cast<std::size_t>(k)], proof.source));
+    CHECK(lies);
+    ++tally.proved;
+  }
+  if (!w.region.answered()) return;
+  ++tally.answered;
+  const Vector error = d.x.back() - w.region.center;
+  const double slack = 1e-9 * (1.0 + d.x.back().norm());
+  CHECK(error.norm() <= w.region.radius * (1.0 + 1e-8) + slack);
+  CHECK((error.cwiseAbs().array() <= w.region.box.array() * (1.0 + 1e-8) + slack).all());
+  CHECK(w.region.radius <= w.region.box.norm() * (1.0 + 1e-12));
+  // The ellipsoid, where it has a volume.
+  const Vector scale = w.region.shape.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const Eigen::SelfAdjointEigenSolver<Matrix> shape(
+      Matrix(scale.cwiseInverse().asDiagonal() * w.region.shape * scale.cwiseInverse().asDiagonal()));
+  if (shape.eigenvalues()(0) > 1e-9 * shape.eigenvalues()(d.n - 1)) {
+    const double reach = (shape.operatorInverseSqrt() * error.cwiseQuotient(scale)).norm();
+    CHECK(reach <= w.region.stretch * (1.0 + 1e-6) + 1e-6);
+  }
+  for (Eigen::Index i = 0; i < error.size(); ++i)
+    if (w.region.box(i) > 1e-9) tally.largest = std::max(tally.largest, std::abs(error(i)) / w.region.box(i));
+}
+
+void print(const char* name, const Tally& t) {
+  std::cout << name << ": " << t.sets << " windows, " << t.answered << " answers, " << t.proved
+            << " proofs, largest error/box " << t.largest << "\n";
+}
+
+}  // namespace
+
+TEST_CASE("W2M, W3M and A contain the truth at the edge of their events, and accuse nobody honest") {
+  test::Rng rng(kSeed);
+  Tally leverage;
+  Tally moving;
+  Tally subsets;
+  Tally search;
+  int widths = 0;
+  for (int k = 0; k < 1500; ++k) {
+    CAPTURE(k);
+    test::WindowCase d = test::draw_window(rng, k % 3 == 0, false);
+    test::play(rng, d);
+    const Window w = d.window();
+    WindowAssumption a{d.s, d.levels, d.moving, {}, {}};
+    const WindowWitness by_leverage = leverage_window(w, a);
+    check(d, by_leverage, d.moving ? moving : leverage);
+    if (d.moving) continue;
+    const WindowWitness by_subsets = subsets_window(w, a);
+    check(d, by_subsets, subsets);
+    // Design time: nothing the attackers say makes it wider.
+    const Vector width = subsets_window_width(w, a);
+    if (width.allFinite()) {
+      ++widths;
+      CHECK(by_subsets.region.answered());
+      CHECK((by_subsets.region.box.array() <= width.array() * (1.0 + 1e-9)).all());
+    }
+    for (const int leaves : {1, 4, 30}) {
+      CAPTURE(leaves);
+      const WindowWitness by_search = anytime_window(w, a, leaves);
+      check(d, by_search, search);
+      if (leaves == 1 && by_leverage.region.answered() && by_search.count == 1)
+        CHECK(by_search.region.radius == by_leverage.region.radius);
+    }
+    // What is known of the sources only helps, and stays true.
+    const std::vector<int> known(d.attacked.front().begin(),
+                                 d.attacked.front().begin() + (d.attacked.front().empty() ? 0 : 1));
+    a.proved = known;
+    check(d, leverage_window(w, a), leverage);
+    check(d, subsets_window(w, a), subsets);
+  }
+  print("W2M", leverage);
+  print("W2M, moving sets", moving);
+  print("W3M", subsets);
+  print("A", search);
+  for (const Tally* t : {&leverage, &moving, &subsets, &search}) {
+    CHECK(t->answered > 250);
+    CHECK(t->largest > 0.9);  // the events are reached: the test can fail
+  }
+  CHECK(leverage.proved > 100);
+  CHECK(moving.proved > 50);
+  CHECK(subsets.proved > 100);
+  CHECK(widths > 100);
+}
+
+TEST_CASE("with bounded noise at its bounds the sets always hold, and the hull is the smallest of them") {
+  test::Rng rng(kSeed + 1);
+  Tally leverage;
+  Tally subsets;
+  int hulls = 0;
+  for (int k = 0; k < 500; ++k) {
+    CAPTURE(k);
+    test::WindowCase d = test::draw_window(rng, k % 4 == 0, true);
+    d.levels = {0.0, 0.0, 0.0, kNaN};
+    test::play(rng, d);
+    const Window w = d.window();
+    const WindowAssumption a{d.s, d.levels, d.moving, {}, {}};
+    check(d, leverage_window(w, a), leverage);
+    if (d.moving) continue;
+    const WindowWitness by_subsets = subsets_window(w, a);
+    check(d, by_subsets, subsets);
+    if (k % 3 != 0) continue;
+    const Box hull = hull_window(w, d.s);
+    if (!std::isfinite(hull.lo(0))) continue;
+    ++hulls;
+    const Vector slack = Vector::Constant(d.n, 1e-7 * (1.0 + d.x.back().norm()));
+    CHECK((hull.lo.array() <= (d.x.back() + slack).array()).all());
+    CHECK((hull.hi.array() >= (d.x.back() - slack).array()).all());
+    if (!by_subsets.region.answered()) continue;
+    CHECK((hull.hi.array() <= (by_subsets.region.center + by_subsets.region.box + slack).array()).all());
+    CHECK((hull.lo.array() >= (by_subsets.region.center - by_subsets.region.box - slack).array()).all());
+  }
+  print("W2M, bounded", leverage);
+  print("W3M, bounded", subsets);
+  std::cout << "hulls: " << hulls << "\n";
+  CHECK(leverage.answered > 150);
+  CHECK(subsets.answered > 100);
+  CHECK(hulls > 50);
+}
+
+TEST_CASE("more than s liars are refuted, and a window without enough rows says so") {
+  Window w(1, 1, 3, 4, 12);
+  const Matrix one = Matrix::Ones(1, 1);
+  const auto fill = [&](double lie) {
+    w.begin(3);
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 4; ++j) {
+        const double c = 1.0;
+        w.add(j, {&c, 1}, j < 2 ? lie * (j == 0 ? 1.0 : -1.0) : 0.0, 0.01);
+      }
+      if (k < 2) w.advance(one, 0.01 * one, Vector::Zero(1));
+    }
+  };
+  fill(50.0);
+  const WindowLevels z = window_levels(1e-6, 12, 1);
+  CHECK(leverage_window(w, {1, z, false, {}, {}}).region.refuted());
+  CHECK(subsets_window(w, {1, z, false, {}, {}}).region.refuted());
+  CHECK(anytime_window(w, {1, z, false, {}, {}}, 10).region.refuted());
+  const WindowWitness two = subsets_window(w, {2, z, false, {}, {}});
+  CHECK(two.region.answered());
+  CHECK(two.proofs.size() == 2);
+  for (const int s : {4, 9}) {
+    const WindowWitness none = leverage_window(w, {s, z, false, {}, {}});
+    CHECK_FALSE(none.region.answered());
+    CHECK_FALSE(none.region.refuted());
+    CHECK_FALSE(subsets_window(w, {s, z, false, {}, {}}).region.answered());
+  }
+}
+
+TEST_CASE("bad input to the windows is refused") {
+  CHECK_THROWS_AS(Window(0, 1, 1, 1, 1), InvalidInput);
+  CHECK_THROWS_AS(Window(100000, 1, 1000, 1, 1), InvalidInput);
+  Window w(2, 1, 3, 4, 8);
+  CHECK_THROWS_AS(w.begin(4), InvalidInput);
+  CHECK_THROWS_AS(w.begin(2, 0.0), InvalidInput);
+  w.begin(2);
+  CHECK_THROWS_AS(w.prior_gaussian(Vector::Zero(2), Matrix::Zero(2, 2)), InvalidInput);
+  CHECK_THROWS_AS(w.prior_set(Vector::Zero(2), Matrix::Identity(2, 2), -1.0), InvalidInput);
+  CHECK_THROWS_AS(w.prior_gaussian(Vector::Zero(3), Matrix::Identity(3, 3)), InvalidInput);
+  const std::vector<double> c{1.0, 0.0};
+  CHECK_FALSE(w.add(4, c, 1.0, 1.0));
+  CHECK_FALSE(w.add(0, c, kNaN, 1.0));
+  CHECK_FALSE(w.add(0, c, 1.0, 0.0));
+  CHECK_FALSE(w.add(0, std::vector<double>{0.0, 0.0}, 1.0, 1.0));
+  CHECK(w.add(0, c, 1.0, 1.0));
+  CHECK_THROWS_AS(w.prior_gaussian(Vector::Zero(2), Matrix::Identity(2, 2)), InvalidInput);
+  CHECK_THROWS_AS(w.advance(Matrix::Identity(3, 3), Matrix::Ones(2, 1), Vector::Zero(2)), InvalidInput);
+  const WindowLevels z{3.0, 3.0, 3.0, kNaN};
+  CHECK_THROWS_AS(leverage_window(w, {0, z, false, {}, {}}), InvalidInput);  // its last step is not reached
+  w.advance(Matrix::Identity(2, 2), Matrix::Ones(2, 1), Vector::Zero(2));
+  CHECK_THROWS_AS(w.advance(Matrix::Identity(2, 2), Matrix::Ones(2, 1), Vector::Zero(2)), InvalidInput);
+  CHECK_THROWS_AS(leverage_window(w, {-1, z, false, {}, {}}), InvalidInput);
+  CHECK_THROWS_AS(leverage_window(w, {0, {}, false, {}, {}}), InvalidInput);
+  const std::vector<int> twice{1, 1};
+  const std::vector<int> far{9};
+  const std::vector<int> one{1};
+  CHECK_THROWS_AS(leverage_window(w, {2, z, false, twice, {}}), InvalidInput);
+  CHECK_THROWS_AS(leverage_window(w, {2, z, false, far, {}}), InvalidInput);
+  CHECK_THROWS_AS(leverage_window(w, {2, z, false, one, one}), InvalidInput);
+  CHECK_THROWS_AS(leverage_window(w, {2, z, true, one, {}}), InvalidInput);
+  CHECK_THROWS_AS(subsets_window(w, {2, z, true, {}, {}}), InvalidInput);
+  CHECK_THROWS_AS(anytime_window(w, {2, z, false, {}, {}}, 0), InvalidInput);
+  CHECK_THROWS_AS(hull_window(w, 1), InvalidInput);  // Gaussian rows
+  CHECK_THROWS_AS(window_levels(0.0, 3, 1), InvalidInput);
+}
