@@ -8,6 +8,7 @@
 #include "../require.hpp"
 #include "bank_sources.hpp"
 #include "choices.hpp"
+#include "core/solvers.hpp"
 #include "ellipsoid_union.hpp"
 
 namespace garrison::certificate {

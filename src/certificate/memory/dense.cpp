@@ -97,4 +97,44 @@ std::pair<double, double> extreme_eigenvalues(Eigen::Ref<Matrix> S, Eigen::Ref<M
   return {scale * eigenvalue(1), scale * eigenvalue(n)};
 }
 
+void diagonalise(Eigen::Ref<Matrix> S, Eigen::Ref<Matrix> U) noexcept {
+  constexpr int kMostSweeps = 60;
+  const Eigen::Index n = S.rows();
+  U.setIdentity();
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    bool rotated = false;
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = i + 1; j < n; ++j) {
+        const double a = S(i, j);
+        // Small against both of its diagonal entries: nothing left to do.
+        if (!(std::abs(a) > 1e-17 * std::sqrt(std::abs(S(i, i) * S(j, j))) && std::abs(a) > 1e-300)) continue;
+        rotated = true;
+        const double h = 0.5 * (S(j, j) - S(i, i)) / a;
+        const double t = (h < 0.0 ? -1.0 : 1.0) / (std::abs(h) + std::hypot(1.0, h));
+        const double c = 1.0 / std::hypot(1.0, t);
+        const double s = t * c;
+        for (Eigen::Index k = 0; k < n; ++k) {
+          const double x = S(k, i);
+          const double y = S(k, j);
+          S(k, i) = c * x - s * y;
+          S(k, j) = s * x + c * y;
+        }
+        for (Eigen::Index k = 0; k < n; ++k) {
+          const double x = S(i, k);
+          const double y = S(j, k);
+          S(i, k) = c * x - s * y;
+          S(j, k) = s * x + c * y;
+        }
+        S(i, j) = S(j, i) = 0.0;
+        for (Eigen::Index k = 0; k < n; ++k) {
+          const double x = U(k, i);
+          const double y = U(k, j);
+          U(k, i) = c * x - s * y;
+          U(k, j) = s * x + c * y;
+        }
+      }
+    if (!rotated) break;
+  }
+}
+
 }  // namespace garrison::certificate::detail

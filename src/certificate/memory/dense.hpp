@@ -19,4 +19,8 @@ void solve_upper(const MatrixRef& L, Eigen::Ref<Vector> x) noexcept;
 /// largest. `room`: 3 columns, at least as many rows as S. (0, 0) for an empty S.
 std::pair<double, double> extreme_eigenvalues(Eigen::Ref<Matrix> S, Eigen::Ref<Matrix> room) noexcept;
 
+/// Symmetric S (both halves) becomes diagonal, S = U diag U', by rotations: for the few numbers of a state.
+/// U: n x n.
+void diagonalise(Eigen::Ref<Matrix> S, Eigen::Ref<Matrix> U) noexcept;
+
 }  // namespace garrison::certificate::detail

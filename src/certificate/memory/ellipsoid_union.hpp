@@ -15,7 +15,8 @@ class EllipsoidUnion {
         c_(n, capacity),
         box_(n, capacity),
         P_(n, static_cast<Eigen::Index>(n) * capacity),
-        r_(capacity) {}
+        r_(capacity),
+        away_(n) {}
 
   void clear() { size_ = 0; }
   int size() const { return size_; }
@@ -45,11 +46,10 @@ class EllipsoidUnion {
     region.radius = 0.0;
     for (int k = 0; k < size_; ++k) {
       const auto P = P_.middleCols(n() * k, n());
-      region.stretch =
-          std::max(region.stretch, frame_.length(c_.col(k) - region.center) + r_(k) * frame_.stretch(P));
-      region.radius =
-          std::max(region.radius, (c_.col(k) - region.center).norm() +
-                                      r_(k) * std::sqrt(std::max(frame_.eigenvalues(P).second, 0.0)));
+      away_ = c_.col(k) - region.center;
+      region.stretch = std::max(region.stretch, frame_.length(away_) + r_(k) * frame_.stretch(P));
+      region.radius = std::max(region.radius,
+                               away_.norm() + r_(k) * std::sqrt(std::max(frame_.eigenvalues(P).second, 0.0)));
     }
     region.radius = std::min(region.radius, region.box.norm());
   }
@@ -73,7 +73,7 @@ class EllipsoidUnion {
   Eigen::Index n() const { return c_.rows(); }
   ShapeFrame frame_;
   Matrix c_, box_, P_;
-  Vector r_;
+  Vector r_, away_;
   int size_ = 0;
 };
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/solvers.hpp"
 #include "dense.hpp"
 
 namespace garrison::certificate::detail {
@@ -13,21 +12,21 @@ namespace garrison::certificate::detail {
 /// W with W P W' = I on the range of P. Sized once; nothing allocates after that.
 class ShapeFrame {
  public:
-  explicit ShapeFrame(int n)
-      : eigen_(n), scaled_(n, n), W_(n, n), room_(n, n), columns_(n, 3), d_(n), v_(n) {}
+  explicit ShapeFrame(int n) : scaled_(n, n), W_(n, n), room_(n, n), columns_(n, 3), d_(n), v_(n) {}
 
   /// P: n x n, positive semidefinite, any scales of its coordinates.
   void set(const MatrixRef& P) {
     const Eigen::Index n = P.rows();
     for (Eigen::Index k = 0; k < n; ++k) d_(k) = std::sqrt(std::max(P(k, k), 1e-300));
     for (Eigen::Index k = 0; k < n; ++k) scaled_.col(k).array() = P.col(k).array() / (d_.array() * d_(k));
-    eigen_.compute(scaled_);
-    const auto& values = eigen_.eigenvalues();
+    diagonalise(scaled_, room_);
+    const double largest = scaled_.diagonal().maxCoeff();
     W_.setZero();
     for (Eigen::Index k = 0; k < n; ++k) {
-      if (!(values(k) > 1e-13 * values(n - 1))) continue;
-      const auto u = eigen_.eigenvectors().col(k);
-      for (Eigen::Index j = 0; j < n; ++j) W_.col(j) += (u(j) / (std::sqrt(values(k)) * d_(j))) * u;
+      const double value = scaled_(k, k);
+      if (!(value > 1e-13 * largest)) continue;
+      const auto u = room_.col(k);
+      for (Eigen::Index j = 0; j < n; ++j) W_.col(j) += (u(j) / (std::sqrt(value) * d_(j))) * u;
     }
   }
   const Matrix& W() const { return W_; }
@@ -56,7 +55,6 @@ class ShapeFrame {
   }
 
  private:
-  Eigen::SelfAdjointEigenSolver<Matrix> eigen_;
   Matrix scaled_, W_, room_, columns_;
   Vector d_, v_;
 };

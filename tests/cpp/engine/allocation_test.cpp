@@ -280,7 +280,7 @@ TEST_CASE("the certificates with memory of a sample do not allocate, whatever th
     constexpr int kSources = 6;
     const Matrix A = 0.9 * Matrix::Identity(n, n);
     const Matrix Gam = 0.1 * Matrix::Identity(n, n);
-    const Vector u = Vector::Ones(n);
+    const Vector u = Vector::Zero(n);
     const Matrix C = Matrix::Ones(n, kSources) + test::normal_matrix(rng, n, kSources);
     const Matrix P0 = Matrix::Identity(n, n);
     const Vector c0 = Vector::Zero(n);

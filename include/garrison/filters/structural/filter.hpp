@@ -380,7 +380,6 @@ struct GARRISON_EXPORT Structural {
     bool estimates = true;
     bool measurements = true;
   };
-
   static bool carries(const Gains& g) noexcept { return !g.covariance.empty(); }
   /// The stationary covariance of agent `id`; the gains of one agent hold no other's.
   static const double* stationary(const Gains& g, int id, int nn) noexcept {
@@ -391,290 +390,57 @@ struct GARRISON_EXPORT Structural {
     return g.rows.data() + static_cast<std::ptrdiff_t>(id) * nn;
   }
   template <int n>
-  static double dot(const Gains& g, int id, const Vec<n>& x, int nn) noexcept {
-    const double* c = row(g, id, nn);
-    double sum = 0.0;
-    for (int k = 0; k < nn; ++k) sum += c[k] * x[k];
-    return sum;
-  }
+  static double dot(const Gains& g, int id, const Vec<n>& x, int nn) noexcept;
   /// c_i'K_i c_i
-  static double reaction(const Gains& g, int id, int nn) noexcept {
-    const Heard& own = g.heard[static_cast<std::size_t>(g.offsets[static_cast<std::size_t>(id)])];
-    const double* c = row(g, id, nn);
-    double sum = 0.0;
-    for (int k = 0; k < nn; ++k) sum += c[k] * g.columns[static_cast<std::size_t>(own.first + k)];
-    return sum;
-  }
-
+  static double reaction(const Gains& g, int id, int nn) noexcept;
   /// P of an estimate of which nothing is known: a diagonal, `factor` times the stationary variances.
   template <int n>
-  static void begin(const Local& l, const Gains& g, State<n>& s, double factor) noexcept {
-    if (!carries(g)) return;
-    const int nn = dimension<n>(l);
-    const double* settled = stationary(g, l.id, nn);
-    const std::size_t next = static_cast<std::size_t>(nn) + 1;
-    double most = 0.0;
-    for (std::size_t k = 0; k < s.P.size(); k += next) most = std::max(most, settled[k]);
-    std::fill(s.P.begin(), s.P.end(), 0.0);
-    for (std::size_t k = 0; k < s.P.size(); k += next)
-      s.P[k] = factor * (settled[k] > 0.0 ? settled[k] : most);
-  }
+  static void begin(const Local& l, const Gains& g, State<n>& s, double factor) noexcept;
   /// Whether P is a covariance that can be worked with: messages of a liar may have made it anything.
   template <int n>
-  static bool sound(const Local& l, const Gains& g, const State<n>& s) noexcept {
-    const int nn = dimension<n>(l);
-    const double* settled = stationary(g, l.id, nn);
-    const auto at = [nn](int i, int k) {
-      return static_cast<std::size_t>(i) * static_cast<std::size_t>(nn) + static_cast<std::size_t>(k);
-    };
-    double most = 0.0;
-    for (int i = 0; i < nn; ++i) most = std::max(most, settled[at(i, i)]);
-    bool all = true;
-    for (int i = 0; i < nn; ++i)
-      for (int k = 0; k <= i; ++k) {
-        const double size = s.P[at(i, i)] * s.P[at(k, k)];
-        const double slack = 1e-9 * (size + most * most);
-        all &= s.P[at(i, i)] >= 0.0 && s.P[at(i, i)] <= kMostVariance * most;
-        all &= s.P[at(i, k)] * s.P[at(i, k)] <= size + slack;
-      }
-    return all;
-  }
+  static bool sound(const Local& l, const Gains& g, const State<n>& s) noexcept;
   /// P = the covariance of the stationary error.
   template <int n>
-  static void settle(const Local& l, const Gains& g, State<n>& s) noexcept {
-    if (carries(g)) std::copy_n(stationary(g, l.id, dimension<n>(l)), s.P.size(), s.P.data());
-  }
-
+  static void settle(const Local& l, const Gains& g, State<n>& s) noexcept;
   /// (3): the mean first, then A; a missing estimate's weight goes to the own one.
   template <int n>
   static Seen predict(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
-                      Message<n>& m) noexcept {
-    const int nn = dimension<n>(l);
-    const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
-    const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
-    Seen seen;
-    seen.measurements = l.outputs == 0 || !std::isnan(s.y);
-    double own = heard->weight;
-    for (int k = 0; k < nn; ++k) m.numbers[k] = 0.0;
-    std::size_t at = 0;
-    for (const Heard* j = heard + 1; j != end; ++j) {
-      const bool expected = j->first >= 0 && g.sensing(j->id);
-      if (at >= inbox.size() || inbox.sender(at) != j->id) {
-        own += j->weight;
-        seen.estimates = seen.estimates && j->weight == 0.0;
-        seen.measurements = seen.measurements && !expected;
-        continue;
-      }
-      const auto& letter = inbox[at++];
-      s.rest = std::max(s.rest, letter.rest);  // what is off there is off here from now on
-      seen.measurements = seen.measurements && (letter.measured || !expected);
-      for (int k = 0; k < nn; ++k) m.numbers[k] += j->weight * letter.numbers[k];
-    }
-    for (int k = 0; k < nn; ++k) m.numbers[k] += own * s.x[k];
-    for (int i = 0; i < nn; ++i) {
-      double next = 0.0;
-      for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * m.numbers[k];
-      s.prior[i] = next;
-    }
-    return seen;
-  }
+                      Message<n>& m) noexcept;
   /// Jensen: A (sum_j W_ij P_j) A' + E >= cov(e before the update), into the first n x n of `work`.
   template <int n>
   static void predict_spread(const Local& l, const Gains& g, State<n>& s,
-                             const Inbox<Message<n>>& inbox) noexcept {
-    const int nn = dimension<n>(l);
-    const std::size_t size = structural::entries(nn);
-    double* prior = s.work.data();
-    double* mean = prior + size;
-    double* half = mean + size;
-    const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
-    const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
-    std::fill_n(mean, size, 0.0);
-    double own = heard->weight;
-    std::size_t at = 0;
-    for (const Heard* j = heard + 1; j != end; ++j) {
-      if (at >= inbox.size() || inbox.sender(at) != j->id)
-        own += j->weight;
-      else
-        structural::add_packed(inbox[at++].covariance.data(), j->weight, nn, mean);
-    }
-    for (std::size_t k = 0; k < size; ++k) mean[k] += own * s.P[k];
-    std::copy_n(g.process.data(), size, prior);
-    structural::add_congruence(l.A, 1, nn, mean, nn, half, prior);
-  }
-
+                             const Inbox<Message<n>>& inbox) noexcept;
   /// (4): own measurement, then those of the others in order of id; false when one of them was left out. With
   /// `carried` also P_i = G prior G' + sum of what the noises add, G = I - sum K_i c_j c_j'.
   template <int n>
   static bool update(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, bool used,
-                     bool carried) noexcept {
-    const int nn = dimension<n>(l);
-    const std::size_t size = structural::entries(nn);
-    const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
-    const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
-    double* prior = s.work.data();
-    double* G = prior + size;
-    double* more = G + size;
-    if (carried) {
-      std::fill_n(G, 2 * size, 0.0);
-      for (int k = 0; k < nn; ++k) G[static_cast<std::ptrdiff_t>(k) * (nn + 1)] = 1.0;
-      std::fill(s.P.begin(), s.P.end(), 0.0);
-    }
-    const auto use = [&](const Heard& j, double innovation) {
-      const double* column = g.columns.data() + j.first;
-      for (int k = 0; k < nn; ++k) s.x[k] += column[k] * innovation;
-      if (!carried) return;
-      structural::add_outer(column, row(g, j.id, nn), -1.0, nn, G);
-      structural::add_outer(column, column, g.noise[static_cast<std::size_t>(j.id)], nn, s.P.data());
-    };
-    // That a measurement was over its level says of an honest sensor that the estimate is off.
-    bool out = false;
-    double growth = 1.0;
-    const auto leave = [&](const Heard& j, bool by_level) {
-      char& before = s.left_out[static_cast<std::size_t>(&j - heard)];
-      out = true;
-      if (carried) growth = std::max(growth, g.doubt[static_cast<std::size_t>(j.id)]);
-      if (by_level && !before && carried) {
-        const double* c = row(g, j.id, nn);
-        const double spread = structural::quadratic(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
-        if (spread > 0.0) structural::add_seen_outer(prior, c, g.surprise / spread, nn, more);
-      }
-      before = 1;
-    };
-    const auto keep = [&](const Heard& j) { s.left_out[static_cast<std::size_t>(&j - heard)] = 0; };
-    s.x = s.prior;
-    const bool measured = !std::isnan(s.y);
-    if (used) {
-      use(*heard, s.innovation);
-      keep(*heard);
-    } else if (measured) {
-      leave(*heard, true);
-    }
-    std::size_t at = 0;
-    for (const Heard* j = heard + 1; j != end; ++j) {
-      if (at >= inbox.size() || inbox.sender(at) != j->id) continue;
-      const auto& letter = inbox[at++];
-      if (j->first < 0) continue;
-      if (!letter.measured) {
-        if (letter.withheld && g.isolate) leave(*j, false);
-        continue;
-      }
-      const double innovation = letter.numbers[nn] - dot(g, j->id, s.prior, nn);
-      if (g.isolate && carried && s.start == 0 && surprising(g, *j, prior, innovation, nn)) {
-        leave(*j, true);
-      } else {
-        use(*j, innovation);
-        keep(*j);
-      }
-    }
-    if (!carried) return !out;
-    for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
-    structural::add_congruence(G, nn, 1, prior, nn, more, s.P.data());
-    if (!sound(l, g, s)) begin(l, g, s, kMostVariance);
-    return !out;
-  }
+                     bool carried) noexcept;
   /// Whether a measurement that is heard is over its level, the bound of what is expected of it being
   /// `prior`.
   static bool surprising(const Gains& g, const Heard& j, const double* prior, double innovation,
-                         int nn) noexcept {
-    const double variance =
-        structural::quadratic(prior, row(g, j.id, nn), nn) + g.noise[static_cast<std::size_t>(j.id)];
-    return variance > 0.0 && std::abs(innovation) >= g.sample_level * std::sqrt(variance);
-  }
-
+                         int nn) noexcept;
   /// One test of `value`, of which `std` is the deviation (`exact`) or bounds it: sets statistic and
   /// threshold, true for an alarm. The matrix of a window is that of the stationary error; while a gap is
   /// behind it, the sample alone is tested.
   template <int n>
   static bool examine(const Gains& g, State<n>& s, std::size_t id, double value, double std,
-                      bool exact) noexcept {
-    s.threshold = kNaN;
-    s.statistic = std::abs(value);
-    bool window = false;
-    if (g.window > 1) {
-      const bool stationary = exact || (s.start > 0 && s.rest <= s.start);
-      remember(g, s, stationary ? value : kNaN);
-      window = stationary && !s.broken;
-      if (window) s.statistic = window_statistic(g, s, id);
-    }
-    if (s.start > 0 || std::isnan(s.statistic)) return false;
-    if (window) {
-      if (exact) s.threshold = g.level;
-    } else {
-      const double usual = g.innovation ? g.innovation_std[id] : g.std[id];
-      if (std <= kBlind * usual || (g.isolate && s.alarm)) s.threshold = g.sample_level * std;
-    }
-    return s.statistic >= s.threshold;
-  }
-
+                      bool exact) noexcept;
   /// The memory of the tests: the verdict.
   template <int n>
-  static void judge(const Local& l, const Gains& g, State<n>& s, bool over) noexcept {
-    const bool absent = g.accuse_missing && l.outputs > 0 && std::isnan(s.y);
-    if (!absent && std::isnan(s.threshold)) return;
-    over = over || absent;
-    s.above = over ? s.above + 1 : 0;
-    s.below = over ? 0 : s.below + 1;
-    if (s.above >= g.alarm_after) s.alarm = true;
-    if (s.below >= g.clear_after) s.alarm = false;
-    s.accused.clear();
-    if (s.alarm) s.accused.insert(l.id);
-  }
-
+  static void judge(const Local& l, const Gains& g, State<n>& s, bool over) noexcept;
   /// Counts how long the error is not stationary: after a gap (`whole` is false) until what it added to P has
   /// fallen below 1 % of the deviation.
   template <int n>
-  static void pass(const Local& l, const Gains& g, State<n>& s, bool whole) noexcept {
-    if (s.start > 0) --s.start;
-    const int nn = dimension<n>(l);
-    if (!whole) {
-      double ratio = 1.0;
-      const double* settled = carries(g) ? stationary(g, l.id, nn) : nullptr;
-      for (int k = 0; k < nn && settled != nullptr; ++k) {
-        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * (nn + 1);
-        if (settled[at] > 0.0) ratio = std::max(ratio, s.P[static_cast<std::size_t>(at)] / settled[at]);
-      }
-      const double more =
-          g.rho > 0.0 && g.rho < 1.0 ? std::ceil(-0.5 * std::log(ratio) / std::log(g.rho)) : 0.0;
-      const double most = std::min<double>(kMostRest, std::max(1, g.recover) + more);
-      s.rest = std::max(s.rest, static_cast<int>(most));
-      return;
-    }
-    if (s.rest > 0 && --s.rest == 0) settle(l, g, s);
-  }
-
+  static void pass(const Local& l, const Gains& g, State<n>& s, bool whole) noexcept;
   template <int n>
-  static void remember(const Gains& g, State<n>& s, double residual) noexcept {
-    if (std::isnan(residual)) {
-      s.broken = s.broken || s.start == 0;
-      s.filled = s.oldest = 0;
-      return;
-    }
-    s.last[static_cast<std::size_t>((s.oldest + s.filled) % g.window)] = residual;
-    if (s.filled < g.window)
-      ++s.filled;
-    else
-      s.oldest = (s.oldest + 1) % g.window;
-    s.broken = s.broken && s.filled < g.window;
-  }
-
+  static void remember(const Gains& g, State<n>& s, double residual) noexcept;
   /// v'S^-1 v over the window, NaN until it is full.
   template <int n>
-  static double window_statistic(const Gains& g, const State<n>& s, std::size_t id) noexcept {
-    const auto w = static_cast<std::size_t>(g.window);
-    if (s.filled < g.window || g.precision.empty()) return kNaN;
-    const double* S = g.precision.data() + id * w * w;
-    double sum = 0.0;
-    for (std::size_t a = 0; a < w; ++a) {
-      double row = 0.0;
-      for (std::size_t b = 0; b < w; ++b)
-        row += S[a * w + b] * s.last[(static_cast<std::size_t>(s.oldest) + b) % w];
-      sum += row * s.last[(static_cast<std::size_t>(s.oldest) + a) % w];
-    }
-    return sum;
-  }
+  static double window_statistic(const Gains& g, const State<n>& s, std::size_t id) noexcept;
 };
 
 }  // namespace garrison
 
+#include "garrison/filters/structural/judge.hpp"
 #include "garrison/filters/structural/params.hpp"
+#include "garrison/filters/structural/step.hpp"

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tests of the structural filter, and what is remembered of them. Included by filter.hpp.
+#pragma once
+
+#include "garrison/filters/structural/filter.hpp"
+
+namespace garrison {
+
+template <int n>
+bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double value, double std,
+                         bool exact) noexcept {
+  s.threshold = kNaN;
+  s.statistic = std::abs(value);
+  bool window = false;
+  if (g.window > 1) {
+    const bool stationary = exact || (s.start > 0 && s.rest <= s.start);
+    remember(g, s, stationary ? value : kNaN);
+    window = stationary && !s.broken;
+    if (window) s.statistic = window_statistic(g, s, id);
+  }
+  if (s.start > 0 || std::isnan(s.statistic)) return false;
+  if (window) {
+    if (exact) s.threshold = g.level;
+  } else {
+    const double usual = g.innovation ? g.innovation_std[id] : g.std[id];
+    if (std <= kBlind * usual || (g.isolate && s.alarm)) s.threshold = g.sample_level * std;
+  }
+  return s.statistic >= s.threshold;
+}
+
+template <int n>
+void Structural::judge(const Local& l, const Gains& g, State<n>& s, bool over) noexcept {
+  const bool absent = g.accuse_missing && l.outputs > 0 && std::isnan(s.y);
+  if (!absent && std::isnan(s.threshold)) return;
+  over = over || absent;
+  s.above = over ? s.above + 1 : 0;
+  s.below = over ? 0 : s.below + 1;
+  if (s.above >= g.alarm_after) s.alarm = true;
+  if (s.below >= g.clear_after) s.alarm = false;
+  s.accused.clear();
+  if (s.alarm) s.accused.insert(l.id);
+}
+
+template <int n>
+void Structural::remember(const Gains& g, State<n>& s, double residual) noexcept {
+  if (std::isnan(residual)) {
+    s.broken = s.broken || s.start == 0;
+    s.filled = s.oldest = 0;
+    return;
+  }
+  s.last[static_cast<std::size_t>((s.oldest + s.filled) % g.window)] = residual;
+  if (s.filled < g.window)
+    ++s.filled;
+  else
+    s.oldest = (s.oldest + 1) % g.window;
+  s.broken = s.broken && s.filled < g.window;
+}
+
+template <int n>
+double Structural::window_statistic(const Gains& g, const State<n>& s, std::size_t id) noexcept {
+  const auto w = static_cast<std::size_t>(g.window);
+  if (s.filled < g.window || g.precision.empty()) return kNaN;
+  const double* S = g.precision.data() + id * w * w;
+  double sum = 0.0;
+  for (std::size_t a = 0; a < w; ++a) {
+    double row = 0.0;
+    for (std::size_t b = 0; b < w; ++b)
+      row += S[a * w + b] * s.last[(static_cast<std::size_t>(s.oldest) + b) % w];
+    sum += row * s.last[(static_cast<std::size_t>(s.oldest) + a) % w];
+  }
+  return sum;
+}
+
+}  // namespace garrison
