@@ -43,14 +43,39 @@ void compare(const Setting& g, const Quorum& heard, VehicleState& s) noexcept {
     s.trouble |= kQuorum;
 }
 
-/// V_1 behind a gap: nothing of the past counts. Where too many of those heard may lie there is no bound.
-void start_anew(const Shared& shared, const View& view, VehicleState& s) noexcept {
+/// (12) with the prediction of the best source (13), a vehicle of V_1 or with a free sensor; false: nobody is
+/// within reach. `varpi` = 1: the own prediction is worth nothing.
+bool borrow(const Local& l, const Shared& shared, const View& view, double varpi, VehicleState& s) noexcept {
+  const Setting& g = shared.setting;
+  BestSource best(shared.options.tie_by_bound);
+  for (int p = 0; p < view.size(); ++p) {
+    if (p == g.range || !view[p].linked || view[p].message == nullptr || !view[p].message->covered())
+      continue;
+    const int j = view.id_of(p);
+    if (in_V1(j, l.agents, g.range) || s.sets.free.contains(j))
+      best.offer(j, std::abs(p - g.range), view[p].message->bound);
+  }
+  s.source = best.id();
+  if (s.source < 0) return false;
+  const Seen& j = view[s.source - l.id + g.range];
+  for (int k = 0; k < 2; ++k)
+    s.x[k] = s.prediction[k] + (j.message->prediction()[k] + j.link[k] - s.prediction[k]) / varpi;
+  const double bound = j.message->bound;
+  s.alpha =
+      moved(s.foreseen, varpi, Bound{bound, bound, bound} + relative_noise(g) * std::abs(s.source - l.id));
+  return true;
+}
+
+/// V_1 behind a gap: nothing of the past counts. Where too many of those heard may lie a neighbour's
+/// prediction serves as for vehicles outside V_1, and without one there is no bound.
+void start_anew(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
   s.beta = kNaN;
   s.source = -1;
   s.x = s.prediction;
   std::fill_n(s.gains.get(), view.size(), 0.0);
   s.verdict = Verdict::not_tested;
   const Quorum heard = quorum(shared, view, s);
+  if (!heard.certain && borrow(l, shared, view, 1.0, s)) return;
   s.x = heard.middle;
   if (heard.certain) s.alpha = median_error(shared.setting);
 }
@@ -58,7 +83,7 @@ void start_anew(const Shared& shared, const View& view, VehicleState& s) noexcep
 /// V_1: saturated innovations of everybody in range.
 void update_inner(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
   const Setting& g = shared.setting;
-  if (!s.foreseen.known()) return start_anew(shared, view, s);
+  if (!s.foreseen.known()) return start_anew(l, shared, view, s);
   s.beta = threshold(g, s.foreseen.norm);
   s.source = -1;
   Window w;
@@ -92,6 +117,9 @@ void update_inner(const Local& l, const Shared& shared, const View& view, Vehicl
     }
   }
   for (int k = 0; k < 2; ++k) s.x[k] = s.prediction[k] + step[k] / (2.0 * g.range);
+  // Where many were lost those who may lie can outweigh the rest: the prediction alone is better then, and
+  // without this the bound and the liars' pull, which follows it, would feed each other.
+  bool used = true;
   if (shared.options.bound == BoundKind::printed) {
     s.alpha = {printed_bound(g, s.beta, s.alpha.norm, w), kInfinity, kInfinity};
   } else {
@@ -99,6 +127,12 @@ void update_inner(const Local& l, const Shared& shared, const View& view, Vehicl
     if (shared.options.bound == BoundKind::tight)
       s.alpha.norm = tight_bound(g, s.beta, s.foreseen.norm, w, free_noise, noise);
     s.alpha = s.alpha.sharpened();
+    used = s.alpha.norm <= s.foreseen.norm;
+  }
+  if (!used) {
+    s.x = s.prediction;
+    s.alpha = s.foreseen;
+    std::fill_n(s.gains.get(), view.size(), 0.0);
   }
   const Quorum heard = quorum(shared, view, s);
   if (heard.certain && shared.options.bound != BoundKind::printed) compare(g, heard, s);
@@ -107,7 +141,7 @@ void update_inner(const Local& l, const Shared& shared, const View& view, Vehicl
     s.alpha = median_error(g);
   }
   const bool own = s.gains[static_cast<std::size_t>(g.range)] >= 1.0 && !s.sets.suspected.contains(l.id);
-  s.verdict = own ? Verdict::cleared : Verdict::suspected;
+  s.verdict = own ? Verdict::cleared : used ? Verdict::suspected : Verdict::not_tested;
 }
 
 /// The others: their own measurement once it is known to be free, else a neighbour's prediction.
@@ -122,23 +156,9 @@ void update_outer(const Local& l, const Shared& shared, const View& view, Vehicl
     s.alpha = moved(s.foreseen, varpi, absolute_noise(g));
     return;
   }
-  BestSource best(shared.options.tie_by_bound);
-  for (int p = 0; p < view.size(); ++p) {
-    if (p == g.range || !view[p].linked || view[p].message == nullptr || !view[p].message->covered())
-      continue;
-    const int j = view.id_of(p);
-    if (in_V1(j, l.agents, g.range) || s.sets.free.contains(j))
-      best.offer(j, std::abs(p - g.range), view[p].message->bound);
-  }
-  s.source = best.id();
   s.x = s.prediction;
   s.alpha = s.foreseen;
-  if (s.source < 0) return;  // nobody within reach: the prediction stands
-  const Seen& j = view[s.source - l.id + g.range];
-  for (int k = 0; k < 2; ++k) s.x[k] += (j.message->prediction()[k] + j.link[k] - s.prediction[k]) / varpi;
-  const double bound = j.message->bound;
-  s.alpha =
-      moved(s.foreseen, varpi, Bound{bound, bound, bound} + relative_noise(g) * std::abs(s.source - l.id));
+  borrow(l, shared, view, varpi, s);  // nobody within reach: the prediction stands
 }
 
 /// Size of what was added up for the estimate: it can be near zero where its terms are not.

@@ -205,10 +205,13 @@ TEST_CASE("a vehicle that paused and listens takes nothing from its past") {
     const Road r = road(rng);
     const int N = r.p.setting.vehicles;
     const int who = test::whole(rng, r.p.setting.range, N - 1 - r.p.setting.range);
-    const auto prepared = make_filter("platoon", r.p.params)->prepare(r.p.model, r.p.network);
+    ParamMap params = r.p.params;
+    params["detector"] = false;
+    const auto prepared = make_filter("platoon", params)->prepare(r.p.model, r.p.network);
     test::AgentsByHand agents(*prepared, r.p.network);
     for (int i = 0; i < N; ++i) agents[i].reset(r.start.x0.segment(2 * i, 2));
-    const auto position = [](int t, int i) { return 1.0 * t - 20.0 * i; };
+    // Those ahead fall back by 10 m meanwhile, so that the gap it remembers is as wrong as its position.
+    const auto position = [&](int t, int i) { return 1.0 * t - 20.0 * i - (t > 40 && i < who ? 10.0 : 0.0); };
     const auto y = [&](int t) {
       return [&, t](int i) {
         Vector all(r.p.model.outputs(i));
