@@ -58,7 +58,9 @@ TEST_CASE("families that average move in proportion to the lie, and say that no 
     CHECK(worst(large) > 20.0 * worst(small));
     CHECK(worst(small) > 5.0 * worst(run(name, params, {})));
     for (const double bound : large.bound) CHECK(std::isnan(bound));
-    CHECK(large.warnings.front().find("lie in their messages") != std::string::npos);
+    CHECK(std::any_of(large.warnings.begin(), large.warnings.end(), [](const std::string& one) {
+      return one.find("lie in their messages") != std::string::npos;
+    }));
   }
 }
 
@@ -82,12 +84,15 @@ TEST_CASE("lfre trims up to f liars away, and no more") {
   CHECK(error({0, 1}) > 1e3);
 }
 
-TEST_CASE("a structural agent that claims to rest keeps the others' tests at rest") {
-  const ParamMap params{{"settle", std::int64_t{3}}};
-  CHECK(count(run("structural", params, {}), Verdict::cleared) > 200);
-  const auto r = run("structural", params, {falsify(Schedule(1, {2}), "rest", 9.0, {})});
-  CHECK(count(r, Verdict::cleared) < 20);
-  CHECK(count(r, Verdict::attacked) == 0);
+TEST_CASE("a structural agent that lies about itself has nobody accused") {
+  const auto honest = run("structural", {}, {});
+  for (const auto& [field, value] :
+       std::vector<std::pair<const char*, double>>{{"rest", 9.0}, {"covariance", 1e6}}) {
+    CAPTURE(field);
+    const auto r = run("structural", {}, {falsify(Schedule(1, {2}), field, value, {})});
+    CHECK(count(r, Verdict::attacked) <=
+          count(honest, Verdict::attacked) + 3);  // every agent judges itself alone
+  }
 }
 
 TEST_CASE("a forged bound of rdkf would be believed, and is not reported") {

@@ -2,6 +2,7 @@
 // No honest sensor is ever proved attacked, whatever links, restarts and measurements do.
 #include <doctest/doctest.h>
 
+#include "../../every_filter.hpp"
 #include "../../random_system.hpp"
 #include "garrison/attacks/registry.hpp"
 #include "garrison/drivers/simulate.hpp"
@@ -102,7 +103,21 @@ TEST_CASE("what is not tested is not called cleared") {
   CHECK(count("scalar_gain", {}, 0.0, Verdict::not_tested) == 240);
   CHECK(count("dkf", {}, 0.0, Verdict::not_tested) == 240);
   CHECK(count("partial_sharing", {{"gain", 0.1}}, 0.0, Verdict::not_tested) == 240);
-  CHECK(count("structural", {}, 0.3, Verdict::cleared) < 40);
+}
+
+TEST_CASE("no family calls a sensor cleared at a sample without a threshold") {
+  test::Rng rng(13);
+  const Model model = test::scalar_model(rng, 2, 6, 0.98, 0.01, 0.01);
+  for (const auto& filter : test::every_filter()) {
+    for (const double drop : {0.0, 0.3}) {
+      RunOptions o;
+      o.link.drop = drop;
+      const Record r = simulate(model, Network::ring(6), *filter, {40, {}, 0.0, "uniform", {}}, o);
+      CAPTURE(filter->name());
+      for (std::size_t k = 6; k < r.verdict.size(); ++k)
+        if (r.verdict[k] == static_cast<std::uint8_t>(Verdict::cleared)) CHECK(!std::isnan(r.threshold[k]));
+    }
+  }
 }
 
 TEST_CASE("one liar among the agents: no bound is claimed, and the run says that accusations are no proofs") {
