@@ -81,7 +81,7 @@ def simulate(
     link: drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says), cuts: a
     list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of (sample,
     round, sender, receiver). keep: of "estimate", "report", "signals", "measurements",
-    "details" (lists such as sets). threads: 0 = all cores; the result does not depend on it.
+    "details" (lists such as sets). threads: 0 = all cores it may use; the result does not depend on it.
     progress(done, total) is called at most once per percent. conditions: evaluate the filter's conditions first, and
     put the required ones that are not met into the run's `warnings`. design: made before of these very three
     (garrison.prepare does that).

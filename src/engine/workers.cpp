@@ -1,13 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/engine/workers.hpp"
 
-#include <algorithm>
-#include <string>
+#include <csignal>
+#include <exception>
 
 namespace garrison {
+namespace {
+
+/// Threads inherit the mask of the one that starts them: the application's signals are then handled by its
+/// own threads, never in the middle of a step. What a thread's own fault raises stays with that thread.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    sigfillset(&all);
+    for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGABRT})
+      sigdelset(&all, fault);
+    pthread_sigmask(SIG_BLOCK, &all, &before_);
+  }
+  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+}  // namespace
 
 Workers::Workers(int threads) {
-  for (int k = 1; k < threads; ++k) pool_.emplace_back([this, k] { loop(k); });
+  const SignalsBlocked blocked;
+  try {
+    for (int k = 1; k < threads; ++k) pool_.emplace_back([this, k] { loop(k); });
+  } catch (const std::exception&) {
+    // No more threads or memory to be had: those that run do all the work, with the same result.
+  }
 }
 
 Workers::~Workers() {
@@ -59,12 +86,6 @@ void Workers::split(std::int64_t count, Task task) {
   run(0);
   std::unique_lock lock(mutex_);
   done_.wait(lock, [&] { return pending_ == 0; });
-}
-
-int thread_count(int requested) {
-  if (requested < 0)
-    refuse("threads", std::to_string(requested), "a whole number >= 0", "0 uses every core of the machine");
-  return requested > 0 ? requested : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 }  // namespace garrison

@@ -26,7 +26,7 @@ struct GARRISON_EXPORT Keep {
 struct GARRISON_EXPORT RunOptions {
   int trials = 1;
   std::uint64_t seed = 0;
-  int threads = 0;              ///< 0 = all cores; the result does not depend on it
+  int threads = 0;              ///< 0 = all cores it may use; the result does not depend on it
   Matrix start;                 ///< initial estimates, n x N, or n x 1 for all agents alike; empty = zeros
   std::vector<Attack> attacks;  ///< applied in this order
   std::vector<std::shared_ptr<const MessageAttack>> message_attacks;

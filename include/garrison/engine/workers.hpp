@@ -12,8 +12,9 @@
 
 namespace garrison {
 
-/// Keeps `threads - 1` threads waiting; `split` cuts [0, count) into one contiguous part per thread and
-/// returns when all are done. With one thread everything runs in the caller.
+/// Keeps `threads - 1` threads waiting, or as many as can be started; `split` cuts [0, count) into one
+/// contiguous part per thread and returns when all are done. With one thread everything runs in the caller.
+/// The threads take no signals of the application.
 class GARRISON_EXPORT Workers {
  public:
   explicit Workers(int threads);
@@ -52,7 +53,8 @@ class GARRISON_EXPORT Workers {
   Task task_;
 };
 
-/// `requested` threads, or all the machine has when 0. @throws InvalidInput when negative.
+/// `requested` threads, or when 0 as many as this process may use: the cores of its affinity, and no more
+/// than its control groups give it time for. @throws InvalidInput when negative.
 GARRISON_EXPORT int thread_count(int requested);
 
 }  // namespace garrison
