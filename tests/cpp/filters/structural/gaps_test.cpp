@@ -110,6 +110,9 @@ TEST_CASE("what a message says of the bound has its price, and a liar's numbers 
     const int carried = n <= 16 ? n * (n + 1) / 2 : 0;
     CHECK(r.bytes_per_step == 2 * n * (2 * n - 1) * (8 * (n + 1 + carried) + 1 + 1 + 2));
     CHECK(std::isnan(r.threshold[static_cast<std::size_t>(51 * 2 * n)]) == (n > 16));
+    const Record screened =
+        replay(model, network, *make_filter("structural", {{"isolate", true}}), y, Matrix(), {});
+    CHECK_FALSE(std::isnan(screened.threshold[static_cast<std::size_t>(51 * 2 * n)]));
   }
   const Model model = test::known_model(0.9 * Matrix::Identity(2, 2), test::normal_matrix(rng, 4, 2),
                                         0.1 * Matrix::Identity(2, 2), 0.3);
