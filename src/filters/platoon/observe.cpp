@@ -34,6 +34,58 @@ Quorum quorum(const Shared& shared, const View& view, const VehicleState& s) noe
   return {{median(column[0], count), median(column[1], count)}, true, 2 * liars < count};
 }
 
+/// Where truth can be in one entry when at most `liars` of `count` values are further from it than `noise`:
+/// between the outermost points that all the others can agree on.
+struct Range {
+  double lo = kInfinity;
+  double hi = -kInfinity;
+};
+Range agreed(const double* value, const double* noise, int count, int liars) noexcept {
+  Range range;
+  const auto admitted = [&](double point) {
+    int agree = 0;
+    for (int j = 0; j < count; ++j)
+      agree += std::abs(value[j] - point) <= noise[j] * (1.0 + kGuard) + kGuard * std::abs(point) ? 1 : 0;
+    return agree >= count - liars;
+  };
+  for (int j = 0; j < count; ++j) {
+    const double ends[2] = {value[j] - noise[j], value[j] + noise[j]};
+    if (admitted(ends[0])) range.lo = std::min(range.lo, ends[0]);
+    if (admitted(ends[1])) range.hi = std::max(range.hi, ends[1]);
+  }
+  return range;
+}
+
+/// Where no median is certain: the middle of what one honest sensor at least leaves possible, when that is
+/// known to within q, as a start has to be.
+bool take_agreed(const Shared& shared, const View& view, VehicleState& s) noexcept {
+  const Setting& g = shared.setting;
+  double value[2][2 * kMostRange + 1];
+  double noise[2][2 * kMostRange + 1];
+  int count = 0;
+  for (int p = 0; p < view.size(); ++p) {
+    if (!view[p].measured || s.sets.attacked.contains(view.id_of(p))) continue;
+    const Bound reached = reached_noise(g, std::abs(p - g.range));
+    for (int k = 0; k < 2; ++k) value[k][count] = view[p].y[k];
+    noise[0][count] = reached.position;
+    noise[1][count++] = reached.velocity;
+  }
+  const int liars = std::max(0, g.attacked - s.sets.attacked.count());
+  if (count <= liars) return false;
+  double middle[2];
+  double half[2];
+  for (int k = 0; k < 2; ++k) {
+    const Range range = agreed(value[k], noise[k], count, liars);
+    if (!(range.lo <= range.hi)) return false;
+    middle[k] = (range.lo + range.hi) / 2.0;
+    half[k] = (range.hi - range.lo) / 2.0;
+  }
+  if (!(length(half) <= g.q)) return false;
+  s.x = {middle[0], middle[1]};
+  s.alpha = {length(half), half[0], half[1]};
+  return true;
+}
+
 /// What less than half can move is further from the prediction than both bounds allow: one of them is false.
 void compare(const Setting& g, const Quorum& heard, VehicleState& s) noexcept {
   const Bound level = s.foreseen + median_error(g);
@@ -67,7 +119,7 @@ bool borrow(const Local& l, const Shared& shared, const View& view, double varpi
 }
 
 /// V_1 behind a gap: nothing of the past counts. Where too many of those heard may lie a neighbour's
-/// prediction serves as for vehicles outside V_1, and without one there is no bound.
+/// prediction serves as for vehicles outside V_1, then what they leave possible; else there is no bound.
 void start_anew(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
   s.beta = kNaN;
   s.source = -1;
@@ -75,7 +127,7 @@ void start_anew(const Local& l, const Shared& shared, const View& view, VehicleS
   std::fill_n(s.gains.get(), view.size(), 0.0);
   s.verdict = Verdict::not_tested;
   const Quorum heard = quorum(shared, view, s);
-  if (!heard.certain && borrow(l, shared, view, 1.0, s)) return;
+  if (!heard.certain && (borrow(l, shared, view, 1.0, s) || take_agreed(shared, view, s))) return;
   s.x = heard.middle;
   if (heard.certain) s.alpha = median_error(shared.setting);
 }
