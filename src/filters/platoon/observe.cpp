@@ -132,17 +132,17 @@ void start_anew(const Local& l, const Shared& shared, const View& view, VehicleS
   if (heard.certain) s.alpha = median_error(shared.setting);
 }
 
-/// V_1: saturated innovations of everybody in range.
-void update_inner(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
-  const Setting& g = shared.setting;
-  if (!s.foreseen.known()) return start_anew(l, shared, view, s);
-  s.beta = threshold(g, s.foreseen.norm);
-  s.source = -1;
-  Window w;
+/// Saturated innovations of everybody in range.
+struct Innovations {
+  Window window;
+  double noise[2 * kMostRange + 1];  // of the undecided, in falling order
+  double free_noise = 0.0;           // of the free ones, summed
+  double step[2] = {0.0, 0.0};       // sum of k eta
+};
+Innovations innovations(const Setting& g, const View& view, VehicleState& s) noexcept {
+  Innovations all;
+  Window& w = all.window;
   w.proved = s.sets.attacked.count();
-  double noise[2 * kMostRange + 1];
-  double free_noise = 0.0;
-  double step[2] = {0.0, 0.0};
   // Far ones first: the noise levels of the undecided then come in falling order.
   for (int distance = g.range; distance >= 0; --distance) {
     for (int side = distance == 0 ? 1 : -1; side <= 1; side += 2) {
@@ -158,36 +158,51 @@ void update_inner(const Local& l, const Shared& shared, const View& view, Vehicl
       const double norm = length(eta);
       if (!(norm < kHuge)) continue;  // a lie in a message: as good as nothing
       k = gain(s.beta, norm, attacked, free);
-      step[0] += k * eta[0];
-      step[1] += k * eta[1];
+      all.step[0] += k * eta[0];
+      all.step[1] += k * eta[1];
+      const double noise = reached_noise(g, distance).norm;
       if (free) {
         ++w.free;
-        free_noise += reached_noise(g, distance).norm;
+        all.free_noise += noise;
       } else {
-        noise[w.undecided++] = reached_noise(g, distance).norm;
+        all.noise[w.undecided++] = noise;
       }
     }
   }
-  for (int k = 0; k < 2; ++k) s.x[k] = s.prediction[k] + step[k] / (2.0 * g.range);
+  return all;
+}
+
+/// The bound that belongs to (12) with these innovations.
+Bound bound_of(const Shared& shared, const Innovations& all, const VehicleState& s) noexcept {
+  const Setting& g = shared.setting;
+  if (shared.options.bound == BoundKind::printed)
+    return {printed_bound(g, s.beta, s.alpha.norm, all.window), kInfinity, kInfinity};
+  Bound bound = SafeStep(g, s.beta, s.foreseen.norm, all.window)(s.foreseen, reached_noise(g, g.range));
+  if (shared.options.bound == BoundKind::tight)
+    bound.norm = tight_bound(g, s.beta, s.foreseen.norm, all.window, all.free_noise, all.noise);
+  return bound.sharpened();
+}
+
+/// V_1.
+void update_inner(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
+  const Setting& g = shared.setting;
+  if (!s.foreseen.known()) return start_anew(l, shared, view, s);
+  const bool printed = shared.options.bound == BoundKind::printed;
+  s.beta = threshold(g, s.foreseen.norm);
+  s.source = -1;
+  const Innovations all = innovations(g, view, s);
+  const Bound bound = bound_of(shared, all, s);
   // Where many were lost those who may lie can outweigh the rest: the prediction alone is better then, and
   // without this the bound and the liars' pull, which follows it, would feed each other.
-  bool used = true;
-  if (shared.options.bound == BoundKind::printed) {
-    s.alpha = {printed_bound(g, s.beta, s.alpha.norm, w), kInfinity, kInfinity};
-  } else {
-    s.alpha = SafeStep(g, s.beta, s.foreseen.norm, w)(s.foreseen, reached_noise(g, g.range));
-    if (shared.options.bound == BoundKind::tight)
-      s.alpha.norm = tight_bound(g, s.beta, s.foreseen.norm, w, free_noise, noise);
-    s.alpha = s.alpha.sharpened();
-    used = s.alpha.norm <= s.foreseen.norm;
-  }
-  if (!used) {
-    s.x = s.prediction;
-    s.alpha = s.foreseen;
+  const bool used = printed || bound.norm <= s.foreseen.norm;
+  s.x = s.prediction;
+  if (used)
+    for (int k = 0; k < 2; ++k) s.x[k] += all.step[k] / (2.0 * g.range);
+  else
     std::fill_n(s.gains.get(), view.size(), 0.0);
-  }
+  s.alpha = used ? bound : s.foreseen;
   const Quorum heard = quorum(shared, view, s);
-  if (heard.certain && shared.options.bound != BoundKind::printed) compare(g, heard, s);
+  if (heard.certain && !printed) compare(g, heard, s);
   if (heard.certain && shared.options.median && median_bound(g) < s.alpha.norm) {
     s.x = heard.middle;
     s.alpha = median_error(g);
