@@ -5,34 +5,10 @@
 
 #include "garrison/filters/platoon/bounds.hpp"
 #include "garrison/filters/platoon/view.hpp"
+#include "quorum.hpp"
 
 namespace garrison::platoon {
 namespace {
-
-/// Middle of `count` values (the mean of the two middle ones); reorders them.
-double median(double* values, int count) noexcept {
-  std::sort(values, values + count);
-  return count % 2 == 1 ? values[count / 2] : (values[count / 2 - 1] + values[count / 2]) / 2.0;
-}
-
-/// S3: the entrywise median of what sensors not yet proved attacked say.
-struct Quorum {
-  Vec<2> middle;
-  bool heard;    ///< there is one
-  bool certain;  ///< less than half of it can lie
-};
-Quorum quorum(const Shared& shared, const View& view, const VehicleState& s) noexcept {
-  double column[2][2 * kMostRange + 1];
-  int count = 0;
-  for (int p = 0; p < view.size(); ++p) {
-    if (!view[p].measured || s.sets.attacked.contains(view.id_of(p))) continue;
-    for (int k = 0; k < 2; ++k) column[k][count] = view[p].y[k];
-    ++count;
-  }
-  if (count == 0) return {s.prediction, false, false};
-  const int liars = std::max(0, shared.setting.attacked - s.sets.attacked.count());
-  return {{median(column[0], count), median(column[1], count)}, true, 2 * liars < count};
-}
 
 /// What less than half can move is further from the prediction than both bounds allow: one of them is false.
 void compare(const Setting& g, const Quorum& heard, VehicleState& s) noexcept {
@@ -67,7 +43,7 @@ bool borrow(const Local& l, const Shared& shared, const View& view, double varpi
 }
 
 /// V_1 behind a gap: nothing of the past counts. Where too many of those heard may lie a neighbour's
-/// prediction serves as for vehicles outside V_1, and without one there is no bound.
+/// prediction serves as for vehicles outside V_1, then what they leave possible; else there is no bound.
 void start_anew(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
   s.beta = kNaN;
   s.source = -1;
@@ -75,22 +51,22 @@ void start_anew(const Local& l, const Shared& shared, const View& view, VehicleS
   std::fill_n(s.gains.get(), view.size(), 0.0);
   s.verdict = Verdict::not_tested;
   const Quorum heard = quorum(shared, view, s);
-  if (!heard.certain && borrow(l, shared, view, 1.0, s)) return;
+  if (!heard.certain && (borrow(l, shared, view, 1.0, s) || take_agreed(shared, view, s))) return;
   s.x = heard.middle;
   if (heard.certain) s.alpha = median_error(shared.setting);
 }
 
-/// V_1: saturated innovations of everybody in range.
-void update_inner(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
-  const Setting& g = shared.setting;
-  if (!s.foreseen.known()) return start_anew(l, shared, view, s);
-  s.beta = threshold(g, s.foreseen.norm);
-  s.source = -1;
-  Window w;
+/// Saturated innovations of everybody in range.
+struct Innovations {
+  Window window;
+  double noise[2 * kMostRange + 1];  // of the undecided, in falling order
+  double free_noise = 0.0;           // of the free ones, summed
+  double step[2] = {0.0, 0.0};       // sum of k eta
+};
+Innovations innovations(const Setting& g, const View& view, VehicleState& s) noexcept {
+  Innovations all;
+  Window& w = all.window;
   w.proved = s.sets.attacked.count();
-  double noise[2 * kMostRange + 1];
-  double free_noise = 0.0;
-  double step[2] = {0.0, 0.0};
   // Far ones first: the noise levels of the undecided then come in falling order.
   for (int distance = g.range; distance >= 0; --distance) {
     for (int side = distance == 0 ? 1 : -1; side <= 1; side += 2) {
@@ -106,36 +82,51 @@ void update_inner(const Local& l, const Shared& shared, const View& view, Vehicl
       const double norm = length(eta);
       if (!(norm < kHuge)) continue;  // a lie in a message: as good as nothing
       k = gain(s.beta, norm, attacked, free);
-      step[0] += k * eta[0];
-      step[1] += k * eta[1];
+      all.step[0] += k * eta[0];
+      all.step[1] += k * eta[1];
+      const double noise = reached_noise(g, distance).norm;
       if (free) {
         ++w.free;
-        free_noise += reached_noise(g, distance).norm;
+        all.free_noise += noise;
       } else {
-        noise[w.undecided++] = reached_noise(g, distance).norm;
+        all.noise[w.undecided++] = noise;
       }
     }
   }
-  for (int k = 0; k < 2; ++k) s.x[k] = s.prediction[k] + step[k] / (2.0 * g.range);
+  return all;
+}
+
+/// The bound that belongs to (12) with these innovations.
+Bound bound_of(const Shared& shared, const Innovations& all, const VehicleState& s) noexcept {
+  const Setting& g = shared.setting;
+  if (shared.options.bound == BoundKind::printed)
+    return {printed_bound(g, s.beta, s.alpha.norm, all.window), kInfinity, kInfinity};
+  Bound bound = SafeStep(g, s.beta, s.foreseen.norm, all.window)(s.foreseen, reached_noise(g, g.range));
+  if (shared.options.bound == BoundKind::tight)
+    bound.norm = tight_bound(g, s.beta, s.foreseen.norm, all.window, all.free_noise, all.noise);
+  return bound.sharpened();
+}
+
+/// V_1.
+void update_inner(const Local& l, const Shared& shared, const View& view, VehicleState& s) noexcept {
+  const Setting& g = shared.setting;
+  if (!s.foreseen.known()) return start_anew(l, shared, view, s);
+  const bool printed = shared.options.bound == BoundKind::printed;
+  s.beta = threshold(g, s.foreseen.norm);
+  s.source = -1;
+  const Innovations all = innovations(g, view, s);
+  const Bound bound = bound_of(shared, all, s);
   // Where many were lost those who may lie can outweigh the rest: the prediction alone is better then, and
   // without this the bound and the liars' pull, which follows it, would feed each other.
-  bool used = true;
-  if (shared.options.bound == BoundKind::printed) {
-    s.alpha = {printed_bound(g, s.beta, s.alpha.norm, w), kInfinity, kInfinity};
-  } else {
-    s.alpha = SafeStep(g, s.beta, s.foreseen.norm, w)(s.foreseen, reached_noise(g, g.range));
-    if (shared.options.bound == BoundKind::tight)
-      s.alpha.norm = tight_bound(g, s.beta, s.foreseen.norm, w, free_noise, noise);
-    s.alpha = s.alpha.sharpened();
-    used = s.alpha.norm <= s.foreseen.norm;
-  }
-  if (!used) {
-    s.x = s.prediction;
-    s.alpha = s.foreseen;
+  const bool used = printed || bound.norm <= s.foreseen.norm;
+  s.x = s.prediction;
+  if (used)
+    for (int k = 0; k < 2; ++k) s.x[k] += all.step[k] / (2.0 * g.range);
+  else
     std::fill_n(s.gains.get(), view.size(), 0.0);
-  }
+  s.alpha = used ? bound : s.foreseen;
   const Quorum heard = quorum(shared, view, s);
-  if (heard.certain && shared.options.bound != BoundKind::printed) compare(g, heard, s);
+  if (heard.certain && !printed) compare(g, heard, s);
   if (heard.certain && shared.options.median && median_bound(g) < s.alpha.norm) {
     s.x = heard.middle;
     s.alpha = median_error(g);

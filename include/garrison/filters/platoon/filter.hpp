@@ -14,12 +14,14 @@
 // Where we leave the print: the bound of vehicles that hear 2L others is the valid
 // one (the published (17) is false), (28) compares with xbar_i(t), runs in (29) are maximal. Missing
 // measurements and lost messages have gain 0 and the bound counts without them. A vehicle that has just
-// (re)started takes the median of what all sensors in range say of it (S3), or its best source, and has a
-// bound again from then on. A vehicle that lies in its messages is outside all of this: it can have anybody
-// isolated by forging `attacked`, and its prediction steers its neighbours; drivers drop bounds when that is
-// simulated. A vehicle whose data contradict the assumptions (more than b attackers, a sensor both attacked
-// and free) says so in the signal `trouble` and from then on reports no bound and accuses nobody; the run
-// says which assumptions can be false.
+// (re)started takes the median of what all sensors in range say of it (S3), or its best source, or what they
+// leave possible, and has a bound again from then on; while it is lost it follows the vehicle ahead by its
+// secured sensor. Where too few are heard against those who may lie the prediction stands. A vehicle that
+// lies in its messages is outside all of this: it can have anybody isolated by forging `attacked`, and its
+// prediction steers its neighbours; drivers drop bounds when that is simulated. A vehicle whose data
+// contradict the assumptions (more than b attackers, a sensor both attacked and free) says so in the signal
+// `trouble` and from then on reports no bound and accuses nobody; the run says which assumptions can be
+// false.
 #pragma once
 
 #include <memory>
