@@ -23,6 +23,8 @@ def _numbers(data: Any, shape: tuple[int, ...], calm: bool) -> np.ndarray:
 def _well_formed(w: certificate.WindowWitness) -> None:
     assert w.radius >= 0 or math.isnan(w.radius)
     assert (w.center is None) == (not math.isfinite(w.radius))
+    if math.isnan(w.radius):
+        assert w.proved == [] and w.proved_at == {}
     if w.center is None or w.box is None or w.shape is None:
         return
     assert np.isfinite(w.center).all()
