@@ -76,7 +76,7 @@ def test_banks_and_rules_answer_or_refuse(data: Any) -> None:
     s = data.draw(st.integers(-1, 5))
     A, C = _numbers(data, (n, n), calm), _numbers(data, (m, n), calm)
     sources = [(c[None], np.array([abs(one) + (0.1 if calm else 0.0)])) for c in C]
-    Q = one * np.eye(n)
+    Q = np.diag(np.full(n, one))
 
     def bank() -> list[Any]:
         b = certificate.Bank(A, Q, sources, s)
