@@ -155,10 +155,16 @@ void bind_answer(py::module_& m) {
           "mu", &WindowWitness::mu,
           "1 - lambda of W2M: what the attackers leave of the information; nan where it does not apply")
       .def_property_readonly(
-          "proved", &always,
-          "sources that were dropped, with those given; where the region is refuted they prove "
-          "nothing of any single one")
-      .def_property_readonly("proved_at", &by_step, "{step: sources}, with a moving set")
+          "proved", [](const WindowWitness& w) { return w.region.refuted() ? Ids() : always(w); },
+          "sources shown to be attacked, with those given; none where the region is refuted")
+      .def_property_readonly(
+          "proved_at",
+          [](const WindowWitness& w) { return w.region.refuted() ? std::map<int, Ids>() : by_step(w); },
+          "{step: sources}, with a moving set; none where the region is refuted")
+      .def_property_readonly(
+          "dropped", &always,
+          "sources whose rows were not used: the proved, or, where the region is refuted, more than "
+          "s that contradict, of which no single one is proved")
       .def_readonly("count", &WindowWitness::count, "consistent subsets, leaves or living members behind it");
 }
 

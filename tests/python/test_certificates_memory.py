@@ -23,6 +23,8 @@ def _numbers(data: Any, shape: tuple[int, ...], calm: bool) -> np.ndarray:
 def _well_formed(w: certificate.WindowWitness) -> None:
     assert w.radius >= 0 or math.isnan(w.radius)
     assert (w.center is None) == (not math.isfinite(w.radius))
+    if math.isnan(w.radius):
+        assert w.proved == [] and w.proved_at == {}
     if w.center is None or w.box is None or w.shape is None:
         return
     assert np.isfinite(w.center).all()
@@ -74,7 +76,7 @@ def test_banks_and_rules_answer_or_refuse(data: Any) -> None:
     s = data.draw(st.integers(-1, 5))
     A, C = _numbers(data, (n, n), calm), _numbers(data, (m, n), calm)
     sources = [(c[None], np.array([abs(one) + (0.1 if calm else 0.0)])) for c in C]
-    Q = one * np.eye(n)
+    Q = np.diag(np.full(n, one))
 
     def bank() -> list[Any]:
         b = certificate.Bank(A, Q, sources, s)

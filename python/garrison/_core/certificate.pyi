@@ -511,6 +511,11 @@ class WindowWitness:
         consistent subsets, leaves or living members behind it
         """
     @property
+    def dropped(self) -> list[int]:
+        """
+        sources whose rows were not used: the proved, or, where the region is refuted, more than s that contradict, of which no single one is proved
+        """
+    @property
     def mu(self) -> float:
         """
         1 - lambda of W2M: what the attackers leave of the information; nan where it does not apply
@@ -518,12 +523,12 @@ class WindowWitness:
     @property
     def proved(self) -> list[int]:
         """
-        sources that were dropped, with those given; where the region is refuted they prove nothing of any single one
+        sources shown to be attacked, with those given; none where the region is refuted
         """
     @property
     def proved_at(self) -> dict[int, list[int]]:
         """
-        {step: sources}, with a moving set
+        {step: sources}, with a moving set; none where the region is refuted
         """
     @property
     def radius(self) -> float:

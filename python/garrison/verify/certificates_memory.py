@@ -56,7 +56,7 @@ def _set(w: theory.WindowWitness, states: int) -> dict[str, Any]:
         "r": w.stretch,
         "box": w.box if w.box is not None else [w.radius] * states,
         "ball": w.radius,
-        "proved": w.proved,
+        "proved": w.dropped,
         "mu": w.mu,
         "count": w.count,
     }

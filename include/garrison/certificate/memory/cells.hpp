@@ -10,15 +10,17 @@
 
 namespace garrison::certificate {
 
-/// Per coordinate the hull of the points in at least (regions - s) of the boxes. Regions of disjoint cells of
-/// sources, at most s of which are touched by an attack (C: local filters, box_i = z sqrt(P_ii) with z at
-/// delta / (cells n); their honest errors may be correlated), or of distinct neighbours, at most s of whom
-/// lie. lo, hi: n numbers; (NaN, NaN): more than s are wrong; infinite: not enough of them. A region without
-/// an answer counts as one without limits; a refuted one as wrong. The box must be there, or a ball stands in
-/// for it.
+/// lo_i <= x_i <= hi_i, n numbers each. (NaN, NaN): refuted; infinite: cannot be told.
 struct Box {
   Vector lo, hi;
 };
+
+/// Per coordinate the hull of the points in at least (regions - s) of the boxes. Regions of disjoint cells of
+/// sources, at most s of which are touched by an attack (C: local filters, box_i = z sqrt(P_ii) with z at
+/// delta / (cells n); their honest errors may be correlated), or of distinct neighbours, at most s of whom
+/// lie. (NaN, NaN): more than s are wrong; infinite: not enough of them. A region without
+/// an answer counts as one without limits; a refuted one as wrong. The box must be there, or a ball stands in
+/// for it.
 /// @throws InvalidInput for no region, dimensions that differ, s < 0
 GARRISON_EXPORT Box cells(std::span<const Region> regions, int s);
 

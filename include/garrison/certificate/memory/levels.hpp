@@ -20,9 +20,8 @@ struct WindowLevels {
 };
 
 /// Levels of W2M, W3M and A that fail together with probability <= delta for one window: a third each for
-/// twice `rows` rows, for the vector and for the coordinates. W2M's event is that of single rows and of their
-/// least-squares parts; A tests residuals on top of it, for which a third more rows count.
-/// @throws InvalidInput for delta outside (0, 1) or sizes < 1
+/// three times `rows` single rows (noise, least-squares part, and the residual test of A), the vector and the
+/// coordinates. For a bank: `rows` of one step. @throws InvalidInput for delta outside (0, 1) or sizes < 1
 GARRISON_EXPORT WindowLevels window_levels(double delta, int rows, int states);
 
 /// What a certificate with memory may assume.
