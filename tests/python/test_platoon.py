@@ -86,15 +86,15 @@ def test_cars_that_are_only_observed() -> None:
     recorded = {"measurements": np.hstack(rows), "truth": truth, "start": truth[0]}
     steered = gr.filters.Platoon(**seen, reference=[0.0, 20.0], gs=0.5, gv=1.0)
     with pytest.raises(gr.InvalidInput, match="recorded vehicles without their inputs"):
-        gr.replay(steered, model, net, **recorded)
+        gr.replay(model, net, steered, **recorded)
     with pytest.raises(gr.InvalidInput, match="input_bound"):
-        gr.replay(gr.filters.Platoon(**seen), model, net, **recorded)
-    run = gr.replay(gr.filters.Platoon(**seen, input_bound=1.0), model, net, **recorded)
+        gr.replay(model, net, gr.filters.Platoon(**seen), **recorded)
+    run = gr.replay(model, net, gr.filters.Platoon(**seen, input_bound=1.0), **recorded)
     assert run.error is not None and run.bound is not None
     assert (run.error <= run.bound).all()
     assert run.error[0, 20:].max() < 0.1
     assert run.first_accused() == {}
-    assert "Assumption 4" not in str(gr.check(gr.filters.Platoon(**seen, input_bound=1.0), model, net))
+    assert "Assumption 4" not in str(gr.check(model, net, gr.filters.Platoon(**seen, input_bound=1.0)))
 
 
 def test_false_noise_bounds_are_named() -> None:

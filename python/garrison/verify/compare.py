@@ -193,10 +193,5 @@ def compare(
         for k, (g, e) in enumerate(zip(got, expected, strict=True)):
             results += compare(g, e, tolerances, f"{name}[{k}]", informative)
         return results
-    if isinstance(expected, list) and isinstance(got, list) and isinstance(array(expected), list):  # ragged
-        if len(got) != len(expected):
-            return [FieldResult.failure(name, f"got {len(got)} entries, expected {len(expected)}")]
-        pairs = zip(got, expected, strict=True)
-        return [r for k, (g, e) in enumerate(pairs) for r in compare(g, e, tolerances, f"{name}[{k}]", informative)]
     own = [tolerance for end, tolerance in tolerances.items() if name.endswith(end)]
     return [_leaf(name, got, expected, own[0] if own else RELATIVE)]
