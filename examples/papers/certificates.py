@@ -87,9 +87,9 @@ class Wind:
 
     def replay(self, filter: Any, attack: Any, days: int | None = None, **options: Any) -> gr.Run:
         return gr.replay(
-            filter,
             self.model,
             self.net,
+            filter,
             measurements=self.clean[:days],
             truth=self.truth[: None if days is None else days + 1],
             attack=attack,
@@ -460,7 +460,7 @@ def paper_witness(runs: int) -> Rows:
     errors: list[np.ndarray] = []
     for y, x, start in zip(e.y, e.truth, e.start, strict=True):
         run = gr.replay(
-            paper.algorithm1(3, 5), e.model, e.net, measurements=y, truth=x, start=start, attack=paper.fixed()
+            e.model, e.net, paper.algorithm1(3, 5), measurements=y, truth=x, start=start, attack=paper.fixed()
         )
         assert run.measurements is not None and run.estimate is not None
         late = slice(200, None)
