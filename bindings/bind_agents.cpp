@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Designs, single agents and their messages.
-#include <pybind11/operators.h>
-
 #include "bindings.hpp"
 #include "garrison/engine/design_file.hpp"
 #include "garrison/wire/letter.hpp"
@@ -195,20 +193,14 @@ void bind_message(py::module_& m) {
           "The bytes that travel, without sender, sample and round.")
       .def(
           "replace",
-          [](const Letter& l, const py::kwargs& changes) {
-            Letter changed = l;
-            for (const auto& [key, value] : changes) {
-              const auto name = key.cast<std::string>();
-              std::vector<std::string> known;
-              for (const auto& info : l.fields) known.push_back(info.name);
-              const auto at = std::find(known.begin(), known.end(), name);
-              if (at == known.end()) refuse_unknown("message of " + l.family, name, known);
-              const auto& info = l.fields[static_cast<std::size_t>(at - known.begin())];
-              changed = changed.with(name, field_value(info, py::reinterpret_borrow<py::object>(value)));
-            }
-            return changed;
+          [](const Letter& l, const std::string& field, const py::object& value) {
+            std::vector<std::string> known;
+            for (const auto& info : l.fields) known.push_back(info.name);
+            const auto at = std::find(known.begin(), known.end(), field);
+            if (at == known.end()) refuse_unknown("message of " + l.family, field, known);
+            return l.with(field, field_value(l.fields[static_cast<std::size_t>(at - known.begin())], value));
           },
-          "The same message with other values in the named fields: a lie.")
+          py::arg("field"), py::arg("value"), "The same message with another value in one field: a lie.")
       .def(
           "to_bytes", [](const Letter& l) { return to_python(l.to_bytes()); },
           "Everything, to be kept or sent by other means; see from_bytes.")
@@ -216,7 +208,12 @@ void bind_message(py::module_& m) {
           "from_bytes",
           [](const py::object& data) { return Letter::from_bytes(from_python(data, "message")); },
           py::arg("data"), "The message that to_bytes() wrote. Raises InvalidInput for anything else.")
-      .def(py::self == py::self)
+      .def(
+          "__eq__",
+          [](const Letter& l, const py::object& other) {
+            return py::isinstance<Letter>(other) && l == other.cast<const Letter&>();
+          },
+          py::arg("other"))
       .def("__hash__", [](const Letter& l) { return py::hash(to_python(l.to_bytes())); })
       .def("__repr__",
            [](const Letter& l) {

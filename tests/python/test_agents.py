@@ -110,16 +110,16 @@ def test_messages_have_fields_can_be_kept_and_be_lied_in() -> None:
     assert hash(again) == hash(message)
     assert pickle.loads(pickle.dumps(message)) == message
     assert eval(repr(message), {"garrison": gr}) == message
-    lie = message.replace(proved=[0, 3], intact=False, estimate=[1.0, 2.0])
+    lie = message.replace("proved", [0, 3]).replace("intact", False).replace("estimate", [1.0, 2.0])
     assert lie != message
     assert lie.fields["proved"] == [0, 3]
     assert len(lie.body) == len(message.body) == 2 * 8 + 1 + 1
     with pytest.raises(gr.InvalidInput, match="prooved"):
-        message.replace(prooved=[1])
+        message.replace("prooved", [1])
     with pytest.raises(gr.InvalidInput, match="agent 9"):
-        message.replace(proved=[9])
+        message.replace("proved", [9])
     with pytest.raises(gr.InvalidInput, match="2 numbers"):
-        message.replace(estimate=[1.0])
+        message.replace("estimate", [1.0])
 
 
 def test_what_an_agent_cannot_use_is_refused_by_name_or_counted() -> None:

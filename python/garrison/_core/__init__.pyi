@@ -20,6 +20,7 @@ from . import certificate
 __all__: list[str] = [
     "Agent",
     "Attack",
+    "Design",
     "DesignInfeasible",
     "Error",
     "Filter",
@@ -37,6 +38,7 @@ __all__: list[str] = [
     "certificate",
     "chebyshev_contraction",
     "check",
+    "design_summary",
     "filter_infos",
     "filters",
     "identify",
@@ -340,35 +342,112 @@ class Attack:
 
 class Message:
     """
-    A message between agents of the same filter.
+    A message between agents of the same design; compares by value.
+
+    What an agent sends is a list of fields: numbers, optional numbers (nan = absent), flags, counts
+    and sets. sender, sample and round are the driver's, not the agent's.
     """
+    @staticmethod
+    def from_bytes(data: typing.Any) -> Message:
+        """
+        The message that to_bytes() wrote. Raises InvalidInput for anything else.
+        """
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> bytes: ...
+    def __hash__(self) -> int: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: bytes) -> None: ...
+    def __str__(self) -> str: ...
+    def replace(self, field: str, value: typing.Any) -> Message:
+        """
+        The same message with another value in one field: a lie.
+        """
+    def to_bytes(self) -> bytes:
+        """
+        Everything, to be kept or sent by other means; see from_bytes.
+        """
+    @property
+    def body(self) -> bytes:
+        """
+        The bytes that travel, without sender, sample and round.
+        """
+    @property
+    def family(self) -> str: ...
+    @property
+    def fields(self) -> dict:
+        """
+        Name -> value of every field: arrays, nan where a number is absent, bool, int, list of agents; a set of
+        labels as (ids, complement).
+        """
+    @property
+    def round(self) -> int: ...
+    @property
+    def sample(self) -> int: ...
     @property
     def sender(self) -> int: ...
-    @property
-    def values(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        Its numbers (a copy).
-        """
 
 class Agent:
     """
-    One agent on its own: `sense` once per sample, then `fuse` once per round, with the same bits as
-    inside simulate and replay.
+    One agent on its own: `sense` once per sample, then `fuse` once per round, with the same bits as inside
+    simulate and replay. Time is the caller's: it may start at any sample, and says nothing that a gap may have
+    broken.
     """
+    @staticmethod
+    def from_part(data: typing.Any) -> Agent:
+        """
+        The agent whose part of a design Prepared.part(id) wrote; nothing is designed.
+        """
+    def __eq__(self, other: typing.Any) -> bool: ...
+    def __getstate__(self) -> bytes: ...
+    def __hash__(self) -> int: ...
     def __init__(
-        self, filter: Filter, model: Model, network: Network, id: typing.SupportsInt | typing.SupportsIndex
+        self, model: Model, network: Network, filter: Filter, id: typing.SupportsInt | typing.SupportsIndex
     ) -> None: ...
-    def fuse(self, inbox: collections.abc.Sequence[Message]) -> Message:
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: bytes) -> None: ...
+    def fuse(self, inbox: collections.abc.Sequence[Message | None]) -> Message | None:
         """
-        Messages of the neighbours in any order; leave missing ones out. Returns the next message.
+        End the round with the neighbours' messages of it, in any order; leave missing ones out. Messages of an earlier
+        sample or round are dropped and counted, as are bodies that no agent could have sent. Returns the next
+        message.
         """
-    def reset(self, x0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+    def join(self, t: typing.SupportsInt | typing.SupportsIndex, inbox: collections.abc.Sequence[Message]) -> None:
         """
-        Back to time 0 with the initial estimate x0, (n,).
+        Take over an estimate from what the neighbours sent in the first round of sample t, as an agent that starts in
+        a running network: its next sample is t + 1.
         """
-    def sense(self, y: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex]) -> Message:
+    def load(self, data: typing.Any) -> None:
         """
-        One number per row of C_i, nan = missing. Returns the first message of this sample.
+        Go on from a snapshot. Raises InvalidInput for one of another agent or design.
+        """
+    def reset(
+        self,
+        x0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        t: typing.SupportsInt | typing.SupportsIndex | None = None,
+    ) -> None:
+        """
+        Start anew with the estimate x0, (n,), of sample t. Without t: at the beginning of a run. At any
+        other t nothing is known of how far x0 is off: there is no bound and no test until the family can
+        vouch again, and in its next sample the agent sends nothing (None) and takes an estimate from what
+        its neighbours send.
+        """
+    def save(self) -> bytes:
+        """
+        A snapshot as bytes, between samples only; the agent that loads it goes on with the same bits.
+        """
+    def sense(
+        self,
+        t: typing.SupportsInt | typing.SupportsIndex,
+        y: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+    ) -> Message | None:
+        """
+        Sample t with one number per row of C_i, nan = missing. Returns the first message of this sample; None where
+        the estimate is of no use (not finite). Samples missed since the last one are made up for, without
+        measurements and messages.
+        """
+    def uncover(self) -> None:
+        """
+        Something was missed that only the caller knows of: no bound and no test rests on the past any more.
         """
     @property
     def accused(self) -> list[int]:
@@ -380,24 +459,46 @@ class Agent:
     @property
     def control(self) -> float:
         """
-        What it does to its own plant until the next sample; nan where it has none.
+        Control input applied until the next sample; nan if the family has none.
         """
     @property
     def dropped(self) -> int:
         """
-        Messages dropped because a number was not finite.
+        Messages that were late, or whose body no agent could have sent.
         """
     @property
-    def estimate(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    def estimate(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,)
         """
     @property
+    def family(self) -> str: ...
+    @property
     def id(self) -> int: ...
+    @property
+    def neighbours(self) -> list[int]:
+        """
+        Agents that it hears.
+        """
+    @property
+    def resets(self) -> int:
+        """
+        How often the estimate was of no use and was taken anew from the neighbours.
+        """
+    @property
+    def round(self) -> int:
+        """
+        Rounds of this sample that are done.
+        """
     @property
     def rounds(self) -> int:
         """
         Rounds per sample.
+        """
+    @property
+    def sample(self) -> int:
+        """
+        The sample it is in, or has finished.
         """
     @property
     def statistic(self) -> float: ...
@@ -405,6 +506,33 @@ class Agent:
     def threshold(self) -> float: ...
     @property
     def verdict(self) -> int: ...
+
+class Design:
+    """
+    A filter designed for one model and network.
+    """
+    @staticmethod
+    def from_bytes(data: typing.Any) -> Design: ...
+    def __init__(self, model: Model, network: Network, filter: Filter) -> None: ...
+    def agent(self, id: typing.SupportsInt | typing.SupportsIndex) -> Agent: ...
+    def part(self, id: typing.SupportsInt | typing.SupportsIndex) -> bytes:
+        """
+        What agent `id` needs of the design, as bytes.
+        """
+    def to_bytes(self) -> bytes: ...
+    @property
+    def filter_name(self) -> str: ...
+    @property
+    def filter_params(self) -> dict: ...
+    @property
+    def model(self) -> Model: ...
+    @property
+    def network(self) -> Network: ...
+    @property
+    def outline(self) -> list[str]:
+        """
+        What the gains consist of, a line each.
+        """
 
 class SubsetBound:
     """
@@ -554,9 +682,17 @@ def chebyshev_contraction(
     `gamma`, in [0, 1].
     """
 
-def check(filter: Filter, model: Model, network: Network) -> tuple[list, list]:
+def check(
+    model: Model, network: Network, filter: Filter, seconds: typing.SupportsFloat | typing.SupportsIndex = ...
+) -> tuple[list, list]:
     """
-    Conditions and quantities of the family's theorems, as two lists of dicts.
+    Conditions and quantities of the family's theorems, as two lists of dicts. Searches end after `seconds` with a
+    certified interval; a computation without partial results raises InvalidInput then. Ctrl-C ends it, too.
+    """
+
+def design_summary(data: typing.Any) -> dict:
+    """
+    What a design file says of itself: filter, params, agents, states, bytes, hash, agent.
     """
 
 def filter_infos() -> list:
@@ -644,9 +780,7 @@ def one_step_sparse_observable(
     """
 
 def replay(
-    model: Model,
-    network: Network,
-    filter: Filter,
+    design: Design,
     *,
     measurements: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     truth: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
@@ -673,9 +807,7 @@ def s_sparse_observable(
     """
 
 def simulate(
-    model: Model,
-    network: Network,
-    filter: Filter,
+    design: Design,
     *,
     steps: typing.SupportsInt | typing.SupportsIndex,
     x0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],

@@ -15,7 +15,9 @@ __all__: list[str] = [
     "Denial",
     "Equivocate",
     "FalseTrajectory",
+    "Falsify",
     "Forge",
+    "Outdated",
     "Perturb",
     "Ramp",
     "Random",
@@ -196,6 +198,34 @@ def FalseTrajectory(
     attacked at a sample. Raises InvalidInput when something does not fit.
     """
 
+def Falsify(
+    agents: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] | None = None,
+    *,
+    field: typing.Any,
+    value: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    members: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+    start: typing.SupportsInt | typing.SupportsIndex | None = None,
+    stop: typing.SupportsInt | typing.SupportsIndex | None = None,
+    schedule: collections.abc.Sequence[
+        tuple[
+            typing.SupportsInt | typing.SupportsIndex,
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        ]
+    ]
+    | None = None,
+    probability: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+) -> garrison._core.Attack:
+    """
+    the agent lies in one field of its messages, e.g. a set or a flag (message attack).
+
+    field: name of the field, e.g. "estimate", "intact", "proved", "bound" (the page of each filter lists them)
+    value: what numbers, counts and optional numbers become; a flag is set where it is not 0 [of the field]
+    members: what a set becomes [agents]
+    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
+    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
+    attacked at a sample. Raises InvalidInput when something does not fit.
+    """
+
 def Forge(
     agents: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] | None = None,
     *,
@@ -217,6 +247,30 @@ def Forge(
 
     offset: added to every number of the message [state]
     replace: send the offset alone
+    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
+    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
+    attacked at a sample. Raises InvalidInput when something does not fit.
+    """
+
+def Outdated(
+    agents: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] | None = None,
+    *,
+    age: typing.SupportsInt | typing.SupportsIndex,
+    start: typing.SupportsInt | typing.SupportsIndex | None = None,
+    stop: typing.SupportsInt | typing.SupportsIndex | None = None,
+    schedule: collections.abc.Sequence[
+        tuple[
+            typing.SupportsInt | typing.SupportsIndex,
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        ]
+    ]
+    | None = None,
+    probability: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+) -> garrison._core.Attack:
+    """
+    the agent sends what it sent some samples ago, as new (message attack).
+
+    age: how old what is sent is [samples]
     agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
     order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
     attacked at a sample. Raises InvalidInput when something does not fit.

@@ -84,7 +84,7 @@ class Lfre(garrison._core.Filter):
     Source: Mitra, Sundaram, Automatica 2019; baseline of the saturation paper
 
     faulty: values trimmed from each end of the parents' estimates [agents], >= 0
-    poles: real poles of the sources' observers, one per state; left out: equally spaced from 0.3 to 0.4 [1], >= -1, <= 1
+    poles: real poles of the sources' observers, one per state; left out: equally spaced over 0.1, from 0.3 to 0.8, where the noise gives each source the least error [1], >= -1, <= 1
     """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
@@ -187,12 +187,12 @@ class Structural(garrison._core.Filter):
     sharing: N*N numbers 0 or 1 row by row, instead of share [1], >= 0, <= 1
     gain: N*n*n numbers, K_i row by row, agent by agent, instead of design [1]
     false_alarm: probability per sample of an alarm without an attack [1], > 0, <= 1
-    test: what is tested: y - c'x after the update, or before it (innovation)
+    test: what is tested: y - c'x after the update (residual) or before it; auto: innovation with isolate, else residual
     window: 1: a test per sample; more: chi-square over so many residuals, exact covariance [samples], >= 1, <= 1000
     alarm_after: tests in a row above the threshold before the verdict [samples], >= 1, <= 1e+06
     clear_after: tests in a row below it before the verdict is taken back [samples], >= 1, <= 1e+06
-    settle: samples without a test after the start or a loss; -1: until rho^k < 0.01 [samples], >= -1, <= 1e+06
-    isolate: leave the own measurement out while the alarm lasts
+    settle: samples without a test after the start; -1: until rho^k < 0.01 [samples], >= -1, <= 1e+06
+    isolate: leave out measurements over their level, the own one while the alarm lasts
     accuse_missing: a missing own measurement counts as an alarm
     """
     def __copy__(self) -> typing.Any: ...
@@ -208,7 +208,7 @@ class Structural(garrison._core.Filter):
         sharing: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
         gain: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
         false_alarm: typing.SupportsFloat | typing.SupportsIndex = 0.01,
-        test: str = "residual",
+        test: str = "auto",
         window: typing.SupportsInt | typing.SupportsIndex = 1,
         alarm_after: typing.SupportsInt | typing.SupportsIndex = 1,
         clear_after: typing.SupportsInt | typing.SupportsIndex = 5,
@@ -228,13 +228,18 @@ class Platoon(garrison._core.Filter):
     adaptive: the threshold follows the error bound (25); false: static
     attacked: most absolute sensors attacked, 1..L [sensors]
     process_noise: ||d_i(t)|| <= eps [m, m/s], >= 0
-    measurement_noise: length of the noise vector of every absolute and relative sensor is at most mu [m, m/s], >= 0
+    measurement_noise: length of the noise vector of every absolute and relative sensor is at most mu; may be left out when the four bounds on entries are given [m, m/s], >= 0
+    absolute_position_noise: bound on the noise of the absolute sensors' position; left out: measurement_noise [m], >= 0
+    absolute_velocity_noise: the same for their velocity [m/s], >= 0
+    relative_position_noise: bound on the noise of the relative sensors' position; left out: measurement_noise [m], >= 0
+    relative_velocity_noise: the same for their velocity [m/s], >= 0
     initial_error: ||xhat_i(0) - x_i(0)|| <= q [m, m/s], > 0
     varpi: 1/varpi is the observer gain of vehicles that hear fewer than 2L others [1], > 1
-    reference: position and velocity of the reference at time 0, or at times 0, 1, ...; constant velocity after the last pair [m, m/s]
+    reference: position and velocity of the reference at time 0, or at times 0, 1, ...; constant velocity after the last pair. Without reference, gs and gv the filter only observes [m, m/s]
     spacing: desired gap between vehicles [m]
     gs: controller gain on positions, > 0 [1/s^2]
     gv: controller gain on velocities, > T g_s [1/s]
+    input_bound: |u_i(t)| <= input_bound where inputs are not recorded, for a filter that only observes (no reference, gs and gv): T input_bound enters eps [m/s^2], >= 0
     detector: Algorithm 2; false: the sets stay as given
     bound: "safe" (valid), "tight" (valid, smaller, more work) or "printed": (17) as printed, which is false (counterexamples: cases process_noise_counterexample and lemma1_counterexample) and is therefore never reported as a bound
     tie: (13), two sources equally near: lower label or smaller error bound
@@ -258,12 +263,17 @@ class Platoon(garrison._core.Filter):
         attacked: typing.SupportsInt | typing.SupportsIndex = 1,
         process_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
         measurement_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
+        absolute_position_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
+        absolute_velocity_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
+        relative_position_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
+        relative_velocity_noise: typing.SupportsFloat | typing.SupportsIndex = ...,
         initial_error: typing.SupportsFloat | typing.SupportsIndex = ...,
         varpi: typing.SupportsFloat | typing.SupportsIndex = 2.0,
         reference: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
         spacing: typing.SupportsFloat | typing.SupportsIndex = 20.0,
         gs: typing.SupportsFloat | typing.SupportsIndex = ...,
         gv: typing.SupportsFloat | typing.SupportsIndex = ...,
+        input_bound: typing.SupportsFloat | typing.SupportsIndex = ...,
         detector: bool = True,
         bound: str = "safe",
         tie: str = "low",
