@@ -73,7 +73,9 @@ py::object read_list(const ArgumentType& type, const std::string& which, py::han
 py::object read_tuple(const ArgumentType& type, const std::string& which, py::handle given) {
   const bool can =
       py::hasattr(given, "__iter__") && !PyUnicode_Check(given.ptr()) && !PyDict_Check(given.ptr());
-  const py::list parts = can ? py::list(py::reinterpret_borrow<py::object>(given)) : py::list();
+  // A 0-d array has __iter__ and no values.
+  const bool scalar = py::hasattr(given, "ndim") && given.attr("ndim").cast<int>() == 0;
+  const py::list parts = can && !scalar ? py::list(py::reinterpret_borrow<py::object>(given)) : py::list();
   if (parts.size() != type.of.size())
     refuse(which, can ? std::to_string(parts.size()) + " values" : convert::shown(given), type.expected());
   py::tuple all(type.of.size());

@@ -68,14 +68,41 @@ def samples() -> dict[str, list[Any]]:
         "weights": [weights],
     }
     found["FitOptions"] = [found["Identified"][0].options]
-    found["Agent"] = [gr.Agent(f, model, network, 0) for f in filters if f.name in ("saturation", "rdkf", "structural")]
-    found["Message"] = [a.sense([0.1]) for a in (copy_agent(f, model, network) for f in filters[:3])]
-    return found
+    driven = [f for f in filters if f.name in ("saturation", "rdkf", "structural", "partial_sharing")]
+    found["Agent"] = [gr.Agent(model, network, f, 0) for f in driven]
+    found["Message"] = [gr.Agent(model, network, f, 1).sense(1, [0.1]) for f in driven]
+    found["Design"] = [_core.Design(model, network, f) for f in driven]
+    return found | {type(one).__name__: [one] for one in certificates()}
 
 
-def copy_agent(filter: Any, model: Any, network: Any) -> Any:
-    """An agent of its own for messages."""
-    return gr.Agent(filter, model, network, 1)
+def certificates() -> list[Any]:
+    """One of each class of certificates."""
+    c = gr.certificate
+    A, C, noise = 0.9 * np.eye(2), np.eye(2)[[0, 1, 0]], np.full(3, 0.1)
+    system = c.error_system(A, C, np.full((3, 3), 1 / 3))
+    kernels = c.kernels(system, 5)
+    window = c.Window(2, 2, 3, 3, 9)
+    window.begin(1)
+    window.prior_gaussian(np.zeros(2), np.eye(2))
+    window.add(0, np.array([1.0, 0.0]), 0.1, 1.0)
+    meters = np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+    return [
+        system,
+        kernels,
+        c.table(kernels, s=1, start=1.0, T=5, bw=0.1, bv=noise),
+        c.gaussian_table(kernels, s=1, start=1.0, T=5, Q=0.1 * np.eye(2), R=noise, z=3.0),
+        c.Region(np.zeros(2), 1.0),
+        c.leverage_ball(np.zeros(3), C, noise, 1, 3.0, 3.0),
+        c.Propagation.bounded(A, 3, 0.1),
+        c.Recovery(kernels, 1),
+        c.TwoNumbers(A, C, 1, 1.0, 0.0, 0.1, noise),
+        window,
+        c.leverage_window(window, 1, 3.0, 3.0, 3.0),
+        c.Bank(A, 0.1 * np.eye(2), [(C[[k]], np.ones(1)) for k in range(3)], 1),
+        c.meters(meters),
+        c.smallest_undetectable(meters, 2),
+        c.observer_table(A, C, np.full((2, 3), 0.1), np.eye(2), noise, s=1, bw=0.1, start=1.0, T=5, lags=4),
+    ]
 
 
 GOOD_FILTERS: dict[str, dict[str, Any]] = {

@@ -33,18 +33,22 @@ LIMIT = 10.0  # seconds for one call
 BATCH = 40
 MEMORY = 3 << 30  # bytes that a call may take
 #: names (or beginnings of them) that may still fail, with the reason; to be emptied
-EXCLUDED: dict[str, str] = dict.fromkeys(
-    (
-        "garrison.Run",
-        "garrison.central_kalman",
-        "garrison.checks",
-        "garrison.fit",
-        "garrison.replay",
-        "garrison.resilience_per_byte",
-        "garrison.simulate",
-    ),
-    "written in Python, takes its arguments apart before the core sees them",
-) | dict.fromkeys(("garrison._core.replay", "garrison._core.simulate"), "progress may be anything")
+EXCLUDED: dict[str, str] = (
+    dict.fromkeys(
+        (
+            "garrison.Run",
+            "garrison.central_kalman",
+            "garrison.checks",
+            "garrison.fit",
+            "garrison.replay",
+            "garrison.resilience_per_byte",
+            "garrison.simulate",
+        ),
+        "written in Python, takes its arguments apart before the core sees them",
+    )
+    | {"garrison.Verdict": "an enumeration of Python's own"}
+    | dict.fromkeys(("garrison._core.replay", "garrison._core.simulate"), "progress may be anything")
+)
 
 Job = tuple[str, str, Any, int, tuple[str, int] | None]
 
@@ -98,6 +102,7 @@ def public() -> Iterator[tuple[str, str, Any]]:
                 isinstance(value, types.ModuleType)
                 and value.__name__.startswith("garrison")
                 and not key.startswith("_")
+                and (module is _core or key in gr.__all__)  # the other modules of the package are its own affair
             ):
                 modules[value.__name__] = value
     modules["garrison._core"] = _core
