@@ -40,12 +40,13 @@ double checked_bound_around(const Region& r, const VectorRef& estimate) {
 void bind_quantiles(py::module_& m) {
   m.def(
       "empirical_quantile",
-      [](const VectorRef& values, double delta, double confidence) {
-        const Quantile q = empirical_quantile(values, delta, confidence);
+      [](const VectorRef& measured, double delta, double confidence) {
+        const Quantile q = empirical_quantile(measured, delta, confidence);
         return std::array<double, 3>{q.value, q.lower, q.upper};
       },
-      py::arg("values"), py::arg("delta"), py::arg("confidence") = 0.95,
-      "(value, lower, upper): a level that a share `delta` of clean values (T,) exceeds, and where the true "
+      py::arg("measured"), py::arg("delta"), py::arg("confidence") = 0.95,
+      "(value, lower, upper): a level that a share `delta` of clean numbers `measured` (T,) exceeds, and "
+      "where the true "
       "one is "
       "with that confidence if they are independent; nan where T is too small. nan = missing.");
   m.def(

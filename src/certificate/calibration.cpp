@@ -31,7 +31,7 @@ std::vector<double> correlations(const VectorRef& column, int lags, double& pres
   double mean = 0.0;
   present = 0.0;
   for (const double v : column)
-    if (!std::isnan(v)) {
+    if (std::isfinite(v)) {
       mean += v;
       present += 1.0;
     }
@@ -40,7 +40,7 @@ std::vector<double> correlations(const VectorRef& column, int lags, double& pres
   for (int k = 0; k <= lags; ++k)
     for (Eigen::Index t = k; t < column.size(); ++t) {
       const double product = (column(t) - mean) * (column(t - k) - mean);
-      if (!std::isnan(product)) sums[static_cast<std::size_t>(k)] += product;
+      if (std::isfinite(product)) sums[static_cast<std::size_t>(k)] += product;
     }
   for (std::size_t k = sums.size(); k-- > 0;) sums[k] = sums[0] > 0.0 ? sums[k] / sums[0] : 0.0;
   return sums;

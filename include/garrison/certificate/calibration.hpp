@@ -25,7 +25,8 @@ struct Whiteness {
   Vector correlation;  ///< N: r_1
   double p_value = kNaN;  ///< of the worst sensor, times N (Bonferroni): small = not white
 };
-/// residuals: T x N, NaN = missing (pairs with one are left out); lags in 1..T-1. @throws InvalidInput
+/// residuals: T x N, NaN and infinity = missing (pairs with one are left out); lags in 1..T-1. @throws
+/// InvalidInput
 GARRISON_EXPORT Whiteness whiteness(const MatrixRef& residuals, int lags);
 
 }  // namespace garrison::certificate

@@ -22,6 +22,7 @@ __all__: list[str] = [
     "averaged",
     "calibrated_levels",
     "chi",
+    "empirical_quantile",
     "error_system",
     "gaussian_levels",
     "gaussian_table",
@@ -38,6 +39,7 @@ __all__: list[str] = [
     "sub_gaussian_levels",
     "sub_gaussian_two_sided",
     "table",
+    "whiteness",
     "two_sided",
     "witness_subsets",
 ]
@@ -358,6 +360,16 @@ def chi(
     c with P(chi-square > c^2) = delta; delta in (0, 1), degrees >= 1.
     """
 
+def empirical_quantile(
+    measured: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    delta: typing.SupportsFloat | typing.SupportsIndex,
+    confidence: typing.SupportsFloat | typing.SupportsIndex = 0.95,
+) -> typing.Annotated[list[float], "FixedSize(3)"]:
+    """
+    (value, lower, upper): a level that a share `delta` of clean numbers `measured` (T,) exceeds, and where the true one is with
+    that confidence if they are independent; nan where T is too small. nan = missing.
+    """
+
 def error_system(
     A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
@@ -550,4 +562,17 @@ def witness_subsets(
     W3: the same by all sets of sources that may be the honest ones, C(sources, s) of them; sharper.
     z3: chi(delta3, m - s - n), only where the law of the noise is known. Raises InvalidInput, also when there
     are more than `limit` sets.
+    """
+
+def whiteness(
+    residuals: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    lags: typing.SupportsInt | typing.SupportsIndex = 10,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    float,
+]:
+    """
+    (statistic (N,), lag-1 correlation (N,), p-value) of the Ljung-Box test of residuals (T, N), nan = missing; the
+    p-value is that of the worst sensor times N: small = a residual depends on its past.
     """

@@ -105,7 +105,7 @@ void check_bits(const Prepared& p, const Record& r, const Matrix& y) {
     agents.step(t + 1, [&](int i) { return Vector::Constant(1, y(t, i)); });
     agents.append_estimates(out);
   }
-  CHECK(out.size() == r.estimate.size());
+  REQUIRE(out.size() == r.estimate.size());
   CHECK(std::memcmp(out.data(), r.estimate.data(), out.size() * sizeof(double)) == 0);
 }
 
