@@ -8,7 +8,6 @@
 namespace garrison::rdkf {
 namespace {
 
-constexpr double kProximal = 1e-9;  // of the largest entry of H
 constexpr int kMostProximal = 60;
 
 /// Views of one step's room; q numbers each.
@@ -118,8 +117,7 @@ BoxFactors box_factors(const MatrixRef& whitener, const MatrixRef& C, const Matr
   f.W = factor.solve(f.M.transpose()) / 2.0;
   f.H = f.M * f.W;
   f.H = (0.5 * (f.H + f.H.transpose())).eval();
-  const double largest = f.H.size() == 0 ? 0.0 : f.H.diagonal().maxCoeff();
-  f.proximal = largest > 0.0 ? kProximal * largest : 1.0;
+  f.proximal = proximal_weight(f.H.size() == 0 ? 0.0 : f.H.diagonal().maxCoeff());
   return f;
 }
 

@@ -32,6 +32,9 @@ struct GARRISON_EXPORT BoxFactors {
   }
 };
 
+/// BoxFactors::proximal where the largest diagonal entry of H is this.
+inline double proximal_weight(double largest) { return largest > 0.0 ? 1e-9 * largest : 1.0; }
+
 GARRISON_EXPORT BoxFactors box_factors(const MatrixRef& whitener, const MatrixRef& C, const MatrixRef& Q);
 
 /// Solves one step by an active set on proximal sub-problems, which end exactly. Arguments as in `solve`; u
