@@ -8,9 +8,11 @@ build() {  # FLAGS...
   "${CXX:-g++}" -std=c++20 -O1 "$@" abi.cpp -o "$work/abi" $(pkg-config --cflags --libs garrison)
 }
 work=$1
-build && "$work/abi"
+build
+"$work/abi"
 [[ $(uname -m) == x86_64 ]] || exit 0
-build -msse4.2 && "$work/abi"
+build -msse4.2
+"$work/abi"
 for flags in "-mavx2" "-mavx2 -DEIGEN_MAX_ALIGN_BYTES=16" "-mavx512f" "-fsanitize=address"; do
   # shellcheck disable=SC2086
   if build $flags 2>"$work/abi.log"; then
