@@ -80,8 +80,11 @@ struct Gains {
   }
 };
 
+/// Whether the solver that the gains ask for is here.
+GARRISON_EXPORT bool runs(const Gains& gains) noexcept;
+
 /// Room and results of one agent's steps; sized once.
-struct Workspace {
+struct GARRISON_EXPORT Workspace {
   Aligned<double> memory;
   double* sum = nullptr;      ///< n, filled up: sum of the information vectors of N_i
   double* x = nullptr;        ///< n, filled up: x0, then the estimate

@@ -148,6 +148,7 @@ struct GARRISON_EXPORT Rdkf {
   /// What a user should know of a run: most agents saturated for long although the plant is unstable.
   static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
   static int rounds(const Gains&) { return 1; }
+  static bool runs(const Gains& g) noexcept { return rdkf::runs(g); }
   /// What agent `id` needs of the gains: its own, and J of those it hears (to stand in for what they miss to
   /// send).
   static Gains part(const Gains& all, int id, std::span<const int> neighbours) {

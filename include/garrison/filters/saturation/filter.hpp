@@ -182,7 +182,7 @@ struct GARRISON_EXPORT Saturation {
   static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
                     Message<n>& m) noexcept {
     const int nn = dimension<n>(l);
-    double on_stack[n == Dynamic ? 1 : n];
+    double on_stack[kOnStack<n>];
     double* const prediction = n == Dynamic ? s.prediction.get() : on_stack;
     multiply<n>(l.A, s.x.data(), prediction, nn);
     update<n>(l, g, s, y, t, prediction, s.x.data());

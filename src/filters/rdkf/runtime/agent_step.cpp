@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/agent_step.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "garrison/filters/rdkf/ipopt_step.hpp"
 #include "garrison/filters/rdkf/secular.hpp"
 
 namespace garrison::rdkf {
+
+// In the whole library only: null on a node.
+[[gnu::weak]] bool ipopt_available();
+[[gnu::weak]] Step solve_ipopt(const MatrixRef&, const MatrixRef&, const VectorRef&, const Price&,
+                               double*) noexcept;
+
 namespace {
 
 constexpr int kMostAscents = 5000;
@@ -83,6 +90,8 @@ Step by_ipopt(const Gains& g, const AgentGains& a, Workspace& w) noexcept {
 }
 
 }  // namespace
+
+bool runs(const Gains& g) noexcept { return !g.ipopt || (ipopt_available != nullptr && ipopt_available()); }
 
 void Workspace::resize(const Gains& g, const AgentGains& a, int states) {
   const auto n = static_cast<std::size_t>(padded(states));
