@@ -6,6 +6,7 @@ time of this build (median), and the median of the pairwise ratios this / other 
 """
 
 import argparse
+import inspect
 import json
 import os
 import subprocess
@@ -51,14 +52,14 @@ def tasks(gr: Any) -> dict[str, Callable[[], Any]]:
         attacked=2,
         process_noise=0.1,
         measurement_noise=0.1,
-        initial_error=300.0,
+        initial_error=4000.0,
         reference=[200.0, 10.0],
         gs=50.0,
         gv=50.0,
     )
 
     def run(model: Any, net: Any, filt: Any, steps: int, **more: Any) -> Callable[[], Any]:
-        if "conditions" in gr.simulate.__code__.co_varnames:
+        if "conditions" in inspect.signature(gr.simulate).parameters:
             more["conditions"] = False
         keep = more.pop("keep", ["estimate", "report"])
         return lambda: gr.simulate(model, net, filt, steps=steps, keep=keep, threads=1, seed=2, **more)
@@ -67,15 +68,15 @@ def tasks(gr: Any) -> dict[str, Callable[[], Any]]:
     return {
         "saturation, N = 1000": run(model, net, f.Saturation(threshold=0.5, rounds=3), 300),
         "saturation, N = 1000, 10 % lost": run(model, net, f.Saturation(threshold=0.5, rounds=3), 60, link=lossy),
-        "saturation, detector, N = 20": run(small, few, detector, 1500),
+        "saturation, detector, N = 20": run(small, few, detector, 6000),
         "saturation, 64 trials side by side": run(
-            small, few, f.Saturation(threshold=0.5, rounds=3), 400, trials=64, keep=["estimate"]
+            small, few, f.Saturation(threshold=0.5, rounds=3), 1600, trials=64, keep=["estimate"]
         ),
         "scalar_gain, N = 1000": run(model, net, f.ScalarGain(rounds=3), 300),
-        "rdkf, N = 20": run(small, few, f.Rdkf(weight=0.5), 3000),
-        "dkf, N = 20": run(small, few, f.Dkf(), 3000),
-        "structural, N = 20": run(small, few, f.Structural(), 6000),
-        "structural, N = 20, 10 % lost": run(small, few, f.Structural(), 4000, link=lossy),
+        "rdkf, N = 20": run(small, few, f.Rdkf(weight=0.5), 9000),
+        "dkf, N = 20": run(small, few, f.Dkf(), 9000),
+        "structural, N = 20": run(small, few, f.Structural(), 12000),
+        "structural, N = 20, 10 % lost": run(small, few, f.Structural(), 8000, link=lossy),
         "partial_sharing, N = 1000, frozen": run(model, net, f.PartialSharing(gain=0.05, shared=2), 400),
         "partial_sharing, N = 1000, varying": run(
             model, net, f.PartialSharing(gain=0.05, shared=2, gains="varying"), 200

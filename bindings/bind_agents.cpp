@@ -14,7 +14,8 @@ py::bytes to_python(std::span<const std::byte> bytes) {
 }
 /// Any object with a buffer of bytes.
 std::vector<std::byte> from_python(const py::object& given, const char* which) {
-  if (!PyObject_CheckBuffer(given.ptr()))
+  // A NumPy scalar has a buffer, too, but is a number.
+  if (!PyObject_CheckBuffer(given.ptr()) || PyIndex_Check(given.ptr()))
     refuse(which, py::str(py::type::of(given).attr("__name__")).cast<std::string>(), "bytes");
   const auto view = py::bytes(py::module_::import("builtins").attr("bytes")(given));
   const auto content = static_cast<std::string_view>(view);
