@@ -13,7 +13,7 @@ build
 [[ $(uname -m) == x86_64 ]] || exit 0
 build -msse4.2
 "$work/abi"
-for flags in "-mavx2" "-mavx2 -DEIGEN_MAX_ALIGN_BYTES=16" "-mavx512f" "-fsanitize=address"; do
+for flags in "-mavx2" "-mavx2 -DEIGEN_MAX_ALIGN_BYTES=16" "-march=skylake-avx512" "-fsanitize=address"; do
   # shellcheck disable=SC2086
   if build $flags 2>"$work/abi.log"; then
     echo "abi: a program with $flags links" >&2

