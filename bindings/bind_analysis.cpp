@@ -66,8 +66,10 @@ void bind_subsets(py::module_& m) {
 
 void bind_setting(py::module_& s) {
   using namespace saturation;
-  py::class_<Setting> setting(s, "Setting",
-                              "What the theorems of the saturation filter need to know; see the C++ header.");
+  py::class_<Setting> setting(
+      s, "Setting",
+      "Plant, network and tuning, reduced to what the theorems need. All sensors have rows of unit length\n"
+      "and start from the same estimate.");
   setting.def(py::init([](int agents, double a, double lambda0_value, double contraction, int attacked,
                           double beta, double eta0, double b_w, double b_v, bool sharp) {
                 return Setting{agents, a, lambda0_value, contraction, attacked, beta, eta0, b_w, b_v, sharp};
@@ -186,7 +188,8 @@ void bind_theorems(py::module_& s) {
       },
       py::arg("setting"), py::arg("gamma"), py::kw_only(), py::arg("chebyshev") = false, py::arg("least") = 1,
       py::arg("most") = 200, py::arg("slack") = 1e-9,
-      "Rounds and threshold that minimise the certified bound; see the C++ header.");
+      "Rounds and threshold that minimise the certified bound: of all rounds in least..most whose bound is\n"
+      "at most (1 + slack) times the best, the fewest. gamma is the contraction of one round.");
 }
 
 py::dict from_coordinates(const saturation::Coordinates& c) {

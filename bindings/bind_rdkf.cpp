@@ -86,9 +86,11 @@ void bind_rdkf(py::module_& m) {
       .def_readonly("Q", &SteadyState::Q, "(1/d_i) sum of Pbar_j^-1 over the agent and its neighbours")
       .def_readonly("sweeps", &SteadyState::sweeps)
       .def_readonly("change", &SteadyState::change, "relative change in the last sweep");
-  py::class_<Setting>(r, "Setting",
-                      "A model and a network with covariances, connection and detectability checked.\n"
-                      "Raises InvalidInput where they do not fit; see the C++ header.")
+  py::class_<Setting>(
+      r, "Setting",
+      "A model and a network with covariances, connection and detectability checked.\n"
+      "Raises InvalidInput where a covariance is missing or not positive definite, the network is not\n"
+      "connected, or (A, C) is not detectable.")
       .def(py::init(&setting), py::arg("model"), py::arg("network"))
       .def("sweep", &riccati_sweep, py::arg("P"), "One application of (5) to one (n, n) matrix per agent.")
       .def(
@@ -104,7 +106,7 @@ void bind_rdkf(py::module_& m) {
           "it.");
   r.def("constants", &all_constants, py::arg("setting"), py::arg("steady"), py::arg("weight"),
         py::arg("penalty") = "norm",
-        "Bounds, theorem III.3 levels, rates and radii; see the C++ header. level['printed'] is not valid.");
+        "Bounds, theorem III.3 levels, rates and radii. level['printed'] is not valid.");
   r.def(
       "lyapunov",
       [](const SteadyState& s, const MatrixRef& errors) { return lyapunov(s, errors.transpose()); },

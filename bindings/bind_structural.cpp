@@ -24,7 +24,7 @@ Stationary stationary_of(const Setting& s, const GainMatrices& K, int lags) {
 void bind_setting(py::module_& m) {
   py::class_<Setting> setting(
       m, "Setting",
-      "Model, graphs and noise of the structural filter's analysis; see the C++ header.\n"
+      "Model, graphs and noise of the structural filter's analysis, in the paper's letters.\n"
       "A (n, n), C (N, n), W and U (N, N), E (n, n), R (N, N).");
   setting
       .def(py::init([](const Matrix& A, const Matrix& C, const Matrix& W, const Matrix& U,
@@ -128,7 +128,9 @@ void bind_detection(py::module_& m) {
         return all;
       },
       py::arg("setting"), py::arg("K"), py::arg("false_alarm") = 0.01, py::arg("detection") = 0.99,
-      "What a constant attack on each agent can do before it is seen; see the C++ header.");
+      "What a constant attack on each agent can do before it is seen, at steady state: the least size that\n"
+      "some agent's test detects with probability `detection` per sample and that agent, the largest steady\n"
+      "|mean error| per unit of attack, and that of an attack of just this size.");
   m.def("windows_naive", &windows_naive, py::arg("residuals"), py::arg("residual_std"), py::arg("window"));
   m.def(
       "windows_exact",
@@ -197,7 +199,10 @@ void bind_gains(py::module_& m) {
         return py::dict(py::arg("K") = d.K, py::arg("method") = d.method, py::arg("rho") = d.rho,
                         py::arg("P") = d.P);
       },
-      py::arg("setting"), py::arg("method") = "auto", "Gains with rho(Ahat) < 1; see the C++ header.");
+      py::arg("setting"), py::arg("method") = "auto",
+      "Gains with rho(Ahat) < 1: method \"riccati\", \"kalman\", \"projection\", \"h2\", or \"auto\", the\n"
+      "first of riccati, kalman, h2 with which that holds. P bounds cov(e_i) where the coupled Riccati\n"
+      "recursion settled, else it is empty. Raises DesignInfeasible with the spectral radius reached.");
   m.def(
       "best_scalar_gain",
       [](double a, const MatrixRef& W) {

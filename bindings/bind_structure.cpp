@@ -162,7 +162,9 @@ void bind_pattern(py::module_& s) {
                         py::arg("block_start") = numbers(std::move(d.block_start)));
       },
       py::arg("pattern"),
-      "Coarse parts, and the square part in fine blocks (block_start); see the C++ header.");
+      "Dulmage-Mendelsohn: coarse parts (hor: more columns than rows, sq: matched, ver: more rows than\n"
+      "columns) and the square part in fine blocks; block b holds sq_rows and sq_cols [block_start[b],\n"
+      "block_start[b+1]).");
 }
 
 void bind_system(py::module_& s) {
@@ -264,7 +266,9 @@ void bind_system(py::module_& s) {
           },
           py::arg("measured"), py::arg("alarms"), py::arg("types") = py::none(), py::arg("choice") = "exact",
           py::arg("cost") = py::none(),
-          "Algorithm 1: (new measured states, log of (agent, type, before, after)); see the C++ header.");
+          "Algorithm 1: (new measured states, log of (agent, type, before, after)), one alarmed agent at a\n"
+          "time. choice: \"class\" as printed, or \"exact\", the cheapest state that keeps the system\n"
+          "structurally observable; cost is (agents, states), None: all alike.");
 }
 
 void bind_networks(py::module_& s) {
@@ -299,7 +303,9 @@ void bind_networks(py::module_& s) {
                         py::arg("exact") = found.exact);
       },
       py::arg("agents"), py::arg("edges"), py::arg("weights"), py::arg("max_nodes") = 2'000'000,
-      "Cheapest strongly connected network from (from, to) edges; see the C++ header.");
+      "Cheapest strongly connected network from (from, to) edges, weights >= 0. The problem is NP-hard:\n"
+      "exact says whether max_nodes choices sufficed for cost = lower_bound; nothing cheaper than\n"
+      "lower_bound exists.");
   s.def("unseen_modes", &unseen_modes, py::arg("A"), py::arg("C"), py::arg("least") = 0.0,
         "Eigenvalues of modulus >= least that the rows of C do not surely show; see visibility.");
   s.def(

@@ -165,7 +165,7 @@ class Page:
             "4: the full solution is never worse",
             numbers([e.full(part)[-8:].mean() - honest[k] for k, part in enumerate(SHARED)]),
             all(e.full(part)[-8:].mean() <= honest[k] * (1 + 1e-12) for k, part in enumerate(SHARED)),
-            "K* is greedy, and a smaller P_i shrinks C_i (our notes, item 16)",
+            "K* is greedy, and a smaller P_i shrinks C_i",
         )
         excess = [(s - h) / (r - h) for s, r, h in zip(sharp, rough, honest, strict=True)]
         self.claim("7: Sigma* does more than a random Sigma", numbers(excess) + " times", min(excess) > 1)
@@ -180,7 +180,7 @@ class Page:
             "VI: maximising the last term maximises the steady NMSE",
             f"still to gain: {numbers(better)}",
             max(better) < 1e-9,
-            "true for one step; the worst steady Sigma is another (our notes, item 13)",
+            "true for one step; the worst steady Sigma is another",
         )
 
     def theory(self) -> None:
@@ -215,7 +215,7 @@ class Page:
             "5: (26) is the true MSE",
             f"up to {100 * max(apart):.2g} % above (29)",
             max(apart) < 1e-3,
-            "it drops the correlation of neighbours (our notes, item 14)",
+            "it drops the correlation of neighbours",
         )
         self.claim("8: MSE' fluctuates more when less is shared", numbers(swings), bool((np.diff(swings) < 0).all()))
 
@@ -249,7 +249,7 @@ class Page:
             "6: Algorithm 2 finds the best selection",
             numbers([p / b for _, p, b in gains]),
             min(p / b for _, p, b in gains) > 1 - 1e-9,
-            "(36) counts half of the coupling and all agents move at once (our notes, item 11)",
+            "(36) counts half of the coupling and all agents move at once",
         )
         plot_bars(self.folder / f"fig6_{self.file_end}", gains, e.gain)
 

@@ -1,4 +1,4 @@
-"""The page of the partial-sharing paper comes to the verdicts of our notes."""
+"""The page of the partial-sharing paper comes to the known verdicts."""
 
 import runpy
 import sys

@@ -1,4 +1,4 @@
-"""The paper page comes to the verdicts of our notes."""
+"""The page of the saturation paper comes to the known verdicts."""
 
 import runpy
 import sys

@@ -1,4 +1,4 @@
-"""The structural paper page comes to the verdicts of our notes."""
+"""The page of the structural paper comes to the known verdicts."""
 
 import runpy
 import sys

@@ -36,8 +36,19 @@ struct FieldRef {
   int size;  ///< of numbers: how many; of a count: the largest; else 1
 };
 
+/// What visitors of messages make of vectors that know their size.
+template <class Derived>
+struct NumbersOf {
+  template <class Numbers>
+    requires requires(Numbers& v) { v.data(); }
+  void numbers(std::string_view name, Numbers& values) {
+    static_cast<Derived*>(this)->numbers(
+        name, std::span<double>(values.data(), static_cast<std::size_t>(values.size())));
+  }
+};
+
 /// All fields of one message, in the order in which they are listed.
-class FieldList {
+class FieldList : public NumbersOf<FieldList> {
  public:
   static constexpr std::size_t kMost = 12;
 
@@ -60,13 +71,9 @@ class FieldList {
         for (int i = 0; i < field.size; ++i) action(k++, static_cast<double*>(field.data)[i]);
   }
 
+  using NumbersOf<FieldList>::numbers;
   void numbers(std::string_view name, std::span<double> values) {
     add({name, FieldKind::numbers, values.data(), static_cast<int>(values.size())});
-  }
-  template <class Numbers>
-    requires requires(Numbers& v) { v.data(); }
-  void numbers(std::string_view name, Numbers& values) {
-    numbers(name, std::span<double>(values.data(), static_cast<std::size_t>(values.size())));
   }
   void optional(std::string_view name, double& value) { add({name, FieldKind::optional, &value, 1}); }
   void flag(std::string_view name, bool& value) { add({name, FieldKind::flag, &value, 1}); }
@@ -78,17 +85,6 @@ class FieldList {
   void add(const FieldRef& field) { fields_[size_++] = field; }
   std::array<FieldRef, kMost> fields_;
   std::size_t size_ = 0;
-};
-
-/// What visitors of messages make of vectors that know their size.
-template <class Derived>
-struct NumbersOf {
-  template <class Numbers>
-    requires requires(Numbers& v) { v.data(); }
-  void numbers(std::string_view name, Numbers& values) {
-    static_cast<Derived*>(this)->numbers(
-        name, std::span<double>(values.data(), static_cast<std::size_t>(values.size())));
-  }
 };
 
 namespace detail {

@@ -87,14 +87,13 @@ class AgentOf final : public Agent {
   }
 
   Refusal deliver(const Envelope& envelope, std::span<const std::byte> body) noexcept override {
-    const auto sender = std::lower_bound(part_.neighbours.begin(), part_.neighbours.end(), envelope.sender);
-    if (sender == part_.neighbours.end() || *sender != envelope.sender) return Refusal::stranger;
+    const std::size_t neighbour = neighbour_of(envelope.sender);
+    if (neighbour == part_.neighbours.size()) return Refusal::stranger;
     const std::int64_t t = envelope.sample;
     if (envelope.round < 0) return Refusal::early;
     if (t < t_ || (t == t_ && envelope.round < round_)) return Refusal::late;
     if (t > t_ + 1 || envelope.round >= rounds_) return Refusal::early;
-    const std::size_t at =
-        place(t, envelope.round, static_cast<std::size_t>(sender - part_.neighbours.begin()));
+    const std::size_t at = place(t, envelope.round, neighbour);
     if (arrived_[at] == t) return Refusal::duplicate;
     shape<F, n>(local_, *gains_, envelope.sender, t, mailbox_[at]);
     const Refusal refusal = wire::decode(body, local_.agents, mailbox_[at]);
@@ -103,9 +102,9 @@ class AgentOf final : public Agent {
   }
 
   bool has(int sender) const noexcept override {
-    const auto at = std::lower_bound(part_.neighbours.begin(), part_.neighbours.end(), sender);
-    if (at == part_.neighbours.end() || *at != sender || round_ >= rounds_) return false;
-    return arrived_[place(t_, round_, static_cast<std::size_t>(at - part_.neighbours.begin()))] == t_;
+    const std::size_t neighbour = neighbour_of(sender);
+    if (neighbour == part_.neighbours.size() || round_ >= rounds_) return false;
+    return arrived_[place(t_, round_, neighbour)] == t_;
   }
 
   Sent fuse(std::span<std::byte> out) noexcept override {
@@ -274,6 +273,12 @@ class AgentOf final : public Agent {
     return {Refusal::none, wire::encode(outgoing_, local_.agents, out.data())};
   }
 
+  /// Place of an agent among the neighbours; their number when it is none of them.
+  std::size_t neighbour_of(int agent) const noexcept {
+    const auto at = std::lower_bound(part_.neighbours.begin(), part_.neighbours.end(), agent);
+    if (at != part_.neighbours.end() && *at != agent) return part_.neighbours.size();
+    return static_cast<std::size_t>(at - part_.neighbours.begin());
+  }
   /// Two samples of all rounds: messages of the next sample may come early.
   std::size_t place(std::int64_t t, int round, std::size_t neighbour) const noexcept {
     const auto side = static_cast<std::size_t>(static_cast<std::uint64_t>(t) & 1U);

@@ -15,6 +15,7 @@
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/kernel/block.hpp"
 
 namespace garrison {
 
@@ -151,14 +152,10 @@ struct GARRISON_EXPORT Lfre {
   template <int n>
   static void rejoin(const Local& l, const Gains&, const Inbox<Message<n>>& inbox, std::int64_t,
                      State<n>& s) noexcept {
-    const int nn = dimension<n>(l);
     s.y_before = kNaN;
     if (inbox.size() > 0) {
       median_into<n>(inbox.size(), [&](std::size_t k) { return inbox[k].x.data(); }, s.mean);
-      for (int i = 0; i < nn; ++i) {
-        s.x[i] = 0.0;
-        for (int k = 0; k < nn; ++k) s.x[i] += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.mean[k];
-      }
+      multiply<n>(l.A, s.mean.data(), s.x.data(), dimension<n>(l));
     }
     if (!usable<n>(s.x)) s.x.setZero();
   }

@@ -33,7 +33,7 @@ class Saturation(garrison._core.Filter):
     initial_error: bound on the distance of the common initial estimate from the state; giving it asks for run-time error bounds [state], > 0
     detector: Algorithm 2: prove and isolate attacked sensors (their set must not change over time)
     detector_index: which count of proved sensors enters rhobar(t): "t" = d_i(t-1) as printed, "t+1" = d_i(t), sharper and as sound
-    adaptive: let the threshold follow the known bound on honest innovations (our notes; needs initial_error)
+    adaptive: let the threshold follow the known bound on honest innovations (not in the paper; needs initial_error)
     accuse_missing: detector: a missing (NaN) measurement counts as proof of attack
     """
     def __copy__(self) -> typing.Any: ...
@@ -244,9 +244,9 @@ class Platoon(garrison._core.Filter):
     bound: "safe" (valid), "tight" (valid, smaller, more work) or "printed": (17) as printed, which is false (counterexamples: cases process_noise_counterexample and lemma1_counterexample) and is therefore never reported as a bound
     tie: (13), two sources equally near: lower label or smaller error bound
     count: (29): "runs" of suspects as printed, or "cover": send the pairs that fired and count the least number of sensors that explains them; never weaker
-    pairs: test (27) for all pairs in range and conclude from all explanations by at most b attackers (our notes, S4)
-    neighbours: test (28) for the measurements of all neighbours (our notes, S6)
-    median: take the median of the reconstructed measurements where its bound is smaller (our notes, S3)
+    pairs: test (27) for all pairs in range and conclude from all explanations by at most b attackers (not in the paper)
+    neighbours: test (28) for the measurements of all neighbours (not in the paper)
+    median: take the median of the reconstructed measurements where its bound is smaller (not in the paper)
     accuse_missing: a missing (NaN) absolute measurement counts as proof of attack
     prior_attacked: what vehicles are told before the start: pairs vehicle, sensor proved attacked
     prior_suspected: the same for suspected sensors

@@ -56,7 +56,8 @@ class SteadyState:
 class Setting:
     """
     A model and a network with covariances, connection and detectability checked.
-    Raises InvalidInput where they do not fit; see the C++ header.
+    Raises InvalidInput where a covariance is missing or not positive definite, the network is not
+    connected, or (A, C) is not detectable.
     """
     def __init__(self, model: garrison._core.Model, network: garrison._core.Network) -> None: ...
     def steady_state(
@@ -79,7 +80,7 @@ def constants(
     setting: Setting, steady: SteadyState, weight: typing.SupportsFloat | typing.SupportsIndex, penalty: str = "norm"
 ) -> dict:
     """
-    Bounds, theorem III.3 levels, rates and radii; see the C++ header. level['printed'] is not valid.
+    Bounds, theorem III.3 levels, rates and radii. level['printed'] is not valid.
     """
 
 def detectable(

@@ -32,7 +32,8 @@ __all__: list[str] = [
 
 class Setting:
     """
-    What the theorems of the saturation filter need to know; see the C++ header.
+    Plant, network and tuning, reduced to what the theorems need. All sensors have rows of unit length
+    and start from the same estimate.
     """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
@@ -87,7 +88,8 @@ def design(
     slack: typing.SupportsFloat | typing.SupportsIndex = 1e-09,
 ) -> dict:
     """
-    Rounds and threshold that minimise the certified bound; see the C++ header.
+    Rounds and threshold that minimise the certified bound: of all rounds in least..most whose bound is
+    at most (1 + slack) times the best, the fewest. gamma is the contraction of one round.
     """
 
 def eps_paper(setting: Setting) -> float: ...

@@ -41,7 +41,7 @@ __all__: list[str] = [
 
 class Setting:
     """
-    Model, graphs and noise of the structural filter's analysis; see the C++ header.
+    Model, graphs and noise of the structural filter's analysis, in the paper's letters.
     A (n, n), C (N, n), W and U (N, N), E (n, n), R (N, N).
     """
     def __copy__(self) -> typing.Any: ...
@@ -113,7 +113,9 @@ def covariance_bound(
 
 def design_gains(setting: Setting, method: str = "auto") -> dict:
     """
-    Gains with rho(Ahat) < 1; see the C++ header.
+    Gains with rho(Ahat) < 1: method "riccati", "kalman", "projection", "h2", or "auto", the
+    first of riccati, kalman, h2 with which that holds. P bounds cov(e_i) where the coupled Riccati
+    recursion settled, else it is empty. Raises DesignInfeasible with the spectral radius reached.
     """
 
 def error_radius(
@@ -130,7 +132,9 @@ def exposure(
     detection: typing.SupportsFloat | typing.SupportsIndex = 0.99,
 ) -> list:
     """
-    What a constant attack on each agent can do before it is seen; see the C++ header.
+    What a constant attack on each agent can do before it is seen, at steady state: the least size that
+    some agent's test detects with probability `detection` per sample and that agent, the largest steady
+    |mean error| per unit of attack, and that of an attack of just this size.
     """
 
 def false_alarm_of_level(ratio: typing.SupportsFloat | typing.SupportsIndex) -> float:

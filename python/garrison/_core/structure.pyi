@@ -106,7 +106,9 @@ class System:
         cost: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
     ) -> tuple[list, list]:
         """
-        Algorithm 1: (new measured states, log of (agent, type, before, after)); see the C++ header.
+        Algorithm 1: (new measured states, log of (agent, type, before, after)), one alarmed agent at a
+        time. choice: "class" as printed, or "exact", the cheapest state that keeps the system
+        structurally observable; cost is (agents, states), None: all alike.
         """
     def necessary(self, measured: collections.abc.Iterable) -> list[bool]:
         """
@@ -168,7 +170,9 @@ def cheapest_strong_subgraph(
     max_nodes: typing.SupportsInt | typing.SupportsIndex = 2000000,
 ) -> dict:
     """
-    Cheapest strongly connected network from (from, to) edges; see the C++ header.
+    Cheapest strongly connected network from (from, to) edges, weights >= 0. The problem is NP-hard:
+    exact says whether max_nodes choices sufficed for cost = lower_bound; nothing cheaper than
+    lower_bound exists.
     """
 
 def distributed_observability(
@@ -183,7 +187,9 @@ def distributed_observability(
 
 def dulmage_mendelsohn(pattern: Pattern) -> dict:
     """
-    Coarse parts, and the square part in fine blocks (block_start); see the C++ header.
+    Dulmage-Mendelsohn: coarse parts (hor: more columns than rows, sq: matched, ver: more rows than
+    columns) and the square part in fine blocks; block b holds sq_rows and sq_cols [block_start[b],
+    block_start[b+1]).
     """
 
 def maximum_matching(

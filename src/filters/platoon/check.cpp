@@ -53,7 +53,7 @@ Check Platoon::check(const Params& p, const Model& model, const Network& network
        "certified error of vehicles that hear 2L others, t -> infinity, nobody identified"},
       {"limit of lambda", varpi_limit, "of vehicles outside V_1 with a sensor known to be free"},
       {"limit of tau", worst, "of the others outside V_1, source L places away"},
-      {"median bound", median_bound(s), "error of the median start (our notes, S3), from t = 1 on"},
+      {"median bound", median_bound(s), "error of the median start (not in the paper), from t = 1 on"},
   };
   if (!g.formation.steers()) return c;
   c.conditions.push_back({"Assumption 4", p.gv, "> T g_s, and T^2 g_s - 2 T g_v > -4/sigma_max",

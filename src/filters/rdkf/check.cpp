@@ -50,7 +50,7 @@ void rates(Check& c, const Model& model, const Constants& k) {
   const double a = radius(model.A());
   c.quantities.push_back({"radius of A", a, "spectral radius of the plant"});
   c.conditions.push_back({"gamma < 1", k.rate, "< 1", k.rate < 1.0,
-                          "errors of (7) shrink: V_k <= gamma V_{k-1} (our notes, 8)"});
+                          "errors of (7) shrink: V_k <= gamma V_{k-1} (not in the paper)"});
   c.quantities.push_back({"radius of (7)", k.dkf_error_radius, "per step, of the error without attack"});
 }
 
@@ -82,7 +82,7 @@ void under_attack(Check& c, const Model& model, const Constants& k) {
                           : std::isinf(k.level.refined)
                               ? "nobody has a sensor that counts"
                               : "a start with max e'P^-1 e at most this converges like gamma without attack "
-                                "(theorem III.3 as corrected and refined in our notes, 5 to 7)"});
+                                "(theorem III.3, corrected and refined)"});
   if (radius(model.A()) > kUnstable)
     c.quantities.push_back(
         {"basin of theorem III.3", k.level.corrected,

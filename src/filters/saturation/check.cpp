@@ -184,9 +184,9 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
                           false});
   // With lambda_0 < s a plant that contracts (a < 1) always has some small threshold with (9).
   const double a_max = std::max(1.0, normA_max_exact(setting));
-  c.conditions.push_back({"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max),
-                          facts.a < a_max,
-                          "some threshold, initial error and rounds satisfy (9) (our notes, exact)", false});
+  c.conditions.push_back(
+      {"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max), facts.a < a_max,
+       "some threshold, initial error and rounds satisfy (9) (exact, unlike theorem 2)", false});
   const auto least = minimal_rounds(
       setting, p.chebyshev
                    ? std::function<double(int)>([&](int L) { return chebyshev_contraction(rates.gamma, L); })

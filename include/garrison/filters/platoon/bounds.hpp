@@ -36,9 +36,9 @@ inline double least_gain(const Setting& s, double beta, double E) noexcept {
 }
 
 /// (17) as printed (with kbar in place of k_i(t)), from alpha_i(t-1). FALSE in general: it multiplies the
-/// process noise by the wrong factor (our notes, E1: N = 5, L = 2, b = 2, T = .01, q = 300, eps = .1, mu =
+/// process noise by the wrong factor (N = 5, L = 2, b = 2, T = .01, q = 300, eps = .1, mu =
 /// .001, beta = 30 has an error of 294.0992 under a "bound" of 294.0887) and counts too few sensors once more
-/// than 2L+1-b are free (E2: it then falls below 0). Kept for comparison; never reported as a bound.
+/// than 2L+1-b are free (it then falls below 0). Kept for comparison; never reported as a bound.
 inline double printed_bound(const Setting& s, double beta, double alpha, const Window& w) noexcept {
   const double two_L = 2.0 * s.range;
   const double k = least_gain(s, beta, predicted(s, alpha));
@@ -46,7 +46,7 @@ inline double printed_bound(const Setting& s, double beta, double alpha, const W
   return m * norm_A(s) * alpha + ((s.eps + mubar(s)) * honest(s) + (s.attacked - w.proved) * beta) / two_L;
 }
 
-/// The valid replacement (our notes, section 1). e = (1 - K/2L)(A e^- - d) + noise and saturated rest, with
+/// The valid replacement. e = (1 - K/2L)(A e^- - d) + noise and saturated rest, with
 /// the gains of the honest sensors summing to K in [lo, hi]. Gains are numbers, so that it holds for entries.
 class SafeStep {
  public:

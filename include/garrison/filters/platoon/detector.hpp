@@ -36,8 +36,8 @@ inline bool contradict(const Setting& s, int distance, const double* a, const do
 }
 
 /// g_i of (28), against ||y_ii - xbar_i||, from the bound E on the error of xbar_i: the print has A
-/// xhat_i(t-1) in place of xbar_i(t) and so forgets the control input, which accuses clean sensors (our
-/// notes, E4). `distance` > 0: y_{i|j}, S6 of our notes.
+/// xhat_i(t-1) in place of xbar_i(t) and so forgets the control input, which accuses clean sensors.
+/// `distance` > 0: of y_{i|j}, the measurement of a neighbour at that distance (not in the paper).
 inline double innovation_level(const Setting& s, double E, int distance = 0) noexcept {
   return E + reached_noise(s, distance).norm;
 }
@@ -49,7 +49,7 @@ GARRISON_EXPORT std::vector<std::vector<int>> runs(std::span<const int> sorted);
 GARRISON_EXPORT int count_runs(std::span<const int> sorted) noexcept;
 
 /// Pairs (j, k) that fired in the window of one vehicle, and what follows from the knowledge that at most
-/// `budget` of the sensors in it are attacked (S4 of our notes): every attacked set covers all pairs.
+/// `budget` of the sensors in it are attacked: every attacked set covers all pairs.
 class Suspicions {
  public:
   /// `size` <= 63 sensors, numbered 0..size-1.

@@ -49,7 +49,7 @@ inline auto Saturation::Params::fields() {
                                     .symbol = "",
                                     .unit = "",
                                     .doc = "let the threshold follow the known bound on honest innovations "
-                                           "(our notes; needs initial_error)"}),
+                                           "(not in the paper; needs initial_error)"}),
           field(&Params::accuse_missing,
                 {.name = "accuse_missing",
                  .symbol = "",

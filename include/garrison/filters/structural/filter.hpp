@@ -16,6 +16,7 @@
 #include "garrison/core/params.hpp"
 #include "garrison/filters/structural/setting.hpp"
 #include "garrison/filters/structural/spread.hpp"
+#include "garrison/kernel/block.hpp"
 
 namespace garrison {
 
@@ -300,13 +301,9 @@ struct GARRISON_EXPORT Structural {
   template <int n>
   static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t,
                      State<n>& s) noexcept {
-    const int nn = dimension<n>(l);
     if (inbox.size() > 0) {
       median_into<n>(inbox.size(), [&](std::size_t k) { return inbox[k].numbers.data(); }, s.prior);
-      for (int i = 0; i < nn; ++i) {
-        s.x[i] = 0.0;
-        for (int k = 0; k < nn; ++k) s.x[i] += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.prior[k];
-      }
+      multiply<n>(l.A, s.prior.data(), s.x.data(), dimension<n>(l));
     }
     if (!usable<n>(s.x)) s.x.setZero();
     s.prior = s.x;
