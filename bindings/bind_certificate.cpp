@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Certificates: where the state is, whatever at most s sensors say.
 #include "certificate.hpp"
+#include "garrison/certificate/calibration.hpp"
 #include "garrison/certificate/gaussian_table.hpp"
 #include "garrison/certificate/informed.hpp"
 #include "garrison/certificate/order_rule.hpp"
@@ -51,6 +52,27 @@ double checked_bound_around(const Region& r, const VectorRef& estimate) {
 }
 
 void bind_quantiles(py::module_& m) {
+  m.def(
+      "empirical_quantile",
+      [](const VectorRef& measured, double delta, double confidence) {
+        const Quantile q = empirical_quantile(measured, delta, confidence);
+        return std::array<double, 3>{q.value, q.lower, q.upper};
+      },
+      py::arg("measured"), py::arg("delta"), py::arg("confidence") = 0.95,
+      "(value, lower, upper): a level that a share `delta` of clean numbers `measured` (T,) exceeds, and "
+      "where the true "
+      "one is "
+      "with that confidence if they are independent; nan where T is too small. nan = missing.");
+  m.def(
+      "whiteness",
+      [](const MatrixRef& residuals, int lags) {
+        const Whiteness w = whiteness(residuals, lags);
+        return std::tuple(w.statistic, w.correlation, w.p_value);
+      },
+      py::arg("residuals"), py::arg("lags") = 10,
+      "(statistic (N,), lag-1 correlation (N,), p-value) of the Ljung-Box test of residuals (T, N), nan = "
+      "missing; "
+      "the p-value is that of the worst sensor times N: small = a residual depends on its past.");
   m.def("two_sided", &two_sided, py::arg("delta"), "z with P(|N(0,1)| > z) = delta; delta in (0, 1).");
   m.def("chi", &chi, py::arg("delta"), py::arg("degrees"),
         "c with P(chi-square > c^2) = delta; delta in (0, 1), degrees >= 1.");

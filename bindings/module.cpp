@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bindings.hpp"
+#include "garrison/version.hpp"
 #include "guard.hpp"
 
 PYBIND11_MODULE(_core, m) {

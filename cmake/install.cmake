@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/garrison)
 
-install(TARGETS garrison headers EXPORT garrison)
+install(TARGETS garrison garrison_node garrison_headers EXPORT garrison)
 install(DIRECTORY include/garrison DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 
 install(EXPORT garrison NAMESPACE garrison:: FILE garrisonTargets.cmake DESTINATION ${package_dir})
@@ -16,5 +16,8 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/garrisonConfig.cmake ${CMAKE_CURRENT_B
 # The path from the .pc file to the prefix, so that the installed tree can be moved.
 file(RELATIVE_PATH GARRISON_PC_TO_PREFIX
      ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+if(GARRISON_FEW_DIMENSIONS)
+  set(GARRISON_PC_DEFINITIONS " -DGARRISON_FEW_DIMENSIONS")
+endif()
 configure_file(cmake/garrison.pc.in garrison.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/garrison.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -39,6 +39,7 @@ from garrison.record import Run
 from garrison.verdict import Verdict
 
 if TYPE_CHECKING:
+    from garrison.calibration import Calibration, calibrate
     from garrison.fitting import Fit, fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
@@ -46,6 +47,8 @@ if TYPE_CHECKING:
 
 #: what is imported when it is asked for -> its module
 _LATER = {
+    "Calibration": "calibration",
+    "calibrate": "calibration",
     "Fit": "fitting",
     "fit": "fitting",
     "Mitigated": "mitigation",
@@ -58,6 +61,7 @@ _LATER = {
 __all__ = [
     "Agent",
     "Attack",
+    "Calibration",
     "Check",
     "DesignInfeasible",
     "Error",
@@ -76,6 +80,7 @@ __all__ = [
     "Verdict",
     "__version__",
     "attacks",
+    "calibrate",
     "central_kalman",
     "certificate",
     "check",

@@ -14,6 +14,34 @@ from garrison.tables import Records
 from garrison.words import only, refusal, shown
 
 Array = NDArray[np.float64]
+#: p-value below which residuals are called not white
+_LEVEL = 0.01
+
+
+@dataclass(frozen=True)
+class Whiteness:
+    """Ljung-Box test of a model's residuals, station by station.
+
+    statistic (N,): chi-square with `lags` degrees if the residuals are independent of their past. correlation (N,):
+    with the sample before. p_value: of the worst station, times the number of stations (Bonferroni).
+    """
+
+    stations: list[str]
+    statistic: Array
+    correlation: Array
+    p_value: float
+    lags: int
+
+    def __str__(self) -> str:
+        k = int(np.argmax(self.statistic))
+        about = (
+            f"whiteness of the residuals over {self.lags} lags: worst {self.stations[k]}, statistic "
+            f"{self.statistic[k]:.4g}, correlation {self.correlation[k]:.2g} with the sample before, "
+            f"p-value {self.p_value:.2g}"
+        )
+        if self.p_value >= _LEVEL:
+            return f"{about}: no dependence on the past was found"
+        return f"{about}: not white, so false-alarm rates on records differ from what is asked; calibrate the filter"
 
 
 @dataclass(frozen=True)
@@ -44,6 +72,16 @@ class Fit:
         Unlike `reference` it is not pulled by a minority of stations that are wrong. nan where too few have a record.
         """
         return _least_absolute(np.asarray(self.identified.C), self.measurements(records))
+
+    def whiteness(self, lags: int = 10) -> Whiteness:
+        """Whether what the model leaves over depends on its own past: Ljung-Box test of the residuals of the records.
+
+        lags: in 1..samples - 1. Where it does, a test over several samples alarms more often than asked: `calibrate`.
+        """
+        x = self.reference(self.records)
+        v = self.measurements(self.records) - x @ np.asarray(self.identified.C).T
+        statistic, correlation, p_value = _core.certificate.whiteness(v, lags)
+        return Whiteness(self.records.stations, statistic, correlation, p_value, lags)
 
     def to_json(self) -> str:
         """The model as text: everything a scenario or another program needs."""

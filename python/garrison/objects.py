@@ -11,7 +11,7 @@ Plain = dict[str, Any]
 
 def described(model: _core.Model, network: _core.Network, filter: _core.Filter) -> Plain:
     """The three objects by the arguments that make them."""
-    return {"model": _model(model), "network": _network(network), "filter": _filter(filter)}
+    return {"model": described_model(model), "network": _network(network), "filter": _filter(filter)}
 
 
 def _lists(value: Any) -> Any:
@@ -29,7 +29,8 @@ def _arguments(thing: Any) -> Plain | None:
     return {key: _lists(value) for key, value in state.items()} if isinstance(state, dict) else None
 
 
-def _model(model: _core.Model) -> Plain:
+def described_model(model: _core.Model) -> Plain:
+    """The model by the arguments that make it."""
     if (arguments := _arguments(model)) is not None:
         return arguments
     bounds = np.asarray(model.measurement_bound)

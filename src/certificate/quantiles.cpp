@@ -127,6 +127,12 @@ double chi(double delta, int degrees) {
                    quantile(delta, 0.5 * degrees, [&](double z) { return gamma_halves(0.5 * degrees, z); }));
 }
 
+double chi_square_tail(double square, int degrees) {
+  detail::require_least("degrees", degrees, 1);
+  if (!(square >= 0.0)) refuse("square", text(square), "a number >= 0");
+  return std::isinf(square) ? 0.0 : gamma_halves(0.5 * degrees, 0.5 * square).second;
+}
+
 double sub_gaussian_two_sided(double delta) {
   require_probability("delta", delta);
   return std::sqrt(2.0 * (std::numbers::ln2 - std::log(delta)));

@@ -111,9 +111,11 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
 }
 
 void Recorder::accusations(int trial, int t, const Runner& runner) {
-  if (runner.accused(0).empty()) return;
   auto& last = last_[static_cast<std::size_t>(trial)];
   const auto N = static_cast<std::size_t>(record_.agents);
+  bool keeps = !last.empty();
+  for (int i = 0; i < record_.agents && !keeps; ++i) keeps = !runner.accused(i).empty();
+  if (!keeps) return;
   bool changed = last.empty();
   last.resize(N);
   for (std::size_t i = 0; i < N; ++i) {
@@ -128,7 +130,7 @@ void Recorder::accusations(int trial, int t, const Runner& runner) {
   for (const AgentSet& set : last) {
     auto& ids = entry.sets.emplace_back();
     for (int id = 0; id < record_.agents; ++id)
-      if (set.contains(id)) ids.push_back(id);
+      if (!set.empty() && set.contains(id)) ids.push_back(id);
   }
   const std::lock_guard lock(mutex_);
   record_.accusations.push_back(std::move(entry));

@@ -3,46 +3,18 @@
 
 #include <algorithm>
 
-#include "garrison/wire/archive.hpp"
+#include "garrison/wire/design_head.hpp"
 
 namespace garrison {
 namespace {
 
-constexpr char kMagic[8] = {'G', 'D', 'E', 'S', 'I', 'G', 'N', '1'};
+using wire::DesignHead;
+using wire::DesignParam;
 
-/// A parameter's value, one member of which is meant.
-struct Param {
-  std::string name;
-  std::uint8_t kind = 0;
-  bool flag = false;
-  std::int64_t whole = 0;
-  double number = 0.0;
-  std::string words;
-  std::vector<double> list;
-
-  template <class V>
-  void visit(V& v) {
-    v("name", name);
-    v.range("kind", kind, 0, 4);
-    switch (kind) {
-      case 0:
-        return v("value", flag);
-      case 1:
-        return v("value", whole);
-      case 2:
-        return v("value", number);
-      case 3:
-        return v("value", words);
-      default:
-        return v("value", list);
-    }
-  }
-};
-
-std::vector<Param> from_map(const ParamMap& params) {
-  std::vector<Param> all;
+std::vector<DesignParam> from_map(const ParamMap& params) {
+  std::vector<DesignParam> all;
   for (const auto& [name, value] : params) {
-    Param p;
+    DesignParam p;
     p.name = name;
     p.kind = static_cast<std::uint8_t>(value.index());
     if (const auto* flag = std::get_if<bool>(&value)) p.flag = *flag;
@@ -54,9 +26,9 @@ std::vector<Param> from_map(const ParamMap& params) {
   }
   return all;
 }
-ParamMap to_map(const std::vector<Param>& all) {
+ParamMap to_map(const std::vector<DesignParam>& all) {
   ParamMap params;
-  for (const Param& p : all) {
+  for (const DesignParam& p : all) {
     ParamValue value = p.flag;
     if (p.kind == 1) value = p.whole;
     if (p.kind == 2) value = p.number;
@@ -66,30 +38,6 @@ ParamMap to_map(const std::vector<Param>& all) {
   }
   return params;
 }
-
-/// What both kinds of files begin with.
-struct Head {
-  std::uint32_t version = 1;
-  bool part = false;
-  std::int32_t agent = -1;
-  std::string garrison = GARRISON_VERSION;
-  std::string filter;
-  std::vector<Param> params;
-  std::int32_t agents = 0;
-  std::int32_t states = 0;
-
-  template <class V>
-  void visit(V& v) {
-    v.range("version", version, 1, 1);
-    v("part", part);
-    v.range("agent", agent, -1, INT32_MAX);
-    v("garrison", garrison);
-    v("filter", filter);
-    v("params", params);
-    v.range("agents", agents, 1, INT32_MAX);
-    v.range("states", states, 1, INT32_MAX);
-  }
-};
 
 struct Unit {
   std::string name, unit;
@@ -181,8 +129,8 @@ std::span<const std::byte> bytes_of(const std::vector<std::uint8_t>& octets) {
   return std::as_bytes(std::span(octets));
 }
 
-Head head_of(const AnyFilter& filter, const Model& model) {
-  Head head;
+DesignHead head_of(const AnyFilter& filter, const Model& model) {
+  DesignHead head;
   head.filter = filter.name();
   head.params = from_map(filter.params());
   head.agents = model.agents();
@@ -191,9 +139,10 @@ Head head_of(const AnyFilter& filter, const Model& model) {
 }
 
 template <class Content>
-std::vector<std::byte> sealed(Head head, Content content) {
+std::vector<std::byte> sealed(DesignHead head, Content content) {
   wire::GrowingSink sink;
-  std::copy_n(reinterpret_cast<const std::byte*>(kMagic), sizeof kMagic, sink.more(sizeof kMagic));
+  std::copy_n(reinterpret_cast<const std::byte*>(wire::kDesignMagic), sizeof wire::kDesignMagic,
+              sink.more(sizeof wire::kDesignMagic));
   wire::Writer<wire::GrowingSink> writer(sink);
   writer("head", head);
   writer("content", content);
@@ -208,19 +157,18 @@ std::vector<std::byte> sealed(Head head, Content content) {
 }
 
 /// The reader behind the head.
-wire::Reader opened(std::span<const std::byte> file, Head& head) {
-  if (file.size() < sizeof kMagic + sizeof(wire::Digest) ||
-      !std::equal(kMagic, kMagic + 7, reinterpret_cast<const char*>(file.data())))
-    refuse_file(std::to_string(file.size()) + " bytes that do not begin like one");
-  const auto content = file.first(file.size() - sizeof(wire::Digest));
-  const wire::Digest digest = wire::blake2b(content);
-  if (!std::equal(digest.begin(), digest.end(), file.end() - sizeof(wire::Digest)))
-    refuse_file("a damaged one: its hash does not match", "copy it again");
-  wire::Reader reader(content.subspan(sizeof kMagic), INT32_MAX, true);
-  reader("head", head);
-  if (reader.refusal() != Refusal::none)
-    refuse_file("one of another version", "write it again with garrison " GARRISON_VERSION);
-  return reader;
+wire::Reader opened(std::span<const std::byte> file, DesignHead& head) {
+  wire::Reader reader({}, 0, true);
+  switch (wire::open_design(file, head, reader)) {
+    case Refusal::none:
+      return reader;
+    case Refusal::size:
+      refuse_file(std::to_string(file.size()) + " bytes that do not begin like one");
+    case Refusal::damaged:
+      refuse_file("a damaged one: its hash does not match", "copy it again");
+    default:
+      refuse_file("one of another version", "write it again with garrison " GARRISON_VERSION);
+  }
 }
 
 void require_end(const wire::Reader& reader) {
@@ -236,7 +184,7 @@ std::vector<std::byte> write_design(const Prepared& prepared) {
 }
 
 std::shared_ptr<const Prepared> read_design(std::span<const std::byte> file) {
-  Head head;
+  DesignHead head;
   wire::Reader reader = opened(file, head);
   if (head.part)
     refuse_file("the part of agent " + std::to_string(head.agent) + " alone", "read it as an agent");
@@ -254,14 +202,14 @@ std::shared_ptr<const Prepared> read_design(std::span<const std::byte> file) {
 
 std::vector<std::byte> write_part(const Prepared& prepared, int id) {
   auto part = octets(prepared.part_bytes(id));
-  Head head = head_of(prepared.filter(), prepared.model());
+  DesignHead head = head_of(prepared.filter(), prepared.model());
   head.part = true;
   head.agent = id;
   return sealed(std::move(head), std::move(part));
 }
 
 std::unique_ptr<Agent> read_part(std::span<const std::byte> file) {
-  Head head;
+  DesignHead head;
   wire::Reader reader = opened(file, head);
   if (!head.part) refuse_file("a whole design", "read it as one, and ask it for an agent");
   std::vector<std::uint8_t> part;
@@ -271,7 +219,7 @@ std::unique_ptr<Agent> read_part(std::span<const std::byte> file) {
 }
 
 DesignSummary summary_of(std::span<const std::byte> file) {
-  Head head;
+  DesignHead head;
   opened(file, head);
   DesignSummary s{head.part,   head.agent,  head.garrison, head.filter, to_map(head.params),
                   head.agents, head.states, file.size(),   {}};

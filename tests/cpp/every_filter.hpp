@@ -2,6 +2,7 @@
 // Filters that together take every path of every family that watches one common plant.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,6 +38,15 @@ inline std::vector<std::shared_ptr<const AnyFilter>> every_filter(bool bounded =
     all.push_back(make_filter("saturation", adaptive));
     all.push_back(
         make_filter("rdkf", {{"weight", 0.5}, {"penalty", std::string("huber")}, {"initial_error", 2.0}}));
+  }
+  // A family without a line above runs as it comes, where it can.
+  for (const FamilyInfo& family : families()) {
+    const bool listed =
+        std::any_of(all.begin(), all.end(), [&](const auto& f) { return f->name() == family.name; });
+    const bool needs =
+        std::any_of(family.params.begin(), family.params.end(), [](const auto& p) { return p.required; });
+    if (listed || needs) continue;
+    if (auto filter = family.make({}); !filter->own_states()) all.push_back(std::move(filter));
   }
   return all;
 }

@@ -32,6 +32,7 @@ def samples() -> dict[str, list[Any]]:
     """Good objects by the name of their class, and one of another size of each where there is."""
     model, network = _model(), gr.Network.ring(3)
     other, cut = _model(5), gr.Network([(0, 1)], agents=5)
+    assert set(GOOD_FILTERS) == {info["name"] for info in _core.filter_infos()}, "GOOD_FILTERS: one entry per family"
     filters = [gr.filters.make_filter(name, params) for name, params in GOOD_FILTERS.items()]
     shared = next(f for f in filters if f.name == "partial_sharing")
     analysis = gr.partial_sharing.Analysis(shared, model, network)

@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-flags=(-std=c++20 -O2 -ffp-contract=off -Iinclude -isystem /usr/include/eigen3 tests/package/processors.cpp)
+flags=(-std=c++20 -O2 -ffp-contract=off -DGARRISON_HEADERS_ONLY -Iinclude -isystem /usr/include/eigen3 tests/package/processors.cpp)
 g++ "${flags[@]}" -o "$work/here"
 "$work/here" >"$work/here.out"
 grep -q "IS LOST" "$work/here.out" && { cat "$work/here.out"; exit 1; }

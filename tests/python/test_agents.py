@@ -9,6 +9,7 @@ from pathlib import Path
 import garrison as gr
 import numpy as np
 import pytest
+from garrison import _core
 from garrison.cli import main
 
 AGENTS = 5
@@ -43,6 +44,11 @@ def step(agents: list[gr.Agent], net: gr.Network, t: int, y: np.ndarray) -> None
     sent = [agent.sense(t, [y[i]]) for i, agent in enumerate(agents)]
     for _ in range(agents[0].rounds):
         sent = [agent.fuse([sent[j] for j in agent.neighbours if sent[j] is not None]) for agent in agents]
+
+
+def test_every_family_has_a_place_here() -> None:
+    """Those of vehicles: test_platoon.py."""
+    assert {f.name for f in FILTERS} | {"platoon", "platoon_baseline"} == {f["name"] for f in _core.filter_infos()}
 
 
 @pytest.mark.parametrize("filt", FILTERS, ids=lambda f: f.name)

@@ -15,7 +15,7 @@ LAYERS = (
     ("numeric", "sizes", "storage", "objects", "filters"),
     ("arguments", "parameters", "checks", "families", "tables", "longform"),
     ("attacks", "record", "doubts"),
-    ("drivers", "fitting", "certificate"),
+    ("drivers", "fitting", "calibration", "certificate"),
     ("prepared",),
     ("resilience", "mitigation", "lmi", "scenario"),
     ("compare", "anatomy"),

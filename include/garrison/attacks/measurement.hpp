@@ -14,7 +14,7 @@
 namespace garrison {
 
 /// What an informed attacker may read: what each agent will predict and tolerate at the coming sample.
-class Victims {
+class GARRISON_EXPORT Victims {
  public:
   virtual ~Victims() = default;
   virtual void expected(int agent, double* out) const = 0;

@@ -46,25 +46,25 @@ class GARRISON_EXPORT MessageAttack {
 };
 
 /// Every neighbour gets each number + offset (or `offset` alone when `replace`).
-std::shared_ptr<MessageAttack> forge(Schedule schedule, double offset, bool replace);
+GARRISON_EXPORT std::shared_ptr<MessageAttack> forge(Schedule schedule, double offset, bool replace);
 /// Different lies to different neighbours: values + size * (a random direction per receiver and round).
-std::shared_ptr<MessageAttack> equivocate(Schedule schedule, double size);
+GARRISON_EXPORT std::shared_ptr<MessageAttack> equivocate(Schedule schedule, double size);
 /// Every neighbour gets values + delta(t) with delta ~ N(0, covariance), drawn once per sample for all liars
 /// together and new at every sample. `covariance`: B n x B n for the B agents of the schedule in ascending
 /// order; may be singular. Agents send as many of their entries as their filter shares.
 /// @throws InvalidInput when it is not symmetric positive semidefinite, or its size is no multiple of B
-std::shared_ptr<MessageAttack> coordinated(Schedule schedule, const Matrix& covariance);
+GARRISON_EXPORT std::shared_ptr<MessageAttack> coordinated(Schedule schedule, const Matrix& covariance);
 /// Every neighbour gets values + delta(t) with given delta: `deltas` has one row per sample from the start of
 /// the schedule on (zero afterwards) and B n columns, agents in ascending order.
-std::shared_ptr<MessageAttack> perturb(Schedule schedule, const Matrix& deltas);
+GARRISON_EXPORT std::shared_ptr<MessageAttack> perturb(Schedule schedule, const Matrix& deltas);
 /// A lie in one field, whatever it is: numbers, a count and an optional number become `value`, a flag whether
 /// it is not 0, a set just the agents `members`. A value that no honest agent could send is refused by the
 /// receivers.
-std::shared_ptr<MessageAttack> falsify(Schedule schedule, std::string field, double value,
-                                       std::vector<int> members);
+GARRISON_EXPORT std::shared_ptr<MessageAttack> falsify(Schedule schedule, std::string field, double value,
+                                                       std::vector<int> members);
 /// What was sent `age` >= 1 samples ago is sent again, as new.
-std::shared_ptr<MessageAttack> outdated(Schedule schedule, int age);
+GARRISON_EXPORT std::shared_ptr<MessageAttack> outdated(Schedule schedule, int age);
 /// Nothing is sent.
-std::shared_ptr<MessageAttack> silence(Schedule schedule);
+GARRISON_EXPORT std::shared_ptr<MessageAttack> silence(Schedule schedule);
 
 }  // namespace garrison

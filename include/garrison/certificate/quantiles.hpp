@@ -14,6 +14,9 @@ GARRISON_EXPORT double two_sided(double delta);
 /// that dimension exceeds. delta in (0, 1), degrees >= 1; to 1e-12 relative. @throws InvalidInput
 GARRISON_EXPORT double chi(double delta, int degrees);
 
+/// P(chi-square with `degrees` degrees > square). degrees >= 1, square >= 0. @throws InvalidInput
+GARRISON_EXPORT double chi_square_tail(double square, int degrees);
+
 /// The same as two_sided and chi for noise of which only a sub-Gaussian proxy variance is known: not less
 /// than the true levels (Hsu, Kakade and Zhang 2012 for the length of a vector). @throws InvalidInput
 GARRISON_EXPORT double sub_gaussian_two_sided(double delta);

@@ -106,7 +106,10 @@ inline void next_measurement(const Local& local, const double* x, double* out) n
 /// - Optional: `uncover(gains, state)`: a gap lies behind this state, so no bound, no test and no accusation
 /// may rest on
 ///   it; `shape(local, gains, sender, t, message)`: sizes and derived indices of a message that will be read;
-///   `part(gains, id, neighbours)`: what one agent needs of the gains, the rest left empty.
+///   `part(gains, id, neighbours)`: what one agent needs of the gains, the rest left empty;
+///   `runs(gains)`: whether this build has all that they ask for (a solver, say).
+/// - What is not inline of all this is in src/filters/<family>/runtime, which nodes link without design,
+///   analysis and exceptions.
 /// - Optional: `first_sample` = 0 (default 1) for a family that has a sample at the start; `only_states`, the
 ///   one dimension that it exists for; `control` and `world` for agents with plants of their own
 ///   (core/world.hpp); `detail_names` and `detail` for lists such as sets; `accused_into` in place of

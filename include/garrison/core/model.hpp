@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "garrison/core/abi.hpp"
 #include "garrison/core/error.hpp"
 #include "garrison/core/types.hpp"
 

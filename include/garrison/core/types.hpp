@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -15,6 +16,10 @@ template <int n>
 using Vec = Eigen::Matrix<double, n, 1>;
 template <int n>
 using Mat = Eigen::Matrix<double, n, n>;
+
+/// Entries of an array on the stack for n numbers, where n is known; else 1, and it is not used.
+template <int n>
+inline constexpr std::size_t kOnStack = n == Dynamic ? 1 : static_cast<std::size_t>(n);
 
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "garrison/core/error.hpp"
 #include "garrison/core/types.hpp"
 
 namespace garrison {
@@ -22,7 +23,7 @@ struct WorldOptions {
 };
 
 /// The plants of all agents in one trial. A driver asks for time 0, 1, 2, ... in this order.
-class World {
+class GARRISON_EXPORT World {
  public:
   virtual ~World() = default;
   /// Initial estimates of the agents, n x N.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "garrison/core/abi.hpp"
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/lanes.hpp"
 #include "garrison/core/model.hpp"

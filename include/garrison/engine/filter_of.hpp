@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "garrison/core/dispatch.hpp"
-#include "garrison/engine/agent_of.hpp"
 #include "garrison/engine/any_filter.hpp"
 #include "garrison/engine/design_file.hpp"
 #include "garrison/engine/engine.hpp"
-#include "garrison/wire/archive.hpp"
+#include "garrison/engine/part.hpp"
 #include "garrison/wire/outline.hpp"
 
 namespace garrison {
@@ -26,19 +25,6 @@ auto dispatched(int states, const Action& action) {
   else
     return dispatch(states, action);
 }
-
-/// An agent's part of a design: who it is and its gains.
-template <class F>
-struct Part {
-  AgentPart who;
-  typename F::Gains gains;
-
-  template <class V>
-  void visit(V& v) {
-    v("who", who);
-    v("gains", gains);
-  }
-};
 
 template <class F>
 std::unique_ptr<Agent> agent_of(Part<F> part) {
@@ -142,20 +128,6 @@ class PreparedOf final : public Prepared {
   mutable std::uint64_t fingerprint_ = 0;
 };
 
-namespace detail {
-template <class F>
-struct RunsAs {
-  using type = F;
-};
-template <class F>
-  requires requires { typename F::RunsAs; }
-struct RunsAs<F> {
-  using type = typename F::RunsAs;
-};
-}  // namespace detail
-
-/// A family may name another one, F::RunsAs, that runs the gains of its design: it then costs no engine of
-/// its own.
 template <class F>
 class FilterOf final : public AnyFilter {
  public:
@@ -173,11 +145,13 @@ class FilterOf final : public AnyFilter {
     require_same_size(model, network);
     typename F::Gains restored;
     require_read(wire::from_bytes(gains, model.agents(), restored));
+    require_runs(restored);
     return std::make_shared<PreparedOf<Runs>>(copy(), std::move(restored), model, network);
   }
   std::unique_ptr<Agent> agent(std::span<const std::byte> bytes) const override {
     Part<Runs> part;
     require_read(wire::from_bytes(bytes, INT32_MAX, part));
+    require_runs(part.gains);
     return agent_of<Runs>(std::move(part));
   }
   Check check(const Model& model, const Network& network) const override {
@@ -209,12 +183,17 @@ class FilterOf final : public AnyFilter {
   }
 
  private:
-  using Runs = typename detail::RunsAs<F>::type;
+  using Runs = RunsOf<F>;
   std::shared_ptr<const AnyFilter> copy() const { return std::make_shared<FilterOf>(params_); }
   static void require_read(Refusal refusal) {
     if (refusal != Refusal::none)
       refuse("design", "gains with a wrong " + std::string(word(refusal)),
              "gains of " + std::string(F::name) + " that this version of garrison wrote");
+  }
+  static void require_runs(const typename F::Gains& gains) {
+    if (!runs<Runs>(gains))
+      refuse("design", std::string(F::name) + " with a solver that this build does not have",
+             "a build of garrison with all that the design asks for");
   }
   static void require_same_size(const Model& model, const Network& network) {
     if (model.agents() != network.agents())

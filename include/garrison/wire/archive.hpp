@@ -260,8 +260,10 @@ class Reader {
       return refuse_as(Refusal::size);
     if (rows != x.rows() || columns != x.cols()) {
       if constexpr (T::RowsAtCompileTime == Eigen::Dynamic || T::ColsAtCompileTime == Eigen::Dynamic) {
-        const bool fits = (T::RowsAtCompileTime == Eigen::Dynamic || T::RowsAtCompileTime == rows) &&
-                          (T::ColsAtCompileTime == Eigen::Dynamic || T::ColsAtCompileTime == columns);
+        constexpr Eigen::Index kRows = T::RowsAtCompileTime;
+        constexpr Eigen::Index kColumns = T::ColsAtCompileTime;
+        const bool fits =
+            (kRows == Eigen::Dynamic || kRows == rows) && (kColumns == Eigen::Dynamic || kColumns == columns);
         if (!resize_ || !fits) return refuse_as(Refusal::size);
         x.resize(rows, columns);
       } else {

@@ -67,6 +67,7 @@ def do(args: argparse.Namespace) -> int:
     ]
     head = ["station", *(f"C{k}" for k in range(found.model.states)), "|v| <=", "std of v"]
     print_table("", head, rows, console)
+    console.print(str(found.whiteness()))
     console.print(f"written to {args.output}")
     return OK
 

@@ -115,7 +115,9 @@ double deviation_bound(const Setting& s, const SteadyState& steady, int i, doubl
     case Penalty::l1: {
       const Matrix columns = Q.solve(s.M[k].transpose());
       for (Eigen::Index m = 0; m < columns.cols(); ++m) sum += columns.col(m).norm();
-      return lambda / 2.0 * std::min(sum, std::sqrt(static_cast<double>(columns.cols())) * norm2(columns));
+      // Where rows are missing a correlated sensor has another root, and only the second bound never grows.
+      const double all = std::sqrt(static_cast<double>(columns.cols())) * norm2(columns);
+      return lambda / 2.0 * (s.Sv[k].isDiagonal(0.0) ? std::min(sum, all) : all);
     }
     case Penalty::group:
       for (const int j : s.neighbours[k]) sum += norm2(Q.solve(s.M[static_cast<std::size_t>(j)].transpose()));

@@ -45,11 +45,20 @@ void factor(AgentGains& a, const Setting& s, const Matrix& Q, std::size_t i, con
       }
       break;
   }
-  if (g.ipopt) {
-    a.Q = Q;
-    a.M = s.M[i];
-    a.whitener = s.whitener[i];
+  if (g.ipopt) a.Q = Q;
+}
+
+/// What the step needs where some outputs of a sensor are missing.
+void keep_rows(AgentGains& a, const Setting& s, const Matrix& Q, std::size_t i, const Gains& g) {
+  const std::vector<int> own{static_cast<int>(i)};
+  bool several = false;
+  for (const int j : g.penalty == Penalty::group ? a.heard : own) {
+    const auto k = static_cast<std::size_t>(j);
+    const bool single = s.C[k].rows() <= 1;
+    a.sensors.push_back(single ? SensorRows{} : SensorRows{s.Sv[k], s.C[k]});
+    several = several || !single;
   }
+  if (several) a.L = Eigen::LLT<Matrix>(Q).matrixL();
 }
 
 /// Fills g.agents; the rest of g is set.
@@ -57,6 +66,9 @@ void design_agents(Gains& g, const Setting& s) {
   const SteadyState steady = steady_state(s);
   for (std::size_t i = 0; i < s.C.size(); ++i)
     g.most_outputs = std::max(g.most_outputs, static_cast<int>(s.C[i].rows()));
+  if (g.penalty == Penalty::group && g.most_outputs > kMostGroupOutputs)
+    refuse("rdkf.penalty", "\"group\" with " + std::to_string(g.most_outputs) + " outputs of one agent",
+           "at most " + std::to_string(kMostGroupOutputs), "split the sensor, or take penalty \"huber\"");
   for (std::size_t i = 0; i < s.C.size(); ++i) {
     AgentGains a;
     a.heard = s.neighbours[i];
@@ -64,6 +76,7 @@ void design_agents(Gains& g, const Setting& s) {
     const Matrix F = inverse(steady.Q[i]) / static_cast<double>(a.heard.size());
     a.F = Packed(0.5 * (F + F.transpose()));
     factor(a, s, steady.Q[i], i, g);
+    keep_rows(a, s, steady.Q[i], i, g);
     a.deviation_bound = deviation_bound(s, steady, static_cast<int>(i), g.price.lambda, g.penalty);
     if (g.bounded) {
       a.reach = prior_error_norms(s, steady, static_cast<int>(i));

@@ -5,8 +5,10 @@
 #include <functional>
 #include <vector>
 
+#include "core/solvers.hpp"
 #include "facts.hpp"
 #include "garrison/analysis/observability.hpp"
+#include "garrison/filters/saturation/adaptive.hpp"
 #include "garrison/filters/saturation/design.hpp"
 #include "garrison/filters/saturation/feasibility.hpp"
 #include "garrison/filters/saturation/filter.hpp"
@@ -17,6 +19,9 @@ namespace garrison {
 namespace {
 
 using namespace saturation;
+
+/// A radius of 1 up to rounding does not settle.
+constexpr double kRadiusMargin = 1e-9;
 
 std::string above(double value) { return "> " + text(value); }
 
@@ -138,6 +143,27 @@ void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_valu
   c.quantities.push_back({"unsaturated bound", bounds.thm3_item3, "limsup ||error||, theorem 3 item 3"});
 }
 
+/// The adaptive threshold follows bounds that obey a linear recursion: they settle, or grow without end.
+void add_adaptive(Check& c, const Setting& s, double varpi) {
+  const AdaptiveStep none = adaptive_next(s, varpi, 0.0, 0.0);
+  const AdaptiveStep from_rho = adaptive_next(s, varpi, 1.0, 0.0);
+  const AdaptiveStep from_p = adaptive_next(s, varpi, 0.0, 1.0);
+  Eigen::Matrix2d step;
+  step << from_rho.rho - none.rho, from_p.rho - none.rho, from_rho.p - none.p, from_p.p - none.p;
+  const double radius = step.eigenvalues().cwiseAbs().maxCoeff();
+  const bool settles = radius < 1.0 - kRadiusMargin;
+  c.conditions.push_back(
+      {"radius of the adaptive bounds < 1", radius, "< 1", settles,
+       settles ? "threshold and bounds settle"
+               : "threshold and bounds grow without end, nothing is limited in the long run; take a fixed "
+                 "threshold, more rounds, or a smaller attacked"});
+  const Eigen::Vector2d limit =
+      (Eigen::Matrix2d::Identity() - step).partialPivLu().solve(Eigen::Vector2d(none.rho, none.p));
+  c.quantities.push_back(
+      {"asymptotic bound", settles ? limit.sum() : kNaN,
+       settles ? "limsup ||error|| with the adaptive threshold" : "the bounds do not settle"});
+}
+
 }  // namespace
 
 Check Saturation::check(const Params& p, const Model& model, const Network& network) {
@@ -207,6 +233,7 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   const auto interval = beta_interval(setting);
   c.quantities.push_back({"threshold from", interval.lo, "least threshold with (9) for this initial error"});
   c.quantities.push_back({"threshold to", interval.hi, "largest one"});
+  if (p.adaptive) add_adaptive(c, setting, facts.varpi);
   if (!(growth < 1.0)) return c;
   if (p.adaptive || !std::isfinite(p.threshold)) return c;
   const auto tau = tau0(C, model.A(), p.attacked, usual_limits(C.rows(), C.cols()));

@@ -96,6 +96,36 @@ TEST_CASE("no step of any family allocates, at any dimension, on good and on bad
   }
 }
 
+TEST_CASE("no step allocates where some outputs of a sensor are missing") {
+  for (const int n : {2, 9}) {
+    test::Rng rng(static_cast<std::uint64_t>(n));
+    std::vector<Matrix> C;
+    Noise noise;
+    noise.process_covariance = 0.1 * Matrix::Identity(n, n);
+    for (int i = 0; i < 4; ++i) {
+      C.push_back(test::normal_matrix(rng, 3, n));
+      noise.measurement_covariance.push_back(Matrix::Identity(3, 3) + 0.2 * Matrix::Ones(3, 3));
+    }
+    const Model model(0.9 * Matrix::Identity(n, n), C, noise);
+    const Network network = test::connected_network(rng, 4);
+    for (const std::string penalty : {"norm", "huber", "l1", "group"}) {
+      const auto filter = make_filter("rdkf", {{"weight", 1.0}, {"penalty", penalty}});
+      const auto runner = filter->prepare(model, network)->runner(1);
+      runner->reset(Matrix::Zero(n, 4), nullptr);
+      std::vector<double> y(12);
+      count = 0;
+      for (int t = 1; t <= 40; ++t) {
+        for (double& v : y) v = test::uniform(rng, 0, 1) < 0.3 ? kNaN : test::uniform(rng, -1, 1);
+        armed = true;
+        runner->step(t, y.data());
+        armed = false;
+      }
+      CAPTURE(penalty);
+      CHECK(count == 0);
+    }
+  }
+}
+
 namespace {
 
 /// Allocations of 40 samples of agents driven by bytes: everything a node does with them.

@@ -2,9 +2,11 @@
 // The dimension as a template argument and at run time; what the registry holds; several outputs per agent.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "../agents_by_hand.hpp"
+#include "../every_filter.hpp"
 #include "../random_system.hpp"
 #include "garrison/drivers/simulate.hpp"
 #include "garrison/engine/engine.hpp"
@@ -47,13 +49,6 @@ void compare(const typename F::Params& params) {
   }
 }
 
-/// Parameters without which a family cannot run; a new family that needs some is added here.
-ParamMap least_params(const std::string& family) {
-  if (family == "saturation") return {{"threshold", 0.5}};
-  if (family == "partial_sharing") return {{"gain", 0.1}, {"shared", std::int64_t{1}}};
-  return {};
-}
-
 }  // namespace
 
 TEST_CASE("a fixed dimension gives the numbers of a dynamic one") {
@@ -77,11 +72,13 @@ TEST_CASE("every registered family runs, with good and with bad measurements") {
     CHECK(!family.title.empty());
     CHECK(!family.source.empty());
     for (const auto& info : family.params) CHECK_MESSAGE(!info.doc.empty(), info.name);
-    if (family.name.starts_with("platoon"))
-      continue;  // has a model of its own: filters/platoon/conformance_test
-    const auto filter = make_filter(family.name, least_params(family.name));
-    CHECK(filter->name() == family.name);
-    CHECK(make_filter(family.name, filter->params())->params().size() == family.params.size());
+  }
+  for (const auto& filter : test::every_filter()) {
+    CAPTURE(filter->name());
+    const auto family = std::find_if(families().begin(), families().end(),
+                                     [&](const FamilyInfo& one) { return one.name == filter->name(); });
+    REQUIRE(family != families().end());
+    CHECK(make_filter(filter->name(), filter->params())->params().size() == family->params.size());
     for (const int n : {1, 2, 3, 5, 8, 9}) {
       CAPTURE(n);
       test::Rng rng(static_cast<std::uint64_t>(n) + 60);

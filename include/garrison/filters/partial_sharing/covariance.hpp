@@ -119,7 +119,7 @@ class Recursion {
     V size{};
     V trace{};
     for (int i = 0; i < m(); ++i) {
-      V fixed[n == Dynamic ? 1 : n];
+      V fixed[kOnStack<n>];
       V* const row = n == Dynamic ? b : fixed;
       scaled_row(A, i, row);
       for (int j = 0; j <= i; ++j) {

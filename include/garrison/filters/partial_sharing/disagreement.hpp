@@ -43,8 +43,8 @@ struct Disagreement {
     using V = typename Block<W>::type;
     using Bits = decltype(V{} < V{});
     for (std::size_t k = begin; k < end; ++k, u += n) {
-      V own[n / W];
-      V sum[n / W];
+      V own[std::size_t{n / W}];
+      V sum[std::size_t{n / W}];
       for (int c = 0; c < n / W; ++c) {
         own[c] = *Block<W>::of(x + k * n + c * W);
         sum[c] = V{};

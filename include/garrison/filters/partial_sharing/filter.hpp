@@ -131,8 +131,8 @@ struct GARRISON_EXPORT PartialSharing {
   /// wire.
   template <int n>
   struct Message {
-    std::conditional_t<n == Dynamic, std::vector<double>, std::array<double, n == Dynamic ? 1 : n>> value{};
-    std::conditional_t<n == Dynamic, std::vector<int>, std::array<int, n == Dynamic ? 1 : n>> entry{};
+    std::conditional_t<n == Dynamic, std::vector<double>, std::array<double, kOnStack<n>>> value{};
+    std::conditional_t<n == Dynamic, std::vector<int>, std::array<int, kOnStack<n>>> entry{};
     int count = 0;
     std::span<const int> entries() const { return {entry.data(), static_cast<std::size_t>(count)}; }
 

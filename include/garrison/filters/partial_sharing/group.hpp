@@ -105,9 +105,9 @@ struct Group {
   double* scratch;
   double* x;  ///< predictions of the next sample, agent by agent
   int agents = 1;
-  std::array<int, kLanes> outputs{};  ///< of each agent; set by whoever makes a group of several
-  bool even = false;                  ///< every lane is an agent with q outputs
-  unsigned frozen = 0;                ///< a bit per lane
+  std::array<int, std::size_t{kLanes}> outputs{};  ///< of each agent; set by whoever makes a group of several
+  bool even = false;                               ///< every lane is an agent with q outputs
+  unsigned frozen = 0;                             ///< a bit per lane
   bool started = false;
 
  private:

@@ -50,7 +50,7 @@ GARRISON_INLINE void store_lanes(const typename Block<B>::type* from, int m, int
   if constexpr (n != Dynamic && n % B == 0) {
     if (used == B) {
       for (int first = 0; first < n; first += B) {
-        typename Block<B>::type row[B];
+        typename Block<B>::type row[std::size_t{B}];
         for (int lane = 0; lane < B; ++lane) row[lane] = from[first + lane];
         transpose<B>(row);
         for (int lane = 0; lane < B; ++lane) *Block<B>::of(to + lane * n + first) = row[lane];

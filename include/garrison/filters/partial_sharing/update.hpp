@@ -150,7 +150,7 @@ class Update<n>::Lanes {
     const V* const G = array(group_.G);
     const V* const K = array(group_.K);
     const int m = states();
-    V fixed[N];  // in registers: the compiler takes `out` for a place where G might be
+    V fixed[kOnStack<n>];  // in registers: the compiler takes `out` for a place where G might be
     V* const z = n == Dynamic ? out : fixed;
     for (int i = 0; i < m; ++i) z[i] = x[i];
     for_each_state<n>(m, [&](auto a) GARRISON_INLINED {
@@ -172,7 +172,7 @@ class Update<n>::Lanes {
     V* const kept = array(group_.z);
     const double* const A = common_.A;
     const int m = states();
-    V fixed[N];
+    V fixed[kOnStack<n>];
     V* const moved = n == Dynamic ? kept : fixed;  // one lane then: agent by agent is the same
     for (int i = 0; i < m; ++i) z[i] += 0.0;       // rows of zeros may have changed the sign of a zero
     V sum_of_squares{};

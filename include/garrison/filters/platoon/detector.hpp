@@ -50,7 +50,7 @@ GARRISON_EXPORT int count_runs(std::span<const int> sorted) noexcept;
 
 /// Pairs (j, k) that fired in the window of one vehicle, and what follows from the knowledge that at most
 /// `budget` of the sensors in it are attacked: every attacked set covers all pairs.
-class Suspicions {
+class GARRISON_EXPORT Suspicions {
  public:
   /// `size` <= 63 sensors, numbered 0..size-1.
   explicit Suspicions(int size = 0) : size_(size) {}

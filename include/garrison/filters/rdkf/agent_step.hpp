@@ -2,12 +2,23 @@
 // One agent's step of (8), everything that does not depend on the other agents prepared.
 #pragma once
 
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "garrison/filters/rdkf/box_step.hpp"
+#include "garrison/filters/rdkf/partial_step.hpp"
 #include "garrison/filters/rdkf/step.hpp"
 
 namespace garrison::rdkf {
+
+/// Names of the numbers in a message that say which outputs are there, 16 to a number.
+inline constexpr std::array<std::string_view, 8> kPresent = {"present",    "present_16", "present_32",
+                                                             "present_48", "present_64", "present_80",
+                                                             "present_96", "present_112"};
+/// How many of them `outputs` outputs need.
+inline std::size_t words(int outputs) { return (static_cast<std::size_t>(outputs) + 15) / 16; }
+inline constexpr int kMostGroupOutputs = 16 * static_cast<int>(kPresent.size());
 
 /// What design leaves for one agent.
 struct AgentGains {
@@ -17,8 +28,11 @@ struct AgentGains {
   StepFactors step;  ///< penalties norm and huber
   BoxFactors box;    ///< penalty l1
   std::vector<StepFactors>
-      blocks;                    ///< penalty group: sensors of each agent in `heard` against this agent's Q
-  Matrix Q, M, whitener;         ///< solver ipopt only
+      blocks;  ///< penalty group: sensors of each agent in `heard` against this agent's Q
+  Matrix Q;    ///< solver ipopt only
+  Matrix L;    ///< lower Cholesky factor of Q, where a sensor may miss some of its outputs
+  /// Sensors whose rows may be missing one by one: those of `blocks`, else this agent's own.
+  std::vector<SensorRows> sensors;
   double deviation_bound = 0.0;  ///< half of (10): |xhat - x0| is at most this, whatever was measured
   double quiet_level = 0.0;      ///< a whitened residual of the prediction below this does not saturate
   std::vector<double> reach;     ///< run-time bound: what of the error of each agent in `heard` comes in
@@ -33,8 +47,8 @@ struct AgentGains {
     v("box", box);
     v("blocks", blocks);
     v("Q", Q);
-    v("M", M);
-    v("whitener", whitener);
+    v("L", L);
+    v("sensors", sensors);
     v("deviation_bound", deviation_bound);
     v("quiet_level", quiet_level);
     v("reach", reach);
@@ -66,16 +80,21 @@ struct Gains {
   }
 };
 
+/// Whether the solver that the gains ask for is here.
+GARRISON_EXPORT bool runs(const Gains& gains) noexcept;
+
 /// Room and results of one agent's steps; sized once.
-struct Workspace {
+struct GARRISON_EXPORT Workspace {
   Aligned<double> memory;
   double* sum = nullptr;      ///< n, filled up: sum of the information vectors of N_i
   double* x = nullptr;        ///< n, filled up: x0, then the estimate
   double* product = nullptr;  ///< n, filled up
   double* room = nullptr;     ///< of the step
   double* y = nullptr;  ///< penalty group: a row of most_outputs per agent in `heard`; else own measurement
-  std::vector<char> present;  ///< penalty group: measurements that arrived
-  double deviation = 0.0;     ///< |xhat - x0|
+  std::vector<char> present;         ///< as y: whether the number is there
+  std::vector<int> rows;             ///< per row of y: how many are there
+  std::vector<PartialStep> partial;  ///< per row of y: its step where only some are
+  double deviation = 0.0;            ///< |xhat - x0|
   Step step;
 
   void resize(const Gains& g, const AgentGains& a, int states);

@@ -6,6 +6,9 @@
 
 namespace garrison::rdkf {
 
+/// Most rows of a C with this penalty: a step lists its free entries on the stack.
+inline constexpr int kMostBoxOutputs = 512;
+
 /// What of  min over x of lambda |b - M x|_1 + (x - x0)' Q (x - x0)  does not depend on b and x0.
 /// Dual: max over |u_m| <= lambda of u'(b - M x0) - u'H u / 2, H = M Q^-1 M' / 2, x = x0 + Q^-1 M' u / 2.
 struct GARRISON_EXPORT BoxFactors {
@@ -32,6 +35,10 @@ struct GARRISON_EXPORT BoxFactors {
   }
 };
 
+/// BoxFactors::proximal where the largest diagonal entry of H is this.
+inline double proximal_weight(double largest) { return largest > 0.0 ? 1e-9 * largest : 1.0; }
+
+/// @throws InvalidInput when C has too many rows, or Q is not positive definite
 GARRISON_EXPORT BoxFactors box_factors(const MatrixRef& whitener, const MatrixRef& C, const MatrixRef& Q);
 
 /// Solves one step by an active set on proximal sub-problems, which end exactly. Arguments as in `solve`; u

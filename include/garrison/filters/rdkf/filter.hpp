@@ -24,8 +24,9 @@ namespace garrison {
 /// b = Sv^-1/2 y, M = Sv^-1/2 C, penalty lambda |r| in the paper. Whatever is measured moves the estimate by
 /// at most half of (10) from x0. Steady-state covariances from (5) in the appendix' reading (our notes, 1).
 ///
-/// A neighbour that is missing counts as holding this agent's own previous estimate. A measurement
-/// with an entry that is not finite (or beyond kHuge) counts as none: the estimate is x0.
+/// A neighbour that is missing counts as holding this agent's own previous estimate. Entries of a
+/// measurement that are not finite (or beyond kHuge) are missing: the step is that of a sensor without their
+/// rows, for which (10) holds too; with none left the estimate is x0.
 ///
 /// With `initial_error` and process_bound known, agents also carry a bound on their error, from their
 /// neighbours' bounds and from how far their own measurement moved them: it holds under every attack on
@@ -120,9 +121,10 @@ struct GARRISON_EXPORT Rdkf {
   template <int n>
   struct Message {
     double bound = kNaN;
-    bool measured = false;  // the measurement in `extended` is one
     Vec<n> z;
     Vector extended;  // penalty group: z, then y filled up with zeros
+    std::vector<int>
+        present;  // penalty group: which of y are there, 16 to a number, the first the lowest bit
 
     template <class V>
     void visit(V& v) {
@@ -132,7 +134,7 @@ struct GARRISON_EXPORT Rdkf {
         v.numbers("measurement", std::span<double>(extended.data() + states,
                                                    static_cast<std::size_t>(extended.size()) - states));
       v.optional("bound", bound);
-      v.flag("measured", measured);
+      for (std::size_t k = 0; k < present.size(); ++k) v.count(rdkf::kPresent[k], present[k], 0xffff);
     }
     double* information() { return extended.size() != 0 ? extended.data() : z.data(); }
     const double* information() const { return extended.size() != 0 ? extended.data() : z.data(); }
@@ -146,6 +148,7 @@ struct GARRISON_EXPORT Rdkf {
   /// What a user should know of a run: most agents saturated for long although the plant is unstable.
   static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
   static int rounds(const Gains&) { return 1; }
+  static bool runs(const Gains& g) noexcept { return rdkf::runs(g); }
   /// What agent `id` needs of the gains: its own, and J of those it hears (to stand in for what they miss to
   /// send).
   static Gains part(const Gains& all, int id, std::span<const int> neighbours) {
@@ -163,8 +166,9 @@ struct GARRISON_EXPORT Rdkf {
     fresh.x = fresh.z = m.z = x0;
     fresh.bound = g.bounded ? g.initial_error : kNaN;
     fresh.work.resize(g, g.agents[static_cast<std::size_t>(l.id)], l.states);
-    m.extended = Vector::Zero(g.penalty == rdkf::Penalty::group ? l.states + g.most_outputs : 0);
-    m.measured = false;
+    const bool group = g.penalty == rdkf::Penalty::group;
+    m.extended = Vector::Zero(group ? l.states + g.most_outputs : 0);
+    m.present.assign(group ? rdkf::words(g.most_outputs) : 0, 0);
     s = std::move(fresh);
   }
 
@@ -174,11 +178,20 @@ struct GARRISON_EXPORT Rdkf {
     const rdkf::AgentGains& a = g.agents[static_cast<std::size_t>(l.id)];
     rdkf::multiply(a.J, s.x.data(), s.work.product);
     for (int k = 0; k < dimension<n>(l); ++k) s.z[k] = s.work.product[k];
-    s.measured = l.outputs > 0;
-    for (int r = 0; r < l.outputs; ++r) s.measured = s.measured && std::abs(y[r]) < kHuge;
-    double* const own = s.work.y + own_row(l, g, a) * static_cast<std::size_t>(g.most_outputs);
-    for (int r = 0; r < l.outputs; ++r) own[r] = s.measured ? y[r] : 0.0;
-    send(l, g, s, own, m);
+    const std::size_t row = own_row(l, g, a);
+    double* const own = s.work.y + row * static_cast<std::size_t>(g.most_outputs);
+    char* const present = s.work.present.data() + row * static_cast<std::size_t>(g.most_outputs);
+    int rows = 0;
+    for (int r = 0; r < l.outputs; ++r) {
+      const bool here = std::abs(y[r]) < kHuge;
+      own[r] = here ? y[r] : 0.0;
+      present[r] = here ? 1 : 0;
+      rows += here ? 1 : 0;
+    }
+    s.work.rows[row] = rows;
+    s.measured = rows > 0;
+    send(l, g, s, m);
+    if (g.penalty == rdkf::Penalty::group) send_measurement(l, own, present, m);
   }
 
   template <int n>
@@ -196,27 +209,21 @@ struct GARRISON_EXPORT Rdkf {
       const int id = a.heard[j];
       const double* z = s.z.data();
       double error = s.bound;
-      bool measured = s.measured;
       if (id != l.id) {
         while (next < inbox.size() && inbox.sender(next) < id) ++next;
         if (next < inbox.size() && inbox.sender(next) == id) {
           const Message<n>& heard = inbox[next];
           z = heard.information();
           error = heard.bound;
-          measured = heard.measured;
-          if (g.penalty == rdkf::Penalty::group)
-            std::copy_n(z + nn, g.most_outputs, w.y + j * static_cast<std::size_t>(g.most_outputs));
+          if (g.penalty == rdkf::Penalty::group) take_measurement(g, a, j, z + nn, heard.present, w);
         } else {
           rdkf::multiply(g.agents[static_cast<std::size_t>(id)].J, s.x.data(), w.product);
           z = w.product;
-          measured = false;
+          if (g.penalty == rdkf::Penalty::group) w.rows[j] = 0;
         }
       }
       for (int k = 0; k < nn; ++k) w.sum[k] += z[k];
-      if (g.penalty == rdkf::Penalty::group) {
-        w.present[j] = measured ? 1 : 0;
-        some = some || measured;
-      }
+      some = some || (g.penalty == rdkf::Penalty::group && w.rows[j] > 0);
       if (!g.bounded) continue;
       bound += a.reach[j] * error;
       for (int k = 0; k < nn; ++k) size += std::abs(z[k]);
@@ -226,7 +233,7 @@ struct GARRISON_EXPORT Rdkf {
     if (g.bounded) s.bound = (bound + w.deviation) * (1.0 + 1e-12) + a.rounding * size;
     if (!(s.bound < kHuge)) s.bound = kNaN;  // it says nothing any more
     s.saturated = w.step.mu > 0.0 && some ? s.saturated + 1 : 0;
-    send(l, g, s, nullptr, m);
+    send(l, g, s, m);  // after the only round: nobody reads it any more
   }
 
   /// The fused prediction x0 with the entrywise median of the neighbours' information vectors in place of its
@@ -310,17 +317,36 @@ struct GARRISON_EXPORT Rdkf {
       while (a.heard[row] != l.id) ++row;
     return row;
   }
-  /// y: own measurement, or null after the only round, when nobody reads the message any more.
+  /// What is sent, but for the measurement.
   template <int n>
-  static void send(const Local& l, const Gains& g, const State<n>& s, const double* y,
-                   Message<n>& m) noexcept {
+  static void send(const Local& l, const Gains& g, const State<n>& s, Message<n>& m) noexcept {
     m.z = s.z;
     m.bound = s.bound;
-    m.measured = s.measured && y != nullptr;
     if (m.extended.size() == 0) return;
     const int nn = dimension<n>(l);
     for (int k = 0; k < nn; ++k) m.extended[k] = s.z[k];
-    for (int r = 0; r < g.most_outputs; ++r) m.extended[nn + r] = m.measured && r < l.outputs ? y[r] : 0.0;
+    for (int r = 0; r < g.most_outputs; ++r) m.extended[nn + r] = 0.0;
+    std::fill(m.present.begin(), m.present.end(), 0);
+  }
+  template <int n>
+  static void send_measurement(const Local& l, const double* y, const char* present, Message<n>& m) noexcept {
+    const int nn = dimension<n>(l);
+    for (int r = 0; r < l.outputs; ++r) {
+      m.extended[nn + r] = y[r];
+      if (present[r] != 0) m.present[static_cast<std::size_t>(r / 16)] |= 1 << (r % 16);
+    }
+  }
+  /// The measurement that the j-th agent in `heard` sent, and which of it is there.
+  static void take_measurement(const Gains& g, const rdkf::AgentGains& a, std::size_t j, const double* y,
+                               const std::vector<int>& present, rdkf::Workspace& w) noexcept {
+    const std::size_t first = j * static_cast<std::size_t>(g.most_outputs);
+    std::copy_n(y, g.most_outputs, w.y + first);
+    w.rows[j] = 0;
+    for (int r = 0; r < a.blocks[j].outputs(); ++r) {
+      const int here = (present[static_cast<std::size_t>(r / 16)] >> (r % 16)) & 1;
+      w.present[first + static_cast<std::size_t>(r)] = static_cast<char>(here);
+      w.rows[j] += here;
+    }
   }
 };
 

@@ -46,7 +46,7 @@ template <int B>
 struct Lanes {
   static constexpr int parts = kGroup / B;
   using type = typename Block<B>::type;
-  type part[parts];
+  type part[std::size_t{parts}];
 
   static GARRISON_INLINE Lanes all(double value) {
     Lanes out;

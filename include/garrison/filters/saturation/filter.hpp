@@ -11,6 +11,9 @@
 // Letters: beta saturation level, L rounds, alpha step, s most sensors attacked, I_i set of proved sensors,
 // d_i its size, rhobar_i the bound on the mean error (14), p(t) the bound on the disagreement (10).
 //
+// More than s sensors proved: an assumption is false, and a proof rests on all of them. An agent that holds
+// such a set names nobody, reports no bound, and goes on with the saturation alone (3)-(5).
+//
 // Where we leave the print: the test has a rounding guard; "= s" in line 6 reads ">= s"; a bound is reported
 // only by an agent that still tests, because (16) is false for the others; an agent that missed a message, or
 // heard from one that did, reports no bound, tests nothing, and its set is not united with others.
@@ -102,6 +105,7 @@ struct GARRISON_EXPORT Saturation {
     double p = kNaN;           // p at t-1
     int d = 0;                 // |I_i(t-1)|
     bool started = false;      // rho and p have moved on from the start
+    bool refuted = false;      // more are proved than can be attacked
     bool intact = true;        // no message is missing behind this estimate, and the start was covered
     Verdict verdict = Verdict::not_tested;
     AgentSet proved;                       // I_i
@@ -117,6 +121,7 @@ struct GARRISON_EXPORT Saturation {
       v("p", p);
       v.range("d", d, 0, INT32_MAX);
       v("started", started);
+      v("refuted", refuted);
       v("intact", intact);
       v.choice("verdict", verdict, kVerdicts);
       v("proved", proved);
@@ -149,6 +154,8 @@ struct GARRISON_EXPORT Saturation {
   static Gains design(const Params& params, const Model& model, const Network& network);
   /// Bounds and detector need one initial estimate for all (our notes); @throws InvalidInput.
   static void check_start(const Gains& gains, const Matrix& x0);
+  /// What a user should know of a run: it refuted an assumption.
+  static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
   /// Eight trials at once; null when the detector makes trials take different branches.
   static std::unique_ptr<LaneRunner> lanes(std::shared_ptr<const Gains> gains, const Model& model,
                                            const Network& network);
@@ -175,7 +182,7 @@ struct GARRISON_EXPORT Saturation {
   static void sense(const Local& l, const Gains& g, State<n>& s, const double* y, std::int64_t t,
                     Message<n>& m) noexcept {
     const int nn = dimension<n>(l);
-    double on_stack[n == Dynamic ? 1 : n];
+    double on_stack[kOnStack<n>];
     double* const prediction = n == Dynamic ? s.prediction.get() : on_stack;
     multiply<n>(l.A, s.x.data(), prediction, nn);
     update<n>(l, g, s, y, t, prediction, s.x.data());
@@ -190,7 +197,7 @@ struct GARRISON_EXPORT Saturation {
     advance_bounds(g, s);
     const int nn = dimension<n>(l);
     copy<n, most>(prediction, estimate, nn);
-    const bool proved = g.detector && s.proved.contains(l.id);
+    const bool proved = g.detector && !s.refuted && s.proved.contains(l.id);
     const bool informed = knows_all(g, s);
     const double beta = beta_now(g, s);
     int used = 0;
@@ -208,11 +215,11 @@ struct GARRISON_EXPORT Saturation {
         // (a) isolated
       } else if (std::isnan(h) || (!(std::abs(h) < kHuge) && (informed || beta == kInfinity))) {
         // missing; or so large that using it in full would destroy the estimate
-        accused = accused || (g.detector && g.accuse_missing && !informed);
+        accused = accused || (g.detector && g.accuse_missing && !informed && !s.refuted);
       } else if (informed) {
         injected = h;  // (b) all attackers are known, no test
         ++used;
-      } else if (g.detector && s.intact &&
+      } else if (g.detector && s.intact && !s.refuted &&
                  exceeds(std::abs(h), s.level, std::abs(y[r]), std::abs(expected_y))) {
         accused = true;  // (c) proof (15)
       } else {
@@ -226,13 +233,14 @@ struct GARRISON_EXPORT Saturation {
       // Nothing of an accused sensor is used, even if some of its outputs look harmless.
       copy<n, most>(prediction, estimate, nn);
       s.proved.insert(l.id);
+      look_for_refutation(g, s);
     }
-    s.verdict = proved || accused                            ? Verdict::attacked
-                : used == 0                                  ? Verdict::silent
-                : limited > 0                                ? Verdict::suspected
-                : informed                                   ? Verdict::cleared
-                : (g.detector ? s.intact : beta < kInfinity) ? Verdict::cleared
-                                                             : Verdict::not_tested;
+    s.verdict = proved || accused                                          ? Verdict::attacked
+                : used == 0                                                ? Verdict::silent
+                : limited > 0                                              ? Verdict::suspected
+                : informed                                                 ? Verdict::cleared
+                : (g.detector ? s.intact && !s.refuted : beta < kInfinity) ? Verdict::cleared
+                                                                           : Verdict::not_tested;
   }
 
   template <int n>
@@ -249,6 +257,7 @@ struct GARRISON_EXPORT Saturation {
       s.intact = s.intact && inbox[k].intact;
       if (g.detector && inbox[k].intact) s.proved.unite(inbox[k].proved);
     }
+    look_for_refutation(g, s);
     send(s, m);
   }
 
@@ -296,7 +305,8 @@ struct GARRISON_EXPORT Saturation {
   }
   template <int n>
   static const AgentSet* accused(const State<n>& s) noexcept {
-    return &s.proved;
+    static const AgentSet nobody;
+    return s.refuted ? &nobody : &s.proved;
   }
   template <int n>
   static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {
@@ -357,7 +367,11 @@ struct GARRISON_EXPORT Saturation {
   /// As many sensors are proved as can be attacked: the others need no test.
   template <int n>
   static bool knows_all(const Gains& g, const State<n>& s) noexcept {
-    return g.detector && s.d >= g.setting.attacked;
+    return g.detector && !s.refuted && s.d >= g.setting.attacked;
+  }
+  template <int n>
+  static void look_for_refutation(const Gains& g, State<n>& s) noexcept {
+    if (g.detector) s.refuted = s.proved.size() > g.setting.attacked;
   }
   /// k_i of (4), the least of this agent's outputs; 0 when nothing was used.
   template <int n>

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/box_step.hpp"
 
+#include <algorithm>
 #include <cmath>
-
-#include "core/solvers.hpp"
 
 namespace garrison::rdkf {
 namespace {
 
-constexpr double kProximal = 1e-9;  // of the largest entry of H
 constexpr int kMostProximal = 60;
 
 /// Views of one step's room; q numbers each.
@@ -29,9 +27,9 @@ struct Box {
   /// p = (H_FF + proximal I)^-1 gradient_F by Cholesky, in place of `factor`; 0 outside of F.
   void newton() const {
     int m = 0;
-    int index[kStack];
+    int index[kMostBoxOutputs];
     int* const at = index;
-    for (int i = 0; i < q && m < kStack; ++i)
+    for (int i = 0; i < q && m < kMostBoxOutputs; ++i)
       if (free[i] != 0.0) at[m++] = i;
     for (int i = 0; i < q; ++i) p[i] = 0.0;
     for (int a = 0; a < m; ++a) {
@@ -100,28 +98,9 @@ struct Box {
     }
     return 20 * q + 20;
   }
-
-  static constexpr int kStack = 512;
 };
 
 }  // namespace
-
-BoxFactors box_factors(const MatrixRef& whitener, const MatrixRef& C, const MatrixRef& Q) {
-  if (C.rows() > 512)
-    refuse("C", std::to_string(C.rows()) + " rows", "at most 512 sensors per agent with the l1 penalty");
-  const Eigen::LLT<Matrix> factor(Q);
-  if (factor.info() != Eigen::Success)
-    refuse("Q", "a matrix that is not positive definite", "a symmetric positive definite matrix");
-  BoxFactors f;
-  f.R = whitener;
-  f.M = whitener * C;
-  f.W = factor.solve(f.M.transpose()) / 2.0;
-  f.H = f.M * f.W;
-  f.H = (0.5 * (f.H + f.H.transpose())).eval();
-  const double largest = f.H.size() == 0 ? 0.0 : f.H.diagonal().maxCoeff();
-  f.proximal = largest > 0.0 ? kProximal * largest : 1.0;
-  return f;
-}
 
 Step solve_box(const BoxFactors& f, double lambda, const double* y, double* x, double* room) noexcept {
   const int q = f.outputs();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "garrison/filters/rdkf/step.hpp"
+#include <algorithm>
 
 #include "core/solvers.hpp"
-#include "garrison/filters/rdkf/secular.hpp"
+#include "garrison/filters/rdkf/step.hpp"
 
 namespace garrison::rdkf {
 
@@ -34,22 +34,6 @@ StepFactors step_factors(const MatrixRef& whitener, const MatrixRef& C, const Ma
   f.K = Packed(K);
   f.W = Packed(W);
   return f;
-}
-
-namespace {
-struct Solve {
-  template <int B>
-  static GARRISON_INLINE void run(const StepFactors* f, const Price* price, const double* y, double* x,
-                                  double* room, Step* out) {
-    *out = detail::solve_at<B>(*f, *price, y, x, room);
-  }
-};
-}  // namespace
-
-Step solve(const StepFactors& f, const Price& price, const double* y, double* x, double* room) noexcept {
-  Step step;
-  run_widest<Solve>(&f, &price, y, x, room, &step);
-  return step;
 }
 
 }  // namespace garrison::rdkf

@@ -1,0 +1,73 @@
+"""`garrison calibrate`: the nominal rates at which the filters of a scenario alarm as rarely as asked."""
+
+import argparse
+from typing import Any
+
+from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table, print_warnings
+from garrison.calibration import Calibration, calibrate
+from garrison.scenario import Scenario, read_scenario
+from garrison.words import refusal
+
+
+def add(commands: Commands) -> None:
+    """Declare the command."""
+    command = commands.add_parser(
+        "calibrate",
+        help="find the nominal false-alarm rates that give the rates asked for on a scenario's clean records",
+        allow_abbrev=False,
+    )
+    command.add_argument(
+        "scenario", help="scenario file (TOML) with [data]: records without attacks, not those of the fit"
+    )
+    command.add_argument("--json", action="store_true", help="print JSON")
+    command.set_defaults(do=do)
+
+
+def do(args: argparse.Namespace) -> int:
+    """Run the command."""
+    scenario = read_scenario(args.scenario)
+    found = _all(scenario)
+    if args.json:
+        print_json({"filters": [_plain(label, scenario, one) for label, one in found]})
+        return OK
+    console = console_for()
+    rows = [
+        [label, f"{c.asked:.3g}", f"{c.before:.3g}", f"{c.nominal:.3g}", f"{c.got:.3g}", str(c.tests)]
+        for label, c in found
+    ]
+    head = ["filter", "asked", "got before", "false_alarm to set", "got now", "tests"]
+    print_table(f"{scenario.title}: false alarms on the records, taken as clean", head, rows, console)
+    for label, c in found:
+        levels = [[name, *(f"{v:.4g}" for v in row)] for name, row in zip(scenario.names, c.thresholds, strict=True)]
+        print_table(f"{label}: levels of the statistic", ["agent", "level", "95 % from", "to"], levels, console)
+    print_warnings(scenario.notes)
+    return OK
+
+
+def _all(scenario: Scenario) -> list[tuple[str, Calibration]]:
+    if scenario.measurements is None:
+        raise refusal("data", "nothing", "records without attacks", "calibration needs recorded measurements")
+    chosen = [(label, f) for label, f in scenario.filters if f is not None and "false_alarm" in f.params]
+    if not chosen:
+        raise refusal("filter", "no filter with a false-alarm rate", "one with a parameter false_alarm")
+    return [
+        (label, calibrate(scenario.model, scenario.network, f, measurements=scenario.measurements))
+        for label, f in chosen
+    ]
+
+
+def _plain(label: str, scenario: Scenario, c: Calibration) -> dict[str, Any]:
+    levels = {name: row.tolist() for name, row in zip(scenario.names, c.thresholds, strict=True)}
+    return {
+        "filter": label,
+        "asked": c.asked,
+        "before": c.before,
+        "false_alarm": c.nominal,
+        "got": c.got,
+        "tests": c.tests,
+        "levels": levels,
+        "process_bound": c.model.process_bound,
+        "measurement_bound": c.model.measurement_bound.tolist(),
+        "exceeds": c.exceeds,
+        "certificate_levels": c.levels,
+    }

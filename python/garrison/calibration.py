@@ -1,0 +1,167 @@
+"""Levels from clean records: what was asked for on paper, and what has to be asked for to get it on real data."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from garrison import _core, arguments
+from garrison.drivers import replay
+from garrison.numeric import numbers
+from garrison.objects import described_model, model_of
+from garrison.record import Run
+from garrison.words import count, refusal
+
+Array = NDArray[np.float64]
+
+#: parameter of a filter that sets the rate of its false alarms
+_RATE = "false_alarm"
+#: smallest nominal rate that is tried, and the relative accuracy of the one that is found
+_LEAST, _ACCURACY = 1e-300, 5e-3
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A filter whose false alarms on clean records are as frequent as asked.
+
+    filter: the same with the nominal rate `nominal` in place of `asked`. tests: of all sensors together, over which
+    the rate is taken; got, expected: share of alarms among them now, and with the filter as it was given.
+    thresholds (N, 3): of every sensor's statistic the level that it exceeds at the rate asked for, and an interval
+    that holds the true one with 95 % if the tests are independent (tests over overlapping windows are not: take it as
+    optimistic); nan where there are too few tests. model: with noise bounds that hold on these records too; the
+    next record breaks one of them with a chance of `exceeds` at most, if it is like these. levels: (z1, z2) of the
+    certificates for `attacked` sensors and the rate asked for; None where they do not exist (several states, or
+    too few records).
+
+    All of it holds for records like the ones it was made from: a season, an instrument or a climate that they do not
+    contain voids it.
+    """
+
+    filter: _core.Filter
+    asked: float
+    nominal: float
+    before: float
+    got: float
+    tests: int
+    thresholds: Array
+    model: _core.Model
+    exceeds: float
+    levels: tuple[float, float] | None
+
+
+def calibrate(
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    *,
+    measurements: ArrayLike,
+    attacked: int = 1,
+) -> Calibration:
+    """Set a filter's nominal false-alarm rate so that the rate asked for is what clean records give.
+
+    measurements: (samples, outputs) of records without attacks that the model was NOT fitted to, nan = missing.
+    attacked: most sensors attacked, for the certificates' levels. The nominal rate is the one at which the empirical
+    quantile of statistic / threshold over all sensors and samples is 1 (split conformal). Raises InvalidInput when the
+    filter has no false_alarm, or for fewer than 1/false_alarm tests.
+    """
+    y = numbers("measurements", measurements)
+    attacked = arguments.whole("attacked", attacked, 0, model.agents - 1)
+    asked = filter.params.get(_RATE)
+    if not isinstance(asked, float):
+        raise refusal("filter", filter.name, "a filter with a false-alarm rate", "its parameter is called false_alarm")
+
+    def run_at(rate: float) -> Run:
+        again = _core.make_filter(filter.name, filter.params | {_RATE: rate})
+        return replay(model, network, again, measurements=y, keep=("report",), conditions=False)
+
+    def ratio(run: Run) -> Array:
+        assert run.statistic is not None
+        assert run.threshold is not None
+        found = np.ravel(run.statistic / run.threshold)
+        return np.asarray(found[np.isfinite(found)])
+
+    def over(rate: float) -> float:
+        return float(_core.certificate.empirical_quantile(ratio(run_at(rate)), asked)[0])
+
+    first = run_at(asked)
+    tests = len(ratio(first))
+    if tests < 1.0 / asked:
+        raise refusal(
+            "measurements", count(tests, "test"), f"at least {1.0 / asked:.0f}", "calibrate on more clean records"
+        )
+    nominal = _matching(over, asked)
+    last = run_at(nominal)
+    assert last.statistic is not None
+    thresholds = np.array(
+        [_core.certificate.empirical_quantile(s, asked) for s in np.reshape(last.statistic, (-1, model.agents)).T]
+    )
+    inflated, exceeds = _inflated(model, y)
+    return Calibration(
+        _core.make_filter(filter.name, filter.params | {_RATE: nominal}),
+        asked,
+        nominal,
+        float((ratio(first) > 1.0).mean()),
+        float((ratio(last) > 1.0).mean()),
+        tests,
+        thresholds,
+        inflated,
+        exceeds,
+        _levels(model, y, attacked, asked),
+    )
+
+
+def _matching(over: Callable[[float], float], asked: float) -> float:
+    """The rate at which over(rate), which grows with it, is 1: bisection of its logarithm."""
+    low, high = np.log(asked), np.log(asked)
+    while over(float(np.exp(low))) > 1.0:
+        low = 2.0 * low
+        if low < np.log(_LEAST):
+            raise refusal(
+                "measurements",
+                f"more alarms than {asked:g} at every nominal rate",
+                "clean records",
+                "is a sensor attacked or broken in them?",
+            )
+    while over(float(np.exp(high))) < 1.0 and high < np.log(0.5):
+        high = 0.5 * high
+    while high - low > _ACCURACY * abs(low):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if over(float(np.exp(middle))) > 1.0 else (middle, high)
+    return float(np.exp(low))
+
+
+def _residuals(model: _core.Model, y: Array) -> tuple[Array, Array]:
+    """v (samples, outputs) and w (samples - 1, n) against the least-squares state of every complete sample."""
+    C = np.vstack(model.C)
+    x = y @ np.linalg.pinv(C).T
+    return y - x @ C.T, x[1:] - x[:-1] @ model.A.T
+
+
+def _inflated(model: _core.Model, y: Array) -> tuple[_core.Model, float]:
+    """The model with bounds that these records keep too, and the chance that the next one breaks one of them."""
+    v, w = _residuals(model, y)
+    v = v[np.isfinite(v).all(axis=1)]
+    w = w[np.isfinite(w).all(axis=1)]
+    plain = described_model(model)
+    bounds = np.asarray(model.measurement_bound)
+    if len(v) == 0 or len(w) == 0 or bounds.size == 0 or not np.isfinite(model.process_bound):
+        return model, float("nan")
+    owner = np.repeat(np.arange(model.agents), [len(c) for c in model.C])
+    seen = np.array([np.abs(v[:, owner == i]).max(initial=0.0) for i in range(model.agents)])
+    plain["measurement_bound"] = np.maximum(bounds, seen).tolist()
+    plain["process_bound"] = max(model.process_bound, float(np.linalg.norm(w, axis=1).max()))
+    return model_of(plain), (model.agents + 1.0) / (len(v) + 1.0)
+
+
+def _levels(model: _core.Model, y: Array, attacked: int, delta: float) -> tuple[float, float] | None:
+    C = np.vstack(model.C)
+    v, _ = _residuals(model, y)
+    v = v[np.isfinite(v).all(axis=1)]
+    known = model.measurement_covariance
+    if C.shape != (model.agents, 1) or not np.allclose(np.abs(C), 1.0) or not len(known):
+        return None
+    if delta < 2.0 / (len(v) + 1.0):
+        return None
+    R = np.array([np.asarray(r).item() for r in known])
+    return _core.certificate.calibrated_levels(v * C.T, R, attacked, delta)

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run of the saturation filter says of its own assumptions.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "garrison/filters/saturation/filter.hpp"
+
+namespace garrison {
+namespace {
+
+/// The verdicts of one trial: a proof is for ever, so one that was taken back was refuted.
+struct Story {
+  int attacked = 0;  ///< sensors that were called attacked at some sample
+  bool taken_back = false;
+};
+
+Story story(const VerdictLog& log, int trial) {
+  Story out;
+  for (int i = 0; i < log.agents; ++i) {
+    bool ever = false;
+    for (int t = 0; t < log.times; ++t) {
+      const auto at = (static_cast<std::size_t>(trial) * static_cast<std::size_t>(log.times) +
+                       static_cast<std::size_t>(t)) *
+                          static_cast<std::size_t>(log.agents) +
+                      static_cast<std::size_t>(i);
+      const bool now = log.verdict[at] == static_cast<std::uint8_t>(Verdict::attacked);
+      out.taken_back = out.taken_back || (ever && !now);
+      ever = ever || now;
+    }
+    out.attacked += ever ? 1 : 0;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> Saturation::warnings(const Model&, const VerdictLog& log) {
+  int trials = 0;
+  int most = 0;
+  for (int trial = 0; trial < log.trials && !log.verdict.empty(); ++trial) {
+    const Story one = story(log, trial);
+    trials += one.taken_back ? 1 : 0;
+    most = one.taken_back ? std::max(most, one.attacked) : most;
+  }
+  if (trials == 0) return {};
+  return {std::to_string(most) + " sensors were found attacked, more than `attacked` allows (" +
+          std::to_string(trials) + " of " + std::to_string(log.trials) +
+          " trials): an assumption is false, so no accusation of this run is a proof. Either attacked is too "
+          "small, the set of attacked sensors changed over time, measurement_bound or process_bound is too "
+          "small, A or C is wrong, or the start was farther off than initial_error"};
+}
+
+}  // namespace garrison

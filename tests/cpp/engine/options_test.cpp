@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every pair of option values of a family keeps the family's promises: bounds, accusations, bits, recovery.
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <map>
+
+#include "../agents_by_hand.hpp"
+#include "../random_system.hpp"
+#include "garrison/drivers/simulate.hpp"
+
+using namespace garrison;
+using namespace garrison::test;
+
+namespace {
+
+using Values = std::vector<ParamValue>;
+
+constexpr int kAgents = 5;
+constexpr int kSteps = 60;
+constexpr int kBad = 20;  // sample of the one bad measurement
+
+/// Numbers to try, by the parameter's name; switches and texts are tried in all their values. `states`: n.
+std::map<std::string, Values> numbers(int states) {
+  std::vector<double> poles;
+  for (int k = 0; k < states; ++k) poles.push_back(0.3 + 0.1 * k);
+  return {{"threshold", {0.5, 4.0}},
+          {"rounds", {std::int64_t{1}, std::int64_t{12}}},
+          {"step", {kNaN, 0.2}},
+          {"attacked", {std::int64_t{0}, std::int64_t{1}}},
+          {"initial_error", {kNaN, 2.0}},
+          {"weight", {0.0, 0.5, 5.0}},
+          {"smoothing", {0.0, 0.1}},
+          {"gain", {0.1, 0.3}},
+          {"shared", {std::int64_t{0}, std::int64_t{1}}},
+          {"shared_each", {std::vector<double>{}, std::vector<double>(kAgents, 1.0)}},
+          {"selection", {std::vector<double>{}}},  // a table of its own: partial_sharing/together_test.cpp
+          {"selection_seed", {std::int64_t{0}, std::int64_t{3}}},
+          {"shift", {std::int64_t{1}}},
+          {"start_variance", {1.0, 0.0}},
+          {"start_covariance", {std::vector<double>{}}},
+          {"faulty", {std::int64_t{0}, std::int64_t{1}}},
+          {"poles", {std::vector<double>{}, poles}}};
+}
+
+Values values_of(const ParamInfo& info, const std::map<std::string, Values>& known) {
+  if (std::holds_alternative<bool>(info.initial)) return {false, true};
+  if (!info.choices.empty()) return {info.choices.begin(), info.choices.end()};
+  const auto entry = known.find(info.name);
+  if (entry == known.end()) FAIL("say in `numbers` which values of \"" << info.name << "\" are tried");
+  return entry->second;
+}
+
+/// Combinations that hold every pair of values of every two parameters, the others at `base`.
+std::vector<ParamMap> pairs(const std::vector<ParamInfo>& params, const ParamMap& base, int states) {
+  const auto known = numbers(states);
+  std::vector<ParamMap> all;
+  for (std::size_t a = 0; a < params.size(); ++a)
+    for (std::size_t b = a + 1; b < params.size(); ++b)
+      for (const ParamValue& x : values_of(params[a], known))
+        for (const ParamValue& y : values_of(params[b], known)) {
+          ParamMap one = base;
+          one.insert_or_assign(params[a].name, x);
+          one.insert_or_assign(params[b].name, y);
+          all.push_back(std::move(one));
+        }
+  return all;
+}
+
+std::string shown(const ParamMap& params) {
+  std::string out;
+  for (const auto& [name, value] : params) {
+    out += name + "=";
+    if (const auto* b = std::get_if<bool>(&value)) out += *b ? "true " : "false ";
+    if (const auto* i = std::get_if<std::int64_t>(&value)) out += std::to_string(*i) + " ";
+    if (const auto* d = std::get_if<double>(&value)) out += text(*d) + " ";
+    if (const auto* s = std::get_if<std::string>(&value)) out += *s + " ";
+    if (const auto* v = std::get_if<std::vector<double>>(&value))
+      out += "[" + std::to_string(v->size()) + "] ";
+  }
+  return out;
+}
+
+double largest(const Bulk<double>& values) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) most = std::max(most, std::abs(values[k]));
+  return most;
+}
+
+/// Null where design refuses these options together.
+std::shared_ptr<const Prepared> prepared(const std::string& family, const ParamMap& params,
+                                         const Model& model, const Network& network) {
+  try {
+    return make_filter(family, params)->prepare(model, network);
+  } catch (const Error&) {
+    return nullptr;
+  }
+}
+
+void check_bits(const Prepared& p, const Record& r, const Matrix& y) {
+  AgentsByHand agents(p, p.network());
+  Bulk<double> out;
+  agents.append_estimates(out);
+  for (Eigen::Index t = 0; t < y.rows(); ++t) {
+    agents.step(t + 1, [&](int i) { return Vector::Constant(1, y(t, i)); });
+    agents.append_estimates(out);
+  }
+  REQUIRE(out.size() == r.estimate.size());
+  CHECK(std::memcmp(out.data(), r.estimate.data(), out.size() * sizeof(double)) == 0);
+}
+
+/// Honest sensors: bounds hold, nobody is accused, the agents alone have the same bits. Then one bad sample
+/// of one sensor: at the end the estimate is back.
+std::size_t check_promises(const Prepared& p) {
+  PlantOptions plant;
+  plant.steps = kSteps;
+  RunOptions o;
+  o.seed = 4;
+  const Record r = simulate(p, plant, o);
+  std::size_t bounds = 0;
+  bool outside = false;
+  for (std::size_t k = 0; k < r.error.size(); ++k) {
+    bounds += std::isnan(r.bound[k]) ? 0 : 1;
+    outside = outside || r.error[k] > r.bound[k] * (1.0 + 1e-12);  // false where there is none
+  }
+  CHECK_FALSE(outside);
+  for (const auto& accusation : r.accusations)
+    for (const auto& set : accusation.sets) CHECK(set.empty());
+  const Matrix y = Eigen::Map<const Eigen::Matrix<double, Dynamic, Dynamic, Eigen::RowMajor>>(
+      r.measurements.data(), kSteps, kAgents);
+  check_bits(p, r, y);
+  Matrix glitch = y;
+  glitch(kBad, 2) += 50.0;
+  const Record bad = replay(p.model(), p.network(), p.filter(), glitch, Matrix(), o);
+  double gap = 0.0;
+  const std::size_t row = bad.estimate.size() / (kSteps + 1);
+  for (std::size_t k = kSteps * row; k < bad.estimate.size(); ++k)
+    gap = std::max(gap, std::abs(bad.estimate[k] - r.estimate[k]));
+  CHECK(gap <= 0.3 + largest(r.error));
+  return bounds;
+}
+
+}  // namespace
+
+TEST_CASE("every pair of option values keeps the promises of its family") {
+  const std::map<std::string, ParamMap> bases{
+      {"saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{12}}, {"initial_error", 2.0}}},
+      {"rdkf", {}},
+      {"partial_sharing", {{"gain", 0.1}}},
+      {"lfre", {}}};
+  for (const FamilyInfo& family : families()) {
+    const auto base = bases.find(family.name);
+    if (base == bases.end()) continue;
+    int ran = 0;
+    int refused = 0;
+    std::size_t bounds = 0;
+    for (const int n : {1, 2}) {
+      Rng rng(static_cast<std::uint64_t>(70 + n));
+      const Model model = scalar_model(rng, n, kAgents, 0.8, 0.02, 0.01);
+      const Network network = connected_network(rng, kAgents, 0.8);
+      for (const ParamMap& params : pairs(family.params, base->second, n)) {
+        const std::string about = family.name + " n=" + std::to_string(n) + ": " + shown(params);
+        CAPTURE(about);
+        const auto p = prepared(family.name, params, model, network);
+        (p == nullptr ? refused : ran) += 1;
+        if (p != nullptr) bounds += check_promises(*p);
+      }
+    }
+    MESSAGE(family.name << ": " << ran << " combinations ran, " << refused << " were refused, " << bounds
+                        << " bounds were looked at");
+    CHECK(ran > refused);
+    CHECK((bounds > 0) == (family.name == "saturation" || family.name == "rdkf"));
+  }
+}

@@ -1,0 +1,104 @@
+"""False-alarm rates on real records: calibrated on clean years, measured on later ones."""
+
+import datetime as dt
+from pathlib import Path
+
+import garrison as gr
+import numpy as np
+import pytest
+from conftest import ROOT
+from garrison.cli import main
+from garrison.scenario import read_scenario
+from garrison.tables import read_records
+
+RECORDS = ROOT / "examples" / "wind" / "irish_wind.csv"
+
+
+@pytest.fixture(scope="module")
+def years() -> tuple[gr.Fit, gr.Network, np.ndarray, np.ndarray]:
+    """Fit to 1961-66; measurements of 1967-72 to calibrate on and of 1973-78 to test on."""
+    records = read_records(RECORDS)
+    day = dt.date
+    found = gr.fit(records.between(None, day(1966, 12, 31)), factors=1, root=True, factor=0.514444)
+    network = read_scenario(RECORDS.parent / "hijacked.toml").network
+    clean = found.measurements(records.between(day(1967, 1, 1), day(1972, 12, 31)))
+    later = found.measurements(records.between(day(1973, 1, 1), None))
+    return found, network, clean, later
+
+
+def rate(found: gr.Fit, network: gr.Network, filter: gr.Filter, y: np.ndarray) -> float:
+    """Share of the tests above their threshold."""
+    run = gr.replay(found.model, network, filter, measurements=y, keep=("report",), conditions=False)
+    assert run.statistic is not None
+    assert run.threshold is not None
+    tested = np.isfinite(run.statistic) & np.isfinite(run.threshold)
+    return float((run.statistic > run.threshold)[tested].mean())
+
+
+@pytest.mark.parametrize("window", [1, 30])
+@pytest.mark.parametrize("asked", [1e-2, 1e-4])
+def test_the_rate_asked_for_is_got_on_held_out_wind(years, window: int, asked: float) -> None:
+    found, network, clean, later = years
+    filter = gr.filters.Structural(false_alarm=asked, window=window)
+    calibrated = gr.calibrate(found.model, network, filter, measurements=clean)
+    assert asked / 2 <= rate(found, network, calibrated.filter, later) <= 2 * asked
+    assert rate(found, network, filter, later) > 1.5 * asked  # why it is needed
+    assert calibrated.got <= asked < calibrated.before
+    value, lower, upper = calibrated.thresholds.T
+    known = np.isfinite(lower) & np.isfinite(upper)
+    assert (lower[known] <= value[known]).all() and (value[known] <= upper[known]).all()
+
+
+def test_bounds_and_levels_hold_on_the_records(years) -> None:
+    found, network, clean, _ = years
+    filter = gr.filters.Structural(false_alarm=1e-2)
+    calibrated = gr.calibrate(found.model, network, filter, measurements=clean, attacked=2)
+    C = np.vstack(found.model.C)
+    v = clean - (clean @ np.linalg.pinv(C).T) @ C.T
+    assert (np.abs(v) <= calibrated.model.measurement_bound + 1e-12).all()
+    assert (calibrated.model.measurement_bound >= found.model.measurement_bound).all()
+    assert 0.0 < calibrated.exceeds < 0.01
+    assert calibrated.levels is not None
+    z1, z2 = calibrated.levels
+    assert z1 > 0.0 and z2 > 0.0
+
+
+def test_empirical_quantile_is_that_of_the_order_statistics() -> None:
+    values = np.random.default_rng(1).permutation(np.arange(1.0, 1000.0))
+    value, lower, upper = gr.certificate.empirical_quantile(np.append(values, np.nan), 0.01)
+    assert value == 990.0  # rank ceil(1000 * 0.99)
+    assert lower < value < upper
+    # exact: Binomial(999, .01) has 97.5 % below 17 and 2.5 % at most at 3 (scipy.stats.binom)
+    from scipy.stats import binom
+
+    assert binom.cdf(999 - upper, 999, 0.01) <= 0.025 < binom.cdf(1000 - upper, 999, 0.01)
+    assert binom.sf(999 - lower, 999, 0.01) <= 0.025 < binom.sf(998 - lower, 999, 0.01)
+    assert np.isnan(gr.certificate.empirical_quantile(values, 1e-4)[0])
+
+
+def test_whiteness_tells_white_from_coloured(years) -> None:
+    rng = np.random.default_rng(2)
+    white = rng.normal(size=(3000, 4))
+    statistic, _, p_value = gr.certificate.whiteness(white, 10)
+    assert p_value > 0.01
+    from scipy.stats import chi2
+
+    assert p_value == pytest.approx(min(1.0, 4 * chi2.sf(statistic.max(), 10)), rel=1e-9)
+    coloured = white[1:] + 0.2 * white[:-1]
+    _, correlation, p_value = gr.certificate.whiteness(coloured, 10)
+    assert p_value < 1e-6
+    assert correlation == pytest.approx(0.2 / 1.04, abs=0.06)
+    assert "not white" in str(years[0].whiteness())
+
+
+def test_refusals(years) -> None:
+    found, network, clean, _ = years
+    with pytest.raises(gr.InvalidInput, match="false_alarm"):
+        gr.calibrate(found.model, network, gr.filters.Dkf(), measurements=clean)
+    with pytest.raises(gr.InvalidInput, match="more clean records"):
+        gr.calibrate(found.model, network, gr.filters.Structural(false_alarm=1e-6), measurements=clean)
+
+
+def test_command(wind: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["calibrate", str(wind / "rdkf.toml")]) == 2
+    assert "false_alarm" in capsys.readouterr().err
