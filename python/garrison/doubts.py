@@ -48,8 +48,9 @@ def of_divergence(model: _core.Model, estimate: Array | None, error: Array | Non
     if size is None or half < 5 or quiet_from > half:
         return []
     # Medians over time: a single wild measurement is no divergence. nan (no truth there) is passed over.
-    largest = np.fmax.reduce(np.fmax.reduce(size, axis=2), axis=0)
-    middle, end = (float(np.median(part)) for part in (largest[half - half // 5 : half + 1], largest[-1 - half // 5 :]))
+    last = len(size[0]) - 1
+    windows = (slice(half - half // 5, half + 1), slice(last - half // 5, last + 1))
+    middle, end = (float(np.median(np.fmax.reduce(np.fmax.reduce(size[:, w], axis=2), axis=0))) for w in windows)
     limit = _GROWTH * _plant_growth(model, size.shape[1] - half) * max(middle, float(np.finfo(float).tiny))
     if math.isnan(middle) or math.isnan(end) or end <= limit:
         return []

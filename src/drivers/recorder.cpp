@@ -62,17 +62,20 @@ double* Recorder::estimate(int trial, int t) {
                         : estimates_[static_cast<std::size_t>(trial)].data();
 }
 
-void Recorder::errors(std::size_t row, const double* estimate, const double* truth) {
+bool Recorder::errors(std::size_t row, const double* estimate, const double* truth) {
   const auto n = static_cast<std::size_t>(record_.states);
   const auto N = static_cast<std::size_t>(record_.agents);
   const std::size_t width = record_.own_states ? N * n : n;
   std::copy_n(truth, width, record_.truth.data() + row * width);
+  bool usable = all_below(truth, width, kSurelyUsable / 2.0);
   for (std::size_t i = 0; i < N; ++i, truth += record_.own_states ? n : 0) {
     double square = 0.0;
     for (std::size_t k = 0; k < n; ++k)
       square += (estimate[i * n + k] - truth[k]) * (estimate[i * n + k] - truth[k]);
     record_.error[row * N + i] = std::sqrt(square);
+    usable = usable && square < kSurelyUsable * kSurelyUsable / 4.0;
   }
+  return usable;
 }
 
 void Recorder::count(int trial, int t, std::span<const double> y) {
@@ -113,9 +116,7 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
 void Recorder::accusations(int trial, int t, const Runner& runner) {
   auto& last = last_[static_cast<std::size_t>(trial)];
   const auto N = static_cast<std::size_t>(record_.agents);
-  bool keeps = !last.empty();
-  for (int i = 0; i < record_.agents && !keeps; ++i) keeps = !runner.accused(i).empty();
-  if (!keeps) return;
+  if (last.empty() && runner.accused(0).empty()) return;  // nobody keeps such sets
   bool changed = last.empty();
   last.resize(N);
   for (std::size_t i = 0; i < N; ++i) {

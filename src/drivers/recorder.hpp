@@ -31,8 +31,10 @@ class Recorder {
     bool fine = true;
     for (int l = 0; l < used; ++l) {
       const double* const estimates = out[static_cast<std::size_t>(l)];
-      if (const double* x = truth(l)) errors(row(first + l, t), estimates, x);
-      fine = fine && all_below(estimates, size(), kSurelyUsable);
+      if (const double* x = truth(l))
+        fine = errors(row(first + l, t), estimates, x) && fine;
+      else
+        fine = fine && all_below(estimates, size(), kSurelyUsable);
     }
     return fine;
   }
@@ -57,7 +59,8 @@ class Recorder {
   std::size_t row(int trial, int t) const;
   /// Where estimates of that time go.
   double* estimate(int trial, int t);
-  void errors(std::size_t row, const double* estimate, const double* truth);
+  /// True: truth and errors are so small that the estimates are, too.
+  bool errors(std::size_t row, const double* estimate, const double* truth);
   void accusations(int trial, int t, const Runner& runner);
   void details(int trial, int t, const Runner& runner);
 

@@ -5,8 +5,6 @@
 #include <string>
 #include <tuple>
 
-#include "garrison/core/random.hpp"
-
 namespace garrison {
 namespace {
 
@@ -17,24 +15,6 @@ void require_agent(const std::string& which, int id, int least, int agents) {
   if (id < least || id >= agents)
     refuse(which, "agent " + std::to_string(id), "an agent in 0.." + std::to_string(agents - 1));
 }
-
-class Seeded final : public Channel {
- public:
-  Seeded(double drop, double delay, std::uint64_t seed, std::uint32_t trial)
-      : drop_(drop), delay_(delay), random_(seed, trial, Purpose::link) {}
-  Fate fate(const Envelope& m, int receiver) const override {
-    const auto address = static_cast<std::uint32_t>(m.sender) * 65537U + static_cast<std::uint32_t>(receiver);
-    const auto index = 2U * static_cast<std::uint32_t>(m.round);
-    if (drop_ > 0.0 && random_.uniform(m.sample, address, index) < drop_) return Fate::lost;
-    if (delay_ > 0.0 && random_.uniform(m.sample, address, index + 1) < delay_) return Fate::late;
-    return Fate::delivered;
-  }
-
- private:
-  double drop_;
-  double delay_;
-  Random random_;
-};
 
 class Scheduled final : public Channel {
  public:
@@ -69,10 +49,10 @@ class Recorded final : public Channel {
 
 }  // namespace
 
-std::unique_ptr<Channel> seeded_faults(double drop, double delay, std::uint64_t seed, std::uint32_t trial) {
+SeededFaults::SeededFaults(double drop, double delay, std::uint64_t seed, std::uint32_t trial)
+    : drop_(drop), delay_(delay), random_(seed, trial, Purpose::link) {
   require_probability("link.drop", drop);
   require_probability("link.delay", delay);
-  return std::make_unique<Seeded>(drop, delay, seed, trial);
 }
 
 std::unique_ptr<Channel> scheduled_faults(const Network& network, std::vector<Cut> cuts) {

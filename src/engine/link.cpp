@@ -15,10 +15,11 @@ LinkCounters& LinkCounters::operator+=(const LinkCounters& other) {
 
 Link::Link(const Network& network, LinkFaults faults,
            std::vector<std::shared_ptr<const MessageAttack>> attacks, std::uint64_t seed, std::uint32_t trial)
-    : attacks_(std::move(attacks)), seed_(seed), trial_(trial) {
+    : seeded_(faults.drop, faults.delay, seed, trial),
+      attacks_(std::move(attacks)),
+      seed_(seed),
+      trial_(trial) {
   if (faults.delay_rounds < 1) refuse("link.delay_rounds", std::to_string(faults.delay_rounds), "at least 1");
-  auto random = seeded_faults(faults.drop, faults.delay, seed, trial);
-  if (faults.drop > 0.0 || faults.delay > 0.0) channels_.push_back(std::move(random));
   if (!faults.cuts.empty()) channels_.push_back(scheduled_faults(network, std::move(faults.cuts)));
   if (!faults.lost.empty()) channels_.push_back(recorded_faults(network, std::move(faults.lost)));
   liar_.assign(static_cast<std::size_t>(network.agents()), 0);
@@ -27,12 +28,6 @@ Link::Link(const Network& network, LinkFaults faults,
     for (const int id : attack->schedule().everyone()) liar_[static_cast<std::size_t>(id)] = 1;
     memory_ = std::max(memory_, attack->age());
   }
-}
-
-Fate Link::fate(const Envelope& message, int receiver) const {
-  for (const auto& channel : channels_)
-    if (const Fate fate = channel->fate(message, receiver); fate != Fate::delivered) return fate;
-  return Fate::delivered;
 }
 
 template <class Action>

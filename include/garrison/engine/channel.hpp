@@ -8,6 +8,8 @@
 
 #include "garrison/core/envelope.hpp"
 #include "garrison/core/network.hpp"
+#include "garrison/core/random.hpp"
+#include "garrison/kernel/isa.hpp"
 
 namespace garrison {
 
@@ -35,9 +37,27 @@ struct Lost {
 };
 
 /// Every message meets its fate independently; drop and delay are probabilities in [0, 1]. The result depends
-/// on the message, its receiver, seed and trial only.
-GARRISON_EXPORT std::unique_ptr<Channel> seeded_faults(double drop, double delay, std::uint64_t seed,
-                                                       std::uint32_t trial);
+/// on the message, its receiver, seed and trial only. Inline: on a lossy network it is asked for every
+/// message.
+class GARRISON_EXPORT SeededFaults final : public Channel {
+ public:
+  /// @throws InvalidInput when a probability is outside [0, 1]
+  SeededFaults(double drop, double delay, std::uint64_t seed, std::uint32_t trial);
+  bool any() const { return drop_ > 0.0 || delay_ > 0.0; }
+  GARRISON_INLINE Fate fate(const Envelope& m, int receiver) const override {
+    const auto address = static_cast<std::uint32_t>(m.sender) * 65537U + static_cast<std::uint32_t>(receiver);
+    const auto index = 2U * static_cast<std::uint32_t>(m.round);
+    if (drop_ > 0.0 && random_.uniform(m.sample, address, index) < drop_) return Fate::lost;
+    if (delay_ > 0.0 && random_.uniform(m.sample, address, index + 1) < delay_) return Fate::late;
+    return Fate::delivered;
+  }
+
+ private:
+  double drop_;
+  double delay_;
+  Random random_;
+};
+
 /// Scheduled faults. @throws InvalidInput when an agent does not exist or a cut ends before it starts
 GARRISON_EXPORT std::unique_ptr<Channel> scheduled_faults(const Network& network, std::vector<Cut> cuts);
 /// Recorded faults: just these are lost. @throws InvalidInput when an agent does not exist

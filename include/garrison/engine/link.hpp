@@ -40,12 +40,18 @@ class GARRISON_EXPORT Link {
        std::uint64_t seed, std::uint32_t trial);
 
   /// Nothing can happen to any message, ever.
-  bool perfect() const { return channels_.empty() && attacks_.empty(); }
+  bool perfect() const { return !seeded_.any() && channels_.empty() && attacks_.empty(); }
   /// Samples that an engine must keep messages for, because a liar sends old ones as new.
   int memory() const { return memory_; }
   bool lies(int sender) const { return liar_[static_cast<std::size_t>(sender)] != 0; }
 
-  Fate fate(const Envelope& message, int receiver) const;
+  GARRISON_INLINE Fate fate(const Envelope& message, int receiver) const {
+    if (seeded_.any())
+      if (const Fate fate = seeded_.fate(message, receiver); fate != Fate::delivered) return fate;
+    for (const auto& channel : channels_)
+      if (const Fate fate = channel->fate(message, receiver); fate != Fate::delivered) return fate;
+    return Fate::delivered;
+  }
   /// How many samples old what this sender sends is now; 0 = new.
   int age(const Hop& hop) const;
   /// Lets the attacks rewrite the message; false = the sender withholds it.
@@ -58,7 +64,8 @@ class GARRISON_EXPORT Link {
   template <class Action>
   bool strike(const Hop& hop, const Action& action) const;
 
-  std::vector<std::unique_ptr<Channel>> channels_;
+  SeededFaults seeded_;
+  std::vector<std::unique_ptr<Channel>> channels_;  // scheduled and recorded faults
   std::vector<std::shared_ptr<const MessageAttack>> attacks_;
   std::vector<char> liar_;
   int memory_ = 0;

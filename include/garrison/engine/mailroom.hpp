@@ -48,6 +48,7 @@ class Mailroom {
     delivered_.resize(slots_.size());
     delivered_from_.resize(slots_.size());
     received_.resize(order_.size());
+    deliverable_.resize(order_.size());
     connect(nullptr);
   }
 
@@ -92,6 +93,8 @@ class Mailroom {
   void collect(std::int64_t t, int round, bool plain, const Shape& shape) {
     as_wired_ = perfect() && plain;
     if (as_wired_) return;
+    const Message* const current = messages_.data() + base(posted_ - 1);
+    for (std::size_t k = 0; k < order_.size(); ++k) deliverable_[k] = bounded(current[k]);
     std::size_t forged = depth_ * order_.size();
     for (std::size_t k = 0; k < order_.size(); ++k) {
       received_[k] = 0;
@@ -127,8 +130,8 @@ class Mailroom {
   }
 
   template <class Shape>
-  void deliver(const Hop& hop, std::uint32_t sender, std::size_t receiver, std::size_t& forged,
-               const Shape& shape) {
+  GARRISON_INLINE void deliver(const Hop& hop, std::uint32_t sender, std::size_t receiver,
+                               std::size_t& forged, const Shape& shape) {
     LinkCounters nobody_counts;
     LinkCounters& counters = link_ == nullptr ? nobody_counts : link_->counters;
     const Fate fate =
@@ -137,6 +140,7 @@ class Mailroom {
     if (fate == Fate::lost) return void(++counters.lost);
     std::size_t slot = base(posted_ - 1) + sender;
     bool changed = false;
+    bool deliverable = deliverable_[sender] != 0;
     if (link_ != nullptr && link_->lies(hop.sender)) {
       const std::size_t age = posts_in(link_->age(hop));
       if (age >= posted_) return void(++counters.lost);  // nothing that old
@@ -146,8 +150,9 @@ class Mailroom {
       Hop told = hop;
       told.entries = entries(messages_[slot]);
       if (!link_->rewrite(told, FieldList(messages_[slot]), changed)) return void(++counters.lost);
+      deliverable = bounded(messages_[slot]);
     }
-    if (!bounded(messages_[slot])) return void(++counters.refused);
+    if (!deliverable) return void(++counters.refused);
     const std::size_t place = first_[receiver] + received_[receiver]++;
     delivered_[place] = static_cast<std::uint32_t>(slot);
     delivered_from_[place] = hop.sender;
@@ -164,6 +169,7 @@ class Mailroom {
   std::vector<std::uint32_t> delivered_;  // as delivered this round: indices into messages_
   std::vector<int> delivered_from_;       // their senders
   std::vector<std::size_t> received_;     // how many of them
+  std::vector<char> deliverable_;         // whether what an agent sent this round is finite and below kHuge
   std::vector<Message> messages_;
   std::size_t depth_ = 2;
   std::uint64_t posted_ = 0;

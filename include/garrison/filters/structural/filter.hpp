@@ -198,6 +198,8 @@ struct GARRISON_EXPORT Structural {
     Vec<size> numbers;      ///< estimate, then y
     std::vector<double>
         covariance;  ///< lower triangle of P_i, n(n+1)/2 numbers; empty where it is not carried
+    bool settled =
+        false;  ///< `covariance` is the stationary one; not sent, it saves writing it at every sample
 
     template <class V>
     void visit(V& v) {
@@ -249,6 +251,7 @@ struct GARRISON_EXPORT Structural {
     m.numbers.setZero(nn + 1);
     m.numbers.head(nn) = x0;
     m.covariance.assign(carries(g) ? structural::packed(nn) : 0, 0.0);
+    m.settled = false;
   }
 
   template <int n>
@@ -261,7 +264,10 @@ struct GARRISON_EXPORT Structural {
     m.measured = !std::isnan(s.y) && !m.withheld;
     m.numbers[nn] = m.measured ? s.y : 0.0;
     m.rest = s.rest;
-    if (carries(g)) structural::pack(s.P.data(), nn, m.covariance.data());
+    if (!carries(g)) return;
+    const bool settled = s.rest == 0 && !g.isolate;  // then P is the stationary covariance
+    if (!settled || !m.settled) structural::pack<n>(s.P.data(), nn, m.covariance.data());
+    m.settled = settled;
   }
 
   template <int n>
@@ -279,7 +285,7 @@ struct GARRISON_EXPORT Structural {
     bool over = false;
     if (g.innovation) {
       const double bounded =
-          carried ? std::sqrt(structural::quadratic(s.work.data(), c, nn) + g.noise[id]) : kNaN;
+          carried ? std::sqrt(structural::quadratic<n>(s.work.data(), c, nn) + g.noise[id]) : kNaN;
       over = examine(g, s, id, s.innovation, settled ? g.innovation_std[id] : bounded, settled);
     }
     const bool used = measured && !(g.isolate && (s.alarm || over));
@@ -289,7 +295,7 @@ struct GARRISON_EXPORT Structural {
       const bool exact = settled && whole;
       const double own = used ? 1.0 - 2.0 * reaction(g, l.id, nn) : 1.0;
       const double bounded =
-          carried ? std::sqrt(structural::quadratic(s.P.data(), c, nn) + own * g.noise[id]) : kNaN;
+          carried ? std::sqrt(structural::quadratic<n>(s.P.data(), c, nn) + own * g.noise[id]) : kNaN;
       over = examine(g, s, id, s.residual, exact ? g.std[id] : bounded, exact);
     }
     judge(l, g, s, over);
@@ -377,6 +383,8 @@ struct GARRISON_EXPORT Structural {
     bool estimates = true;
     bool measurements = true;
   };
+  /// Whether y_j is due.
+  static bool expects(const Gains& g, const Heard& j) noexcept { return j.first >= 0 && g.sensing(j.id); }
   static bool carries(const Gains& g) noexcept { return !g.covariance.empty(); }
   /// The stationary covariance of agent `id`; the gains of one agent hold no other's.
   static const double* stationary(const Gains& g, int id, int nn) noexcept {
@@ -414,6 +422,7 @@ struct GARRISON_EXPORT Structural {
                      bool carried) noexcept;
   /// Whether a measurement that is heard is over its level, the bound of what is expected of it being
   /// `prior`.
+  template <int n>
   static bool surprising(const Gains& g, const Heard& j, const double* prior, double innovation,
                          int nn) noexcept;
   /// One test of `value`, of which `std` is the deviation (`exact`) or bounds it: sets statistic and

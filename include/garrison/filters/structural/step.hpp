@@ -69,25 +69,28 @@ Structural::Seen Structural::predict(const Local& l, const Gains& g, State<n>& s
   Seen seen;
   seen.measurements = l.outputs == 0 || !std::isnan(s.y);
   double own = heard->weight;
-  for (int k = 0; k < nn; ++k) m.numbers[k] = 0.0;
+  int rest = s.rest;
+  structural::Sums<n> sums(m.numbers.data());
+  double* const mean = sums.data();
+  for (int k = 0; k < nn; ++k) mean[k] = 0.0;
   std::size_t at = 0;
   for (const Heard* j = heard + 1; j != end; ++j) {
-    const bool expected = j->first >= 0 && g.sensing(j->id);
     if (at >= inbox.size() || inbox.sender(at) != j->id) {
       own += j->weight;
       seen.estimates = seen.estimates && j->weight == 0.0;
-      seen.measurements = seen.measurements && !expected;
+      seen.measurements = seen.measurements && !expects(g, *j);
       continue;
     }
     const auto& letter = inbox[at++];
-    s.rest = std::max(s.rest, letter.rest);  // what is off there is off here from now on
-    seen.measurements = seen.measurements && (letter.measured || !expected);
-    for (int k = 0; k < nn; ++k) m.numbers[k] += j->weight * letter.numbers[k];
+    rest = std::max(rest, letter.rest);  // what is off there is off here from now on
+    if (!letter.measured && expects(g, *j)) seen.measurements = false;
+    for (int k = 0; k < nn; ++k) mean[k] += j->weight * letter.numbers[k];
   }
-  for (int k = 0; k < nn; ++k) m.numbers[k] += own * s.x[k];
+  s.rest = rest;
+  for (int k = 0; k < nn; ++k) mean[k] += own * s.x[k];
   for (int i = 0; i < nn; ++i) {
     double next = 0.0;
-    for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * m.numbers[k];
+    for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * mean[k];
     s.prior[i] = next;
   }
   return seen;
@@ -103,18 +106,21 @@ void Structural::predict_spread(const Local& l, const Gains& g, State<n>& s,
   double* half = mean + size;
   const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
   const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
-  std::fill_n(mean, size, 0.0);
   double own = heard->weight;
+  structural::Sums<n == Dynamic ? Dynamic : n * (n + 1) / 2> sums(half);
+  double* const lower = sums.data();
+  std::fill_n(lower, structural::packed(nn), 0.0);
   std::size_t at = 0;
   for (const Heard* j = heard + 1; j != end; ++j) {
     if (at >= inbox.size() || inbox.sender(at) != j->id)
       own += j->weight;
     else
-      structural::add_packed(inbox[at++].covariance.data(), j->weight, nn, mean);
+      structural::add_packed<n>(inbox[at++].covariance.data(), j->weight, nn, lower);
   }
+  structural::unpack<n>(lower, nn, mean);
   for (std::size_t k = 0; k < size; ++k) mean[k] += own * s.P[k];
   std::copy_n(g.process.data(), size, prior);
-  structural::add_congruence(l.A, 1, nn, mean, nn, half, prior);
+  structural::add_congruence<n>(l.A, 1, nn, mean, nn, half, prior);
 }
 
 template <int n>
@@ -132,12 +138,15 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     for (int k = 0; k < nn; ++k) G[static_cast<std::ptrdiff_t>(k) * (nn + 1)] = 1.0;
     std::fill(s.P.begin(), s.P.end(), 0.0);
   }
+  structural::Sums<n> sums(s.x.data());
+  double* const x = sums.data();
+  for (int k = 0; k < nn; ++k) x[k] = s.prior[k];
   const auto use = [&](const Heard& j, double innovation) {
     const double* column = g.columns.data() + j.first;
-    for (int k = 0; k < nn; ++k) s.x[k] += column[k] * innovation;
+    for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
     if (!carried) return;
-    structural::add_outer(column, row(g, j.id, nn), -1.0, nn, G);
-    structural::add_outer(column, column, g.noise[static_cast<std::size_t>(j.id)], nn, s.P.data());
+    structural::add_outer<n>(column, row(g, j.id, nn), -1.0, nn, G);
+    structural::add_outer<n>(column, column, g.noise[static_cast<std::size_t>(j.id)], nn, s.P.data());
   };
   // That a measurement was over its level says of an honest sensor that the estimate is off.
   bool out = false;
@@ -148,13 +157,14 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     if (carried) growth = std::max(growth, g.doubt[static_cast<std::size_t>(j.id)]);
     if (by_level && !before && carried) {
       const double* c = row(g, j.id, nn);
-      const double spread = structural::quadratic(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
-      if (spread > 0.0) structural::add_seen_outer(prior, c, g.surprise / spread, nn, more);
+      const double spread = structural::quadratic<n>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
+      if (spread > 0.0) structural::add_seen_outer<n>(prior, c, g.surprise / spread, nn, more);
     }
     before = 1;
   };
-  const auto keep = [&](const Heard& j) { s.left_out[static_cast<std::size_t>(&j - heard)] = 0; };
-  s.x = s.prior;
+  const auto keep = [&](const Heard& j) {
+    if (g.isolate) s.left_out[static_cast<std::size_t>(&j - heard)] = 0;
+  };
   const bool measured = !std::isnan(s.y);
   if (used) {
     use(*heard, s.innovation);
@@ -172,24 +182,26 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
       continue;
     }
     const double innovation = letter.numbers[nn] - dot(g, j->id, s.prior, nn);
-    if (g.isolate && carried && s.start == 0 && surprising(g, *j, prior, innovation, nn)) {
+    if (g.isolate && carried && s.start == 0 && surprising<n>(g, *j, prior, innovation, nn)) {
       leave(*j, true);
     } else {
       use(*j, innovation);
       keep(*j);
     }
   }
+  if constexpr (n != Dynamic) std::copy_n(x, nn, s.x.data());
   if (!carried) return !out;
   for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
-  structural::add_congruence(G, nn, 1, prior, nn, more, s.P.data());
+  structural::add_congruence<n>(G, nn, 1, prior, nn, more, s.P.data());
   if (!sound(l, g, s)) begin(l, g, s, kMostVariance);
   return !out;
 }
 
-inline bool Structural::surprising(const Gains& g, const Heard& j, const double* prior, double innovation,
-                                   int nn) noexcept {
+template <int n>
+bool Structural::surprising(const Gains& g, const Heard& j, const double* prior, double innovation,
+                            int nn) noexcept {
   const double variance =
-      structural::quadratic(prior, row(g, j.id, nn), nn) + g.noise[static_cast<std::size_t>(j.id)];
+      structural::quadratic<n>(prior, row(g, j.id, nn), nn) + g.noise[static_cast<std::size_t>(j.id)];
   return variance > 0.0 && std::abs(innovation) >= g.sample_level * std::sqrt(variance);
 }
 

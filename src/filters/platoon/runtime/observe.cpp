@@ -11,11 +11,13 @@ namespace garrison::platoon {
 namespace {
 
 /// What less than half can move is further from the prediction than both bounds allow: one of them is false.
-void compare(const Setting& g, const Quorum& heard, VehicleState& s) noexcept {
+void compare(const Setting& g, const Sightings& heard, VehicleState& s) noexcept {
   const Bound level = s.foreseen + median_error(g);
-  const double size = length(heard.middle.data()) + length(s.prediction.data());
-  if (exceeds(std::abs(heard.middle[0] - s.prediction[0]), level.position, size) ||
-      exceeds(std::abs(heard.middle[1] - s.prediction[1]), level.velocity, size))
+  if (heard.mostly_near(s.prediction, level)) return;
+  const Vec<2> middle = heard.middle();
+  const double size = length(middle.data()) + length(s.prediction.data());
+  if (exceeds(std::abs(middle[0] - s.prediction[0]), level.position, size) ||
+      exceeds(std::abs(middle[1] - s.prediction[1]), level.velocity, size))
     s.trouble |= kQuorum;
 }
 
@@ -50,10 +52,10 @@ void start_anew(const Local& l, const Shared& shared, const View& view, VehicleS
   s.x = s.prediction;
   std::fill_n(s.gains.get(), view.size(), 0.0);
   s.verdict = Verdict::not_tested;
-  const Quorum heard = quorum(shared, view, s);
-  if (!heard.certain && (borrow(l, shared, view, 1.0, s) || take_agreed(shared, view, s))) return;
-  s.x = heard.middle;
-  if (heard.certain) s.alpha = median_error(shared.setting);
+  const Sightings heard(shared, view, s);
+  if (!heard.certain() && (borrow(l, shared, view, 1.0, s) || take_agreed(shared, view, s))) return;
+  s.x = heard.middle();
+  if (heard.certain()) s.alpha = median_error(shared.setting);
 }
 
 /// Saturated innovations of everybody in range.
@@ -125,10 +127,10 @@ void update_inner(const Local& l, const Shared& shared, const View& view, Vehicl
   else
     std::fill_n(s.gains.get(), view.size(), 0.0);
   s.alpha = used ? bound : s.foreseen;
-  const Quorum heard = quorum(shared, view, s);
-  if (heard.certain && !printed) compare(g, heard, s);
-  if (heard.certain && shared.options.median && median_bound(g) < s.alpha.norm) {
-    s.x = heard.middle;
+  const Sightings heard(shared, view, s);
+  if (heard.certain() && !printed) compare(g, heard, s);
+  if (heard.certain() && shared.options.median && median_bound(g) < s.alpha.norm) {
+    s.x = heard.middle();
     s.alpha = median_error(g);
   }
   const bool own = s.gains[static_cast<std::size_t>(g.range)] >= 1.0 && !s.sets.suspected.contains(l.id);

@@ -39,17 +39,31 @@ Range agreed(const double* value, const double* noise, int count, int liars) noe
 
 }  // namespace
 
-Quorum quorum(const Shared& shared, const View& view, const VehicleState& s) noexcept {
-  double column[2][2 * kMostRange + 1];
-  int count = 0;
+Sightings::Sightings(const Shared& shared, const View& view, const VehicleState& s) noexcept
+    : prediction_(s.prediction) {
   for (int p = 0; p < view.size(); ++p) {
     if (!view[p].measured || s.sets.attacked.contains(view.id_of(p))) continue;
-    for (int k = 0; k < 2; ++k) column[k][count] = view[p].y[k];
-    ++count;
+    for (int k = 0; k < 2; ++k) column_[k][count_] = view[p].y[k];
+    ++count_;
   }
-  if (count == 0) return {s.prediction, false};
-  const int liars = std::max(0, shared.setting.attacked - s.sets.attacked.count());
-  return {{median(column[0], count), median(column[1], count)}, 2 * liars < count};
+  liars_ = std::max(0, shared.setting.attacked - s.sets.attacked.count());
+}
+
+bool Sightings::mostly_near(const Vec<2>& centre, const Bound& reach) const noexcept {
+  const double most[2] = {reach.position, reach.velocity};
+  for (int k = 0; k < 2; ++k) {
+    int near = 0;
+    for (int j = 0; j < count_; ++j) near += std::abs(column_[k][j] - centre[k]) <= most[k] ? 1 : 0;
+    if (near <= count_ / 2) return false;
+  }
+  return true;
+}
+
+Vec<2> Sightings::middle() const noexcept {
+  if (count_ == 0) return prediction_;
+  double copy[2][2 * kMostRange + 1];
+  for (int k = 0; k < 2; ++k) std::copy_n(column_[k], count_, copy[k]);
+  return {median(copy[0], count_), median(copy[1], count_)};
 }
 
 bool take_agreed(const Shared& shared, const View& view, VehicleState& s) noexcept {
