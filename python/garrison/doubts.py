@@ -51,8 +51,8 @@ def of_divergence(model: _core.Model, estimate: Array | None, error: Array | Non
     last = len(size[0]) - 1
     windows = (slice(half - half // 5, half + 1), slice(last - half // 5, last + 1))
     middle, end = (float(np.median(np.fmax.reduce(np.fmax.reduce(size[:, w], axis=2), axis=0))) for w in windows)
-    limit = _GROWTH * _plant_growth(model, size.shape[1] - half) * max(middle, float(np.finfo(float).tiny))
-    if math.isnan(middle) or math.isnan(end) or end <= limit:
+    limit = _GROWTH * max(middle, float(np.finfo(float).tiny))
+    if math.isnan(middle) or math.isnan(end) or end <= limit or end <= limit * _plant_growth(model, last + 1 - half):
         return []
     return [f"the {what} grow from {middle:.3g} in the middle to {end:.3g} at the end of the run: the filter diverges"]
 

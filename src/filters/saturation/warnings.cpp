@@ -17,14 +17,16 @@ struct Story {
 
 Story story(const VerdictLog& log, int trial) {
   Story out;
+  const auto size = static_cast<std::size_t>(log.times) * static_cast<std::size_t>(log.agents);
+  const auto all = log.verdict.subspan(static_cast<std::size_t>(trial) * size, size);
+  constexpr auto kAttacked = static_cast<std::uint8_t>(Verdict::attacked);
+  if (std::find(all.begin(), all.end(), kAttacked) == all.end()) return out;
   for (int i = 0; i < log.agents; ++i) {
     bool ever = false;
     for (int t = 0; t < log.times; ++t) {
-      const auto at = (static_cast<std::size_t>(trial) * static_cast<std::size_t>(log.times) +
-                       static_cast<std::size_t>(t)) *
-                          static_cast<std::size_t>(log.agents) +
-                      static_cast<std::size_t>(i);
-      const bool now = log.verdict[at] == static_cast<std::uint8_t>(Verdict::attacked);
+      const auto at =
+          static_cast<std::size_t>(t) * static_cast<std::size_t>(log.agents) + static_cast<std::size_t>(i);
+      const bool now = all[at] == kAttacked;
       out.taken_back = out.taken_back || (ever && !now);
       ever = ever || now;
     }
