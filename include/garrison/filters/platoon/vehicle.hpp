@@ -179,13 +179,14 @@ struct VehicleMessage {
   const double* prediction() const { return numbers + 4; }
 };
 
-GARRISON_EXPORT void start(const Local& local, const Shared& shared, const Vec<2>& x0, VehicleState& s, VehicleMessage& m);
-GARRISON_EXPORT void sense(const Local& local, const Shared& shared, VehicleState& s, const double* y, std::int64_t t,
-           VehicleMessage& m) noexcept;
+GARRISON_EXPORT void start(const Local& local, const Shared& shared, const Vec<2>& x0, VehicleState& s,
+                           VehicleMessage& m);
+GARRISON_EXPORT void sense(const Local& local, const Shared& shared, VehicleState& s, const double* y,
+                           std::int64_t t, VehicleMessage& m) noexcept;
 GARRISON_EXPORT void fuse(const Local& local, const Shared& shared, VehicleState& s,
-          const Inbox<VehicleMessage>& inbox) noexcept;
+                          const Inbox<VehicleMessage>& inbox) noexcept;
 /// What a vehicle makes of the messages of one sample when its own past is of no use: S3 or its best source.
-GARRISON_EXPORT void rejoin(const Local& local, const Shared& shared, VehicleState& s, const Inbox<VehicleMessage>& inbox,
-            std::int64_t t) noexcept;
+GARRISON_EXPORT void rejoin(const Local& local, const Shared& shared, VehicleState& s,
+                            const Inbox<VehicleMessage>& inbox, std::int64_t t) noexcept;
 
 }  // namespace garrison::platoon
