@@ -2,10 +2,7 @@
 // Analysis and attack design of the partial-sharing filter.
 #include "bindings.hpp"
 #include "garrison/filters/partial_sharing/attack.hpp"
-#include "garrison/filters/partial_sharing/full_solution.hpp"
-#include "garrison/filters/partial_sharing/moments.hpp"
-#include "garrison/filters/partial_sharing/selection_attack.hpp"
-#include "garrison/filters/partial_sharing/stability.hpp"
+#include "garrison/filters/partial_sharing/errors.hpp"
 #include "kept.hpp"
 
 using namespace garrison;

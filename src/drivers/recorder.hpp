@@ -24,7 +24,7 @@ class Recorder {
   /// `truth(lane)`: null when it is not known. False: an estimate is so large that it may not have been of
   /// use.
   template <class Truth>
-  bool take_lanes(int first, int used, int t, const LaneRunner& runner, const Truth& truth) {
+  bool take_side_by_side(int first, int used, int t, const TrialsRunner& runner, const Truth& truth) {
     std::array<double*, kLanes> out{};
     for (int l = 0; l < used; ++l) out[static_cast<std::size_t>(l)] = estimate(first + l, t);
     runner.read(out.data(), used);

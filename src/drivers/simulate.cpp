@@ -99,8 +99,8 @@ void run_trial(const Prepared& prepared, const RunOptions& options, Runner& runn
 
 /// kLanes trials at once where the family can; trial by trial the same bits. False: some estimate grew so
 /// large that agents might have rejoined, which these do not; their trials are then to be run one by one.
-bool run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner, const MakeSource& make,
-               detail::Recorder& recorder, int first, Progress& progress) {
+bool run_side_by_side(const Model& model, const RunOptions& options, TrialsRunner& runner,
+                      const MakeSource& make, detail::Recorder& recorder, int first, Progress& progress) {
   struct Lane {
     std::unique_ptr<detail::Source> source;
     std::vector<std::unique_ptr<MeasurementAttack>> attacks;
@@ -124,7 +124,7 @@ bool run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
   std::vector<double> all(M * kLanes);
   runner.reset(x0.data());
   const auto truth = [&](int lane) { return lanes[static_cast<std::size_t>(lane)].source->truth(); };
-  bool fine = recorder.take_lanes(first, used, 0, runner, truth);
+  bool fine = recorder.take_side_by_side(first, used, 0, runner, truth);
   for (int t = 1; t <= record.steps; ++t) {
     for (int l = 0; l < kLanes; ++l) {
       auto& lane = lanes[static_cast<std::size_t>(l)];
@@ -134,13 +134,13 @@ bool run_lanes(const Model& model, const RunOptions& options, LaneRunner& runner
       if (l < used) recorder.count(first + l, t, y);
     }
     runner.step(all.data());
-    fine = recorder.take_lanes(first, used, t, runner, truth) && fine;
+    fine = recorder.take_side_by_side(first, used, t, runner, truth) && fine;
     if (!progress.advance(used)) return true;
   }
   return fine;
 }
 
-bool lanes_fit(const RunOptions& options) {
+bool fit_side_by_side(const RunOptions& options) {
   if (options.trials < 2 || options.keep.report || options.keep.signals || options.keep.details) return false;
   if (!options.message_attacks.empty() || options.link.drop > 0.0 || options.link.delay > 0.0) return false;
   for (const Attack& attack : options.attacks)
@@ -182,7 +182,7 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
       run_trial(prepared, options, runner, *source, recorder, static_cast<int>(trial), progress);
     }
   };
-  if (const auto probe = lanes_fit(options) ? prepared.lanes() : nullptr; probe != nullptr) {
+  if (const auto probe = fit_side_by_side(options) ? prepared.trials() : nullptr; probe != nullptr) {
     const auto alone = prepared.runner(1);  // lanes keep no messages to measure
     alone->reset(starts(model, options.start), nullptr);
     recorder.finish({}, *alone);
@@ -190,10 +190,10 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
     Workers workers(std::min(threads, groups));
     workers.split(groups, [&](std::int64_t begin, std::int64_t end, int) {
       guarded([&] {
-        const auto runner = prepared.lanes();
+        const auto runner = prepared.trials();
         for (auto g = begin; g < end && !progress.stopped(); ++g) {
           const int first = static_cast<int>(g) * kLanes;
-          if (!run_lanes(model, options, *runner, make, recorder, first, progress))
+          if (!run_side_by_side(model, options, *runner, make, recorder, first, progress))
             one_by_one(first, std::min(first + kLanes, options.trials), *prepared.runner(1));
         }
       });

@@ -114,7 +114,7 @@ inline void next_measurement(const Local& local, const double* x, double* out) n
 ///   one dimension that it exists for; `control` and `world` for agents with plants of their own
 ///   (core/world.hpp); `detail_names` and `detail` for lists such as sets; `accused_into` in place of
 ///   `accused` to build the set when asked; for engines of large networks `Averages`
-///   (engine/batch/averaging.hpp) or `Together` (engine/batch/side_by_side.hpp), with the same bits.
+///   (engine/batch/averaging.hpp) or `SideBySide` (engine/batch/side_by_side.hpp), with the same bits.
 /// - `expected` writes the measurement that the agent predicts for the next step (local.outputs entries),
 ///   `alarm_level` the deviation from it that the agent tolerates there: what an informed attacker knows.
 template <class F, int n>

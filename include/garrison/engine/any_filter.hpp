@@ -9,10 +9,10 @@
 
 #include "garrison/core/abi.hpp"
 #include "garrison/core/conditions.hpp"
-#include "garrison/core/lanes.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/core/trials.hpp"
 #include "garrison/core/world.hpp"
 #include "garrison/engine/agent.hpp"
 #include "garrison/engine/runner.hpp"
@@ -40,7 +40,7 @@ class GARRISON_EXPORT Prepared {
   /// Refuses an attack on messages that the family's messages have no place for. @throws InvalidInput
   virtual void require(const MessageAttack& attack) const = 0;
   /// Several trials side by side, with the same bits as `runner`; null where the family has no such path.
-  virtual std::unique_ptr<LaneRunner> lanes() const = 0;
+  virtual std::unique_ptr<TrialsRunner> trials() const = 0;
   /// The plants that the agents drive, for one trial; null for families that watch one common plant.
   virtual std::unique_ptr<World> world(const WorldOptions& options) const = 0;
 

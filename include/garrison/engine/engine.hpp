@@ -10,8 +10,7 @@
 
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
-#include "garrison/engine/batch/averaging.hpp"
-#include "garrison/engine/batch/side_by_side.hpp"
+#include "garrison/engine/batch/batch.hpp"
 #include "garrison/engine/mailroom.hpp"
 #include "garrison/engine/plan/consensus.hpp"
 #include "garrison/engine/runner.hpp"
@@ -41,7 +40,7 @@ class Engine final : public Runner {
         mail_(network, plan_.order(), model.states(), F::rounds(*gains_)),
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
         states_(static_cast<std::size_t>(model.agents())),
-        at_once_(std::span<State>(states_), model.states()),
+        batch_(std::span<State>(states_), model.states()),
         accused_(model.agents()) {
     position_.resize(states_.size());
     lost_.reserve(states_.size());
@@ -53,17 +52,17 @@ class Engine final : public Runner {
       for (Eigen::Index r = 0; r < C.rows(); ++r)
         for (Eigen::Index c = 0; c < C.cols(); ++c) rows_.push_back(C(r, c));
     }
-    if constexpr (StepsTogether<F, n>) together_.join(states_.data(), states_.size(), locals());
+    batch_.join(locals());
   }
 
   void reset(const Matrix& x0, Link* link) override {
     mail_.connect(link);
-    at_once_.release();
+    batch_.release();
     for (std::size_t k = 0; k < states_.size(); ++k) {
       const Vec<n> start = x0.col(places_[k].id);
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
     }
-    if constexpr (StepsTogether<F, n>) together_.start(*gains_, locals());
+    batch_.start(*gains_, locals());
     mail_.fill();
     bytes_ = mail_.bytes() * F::rounds(*gains_);
     variable_ = mail_.variable();
@@ -72,12 +71,16 @@ class Engine final : public Runner {
   }
 
   void step(std::int64_t t, const double* y) override {
-    if constexpr (Averages<F, n>)
-      if (mail_.perfect()) return step_at_once(t, y);
-    at_once_.release();
-    if constexpr (StepsTogether<F, n>)
-      if (mail_.perfect() && together_.agreed())
-        return together_.step(*gains_, local(0), t, measured(y), mail_.wiring(), workers_);
+    if (mail_.perfect()) {
+      const BatchStep taken =
+          batch_.step(BatchSample{*gains_, plan_, mail_.wiring(), workers_, t, locals(), measured(y)});
+      if (taken.done == BatchStep::everything) return;
+      if (taken.done == BatchStep::sensed) {
+        each([&](std::size_t k, Message* out) { batch_.send(k, out[k]); });
+        return rounds(t, taken.plain);
+      }
+    }
+    batch_.release();
     each([&, y = measured(y)](std::size_t k, Message* out) {
       F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
     });
@@ -85,7 +88,7 @@ class Engine final : public Runner {
   }
 
   void read(const Frame& f) const override {
-    at_once_.settle();
+    batch_.settle();
     const std::size_t N = states_.size();
     std::array<double, 32> signals{};
     for (std::size_t k = 0; k < N; ++k) {
@@ -105,7 +108,7 @@ class Engine final : public Runner {
   }
 
   void expected(int agent, double* out) const override {
-    at_once_.settle();
+    batch_.settle();
     const std::size_t k = position_[static_cast<std::size_t>(agent)];
     F::template expected<n>(local(k), *gains_, states_[k], out);
   }
@@ -114,13 +117,13 @@ class Engine final : public Runner {
     return F::template alarm_level<n>(local(k), *gains_, states_[k]);
   }
   void control(double* out) const override {
-    at_once_.settle();
+    batch_.settle();
     if constexpr (requires(const State& s) { F::template control<n>(s); })
       for (std::size_t k = 0; k < states_.size(); ++k)
         out[static_cast<std::size_t>(places_[k].id)] = F::template control<n>(states_[k]);
   }
   void detail(int agent, std::size_t which, std::vector<double>& out) const override {
-    at_once_.settle();
+    batch_.settle();
     const std::size_t k = position_[static_cast<std::size_t>(agent)];
     if constexpr (requires(const State& s) { F::template detail<n>(local(k), *gains_, s, which, out); })
       F::template detail<n>(local(k), *gains_, states_[k], which, out);
@@ -168,13 +171,6 @@ class Engine final : public Runner {
     return [this, y](std::size_t k) { return y + first_output_[k]; };
   }
 
-  void step_at_once(std::int64_t t, const double* y) {
-    const auto [plain, averaged] = at_once_.step(plan_, *gains_, locals(), t, measured(y), workers_);
-    if (averaged) return;
-    each([&](std::size_t k, Message* out) { F::template send<n>(states_[k], out[k]); });
-    rounds(t, plain);
-  }
-
   /// `plain`: every estimate can be worked with. Agents whose cannot send nothing that is delivered, and
   /// rejoin after the last round.
   void rounds(std::int64_t t, bool plain) {
@@ -185,15 +181,13 @@ class Engine final : public Runner {
       mail_.collect(t, round, plain, [&](std::size_t k, int sender, Message& m) {
         shape<F, n>(local(k), *gains_, sender, t, m);
       });
-      if constexpr (StepsTogether<F, n>) {
-        const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
-        together_.fuse(*gains_, local(0), inbox, workers_);
+      const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
+      if (batch_.fuse(*gains_, locals(), inbox, workers_))
         mail_.post();
-      } else {
+      else
         each([&](std::size_t k, Message* out) {
-          F::template fuse<n>(local(k), *gains_, states_[k], mail_.inbox(k), round, out[k]);
+          F::template fuse<n>(local(k), *gains_, states_[k], inbox(k), round, out[k]);
         });
-      }
     }
     if (!plain) rejoin(t);
   }
@@ -241,8 +235,7 @@ class Engine final : public Runner {
   Mailroom<Message> mail_;
   Workers workers_;
   Aligned<State> states_;
-  [[no_unique_address]] mutable typename detail::AtOnceOf<F, n>::type at_once_;
-  [[no_unique_address]] typename detail::TogetherOf<F, n>::type together_;
+  [[no_unique_address]] mutable Batch<F, n> batch_;
   std::vector<Place> places_;
   Aligned<double> rows_;           // of all C_i
   std::vector<int> first_output_;  // of each agent in y

@@ -83,9 +83,9 @@ class PreparedOf final : public Prepared {
       return 0;
     });
   }
-  std::unique_ptr<LaneRunner> lanes() const override {
-    if constexpr (requires { F::lanes(gains_, model_, network_); })
-      return F::lanes(gains_, model_, network_);
+  std::unique_ptr<TrialsRunner> trials() const override {
+    if constexpr (requires { F::trials(gains_, model_, network_); })
+      return F::trials(gains_, model_, network_);
     else
       return nullptr;
   }

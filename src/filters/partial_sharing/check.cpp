@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "garrison/filters/partial_sharing/errors.hpp"
 #include "garrison/filters/partial_sharing/filter.hpp"
-#include "garrison/filters/partial_sharing/moments.hpp"
-#include "garrison/filters/partial_sharing/stability.hpp"
 
 namespace garrison {
 namespace {

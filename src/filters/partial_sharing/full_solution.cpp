@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "garrison/filters/partial_sharing/full_solution.hpp"
-
 #include "core/solvers.hpp"
+#include "garrison/filters/partial_sharing/errors.hpp"
 
 namespace garrison::partial_sharing {
 namespace {

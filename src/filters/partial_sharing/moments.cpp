@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "garrison/filters/partial_sharing/moments.hpp"
+#include "garrison/filters/partial_sharing/errors.hpp"
 
 namespace garrison::partial_sharing {
 namespace {

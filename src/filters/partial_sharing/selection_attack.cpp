@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "garrison/filters/partial_sharing/selection_attack.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
 
 #include "garrison/core/random.hpp"
+#include "garrison/filters/partial_sharing/attack.hpp"
 
 namespace garrison::partial_sharing {
 namespace {

@@ -244,7 +244,7 @@ TEST_CASE("eight trials side by side do not allocate either") {
     test::Rng rng(static_cast<std::uint64_t>(n));
     const Model model = test::scalar_model(rng, n, 8, 0.98, 0.02, 0.01);
     const Network network = test::connected_network(rng, 8);
-    const auto lanes = make_filter("saturation", {{"threshold", 0.5}})->prepare(model, network)->lanes();
+    const auto lanes = make_filter("saturation", {{"threshold", 0.5}})->prepare(model, network)->trials();
     REQUIRE(lanes != nullptr);
     const std::vector<Matrix> x0(kLanes, Matrix::Zero(n, 8));
     lanes->reset(x0.data());

@@ -34,7 +34,7 @@ std::map<std::string, Values> numbers(int states) {
           {"gain", {0.1, 0.3}},
           {"shared", {std::int64_t{0}, std::int64_t{1}}},
           {"shared_each", {std::vector<double>{}, std::vector<double>(kAgents, 1.0)}},
-          {"selection", {std::vector<double>{}}},  // a table of its own: partial_sharing/together_test.cpp
+          {"selection", {std::vector<double>{}}},  // a table of its own: partial_sharing/side_by_side_test.cpp
           {"selection_seed", {std::int64_t{0}, std::int64_t{3}}},
           {"shift", {std::int64_t{1}}},
           {"start_variance", {1.0, 0.0}},

@@ -32,11 +32,11 @@ concept Averages = requires(const Local& l, const typename F::Gains& g, typename
 /// The estimates of all agents in one array. They stay there from step to step, and go to the agents' states
 /// once somebody looks at these.
 template <class F, int n>
-class AtOnce {
+class Averaging {
   using State = typename F::template State<n>;
 
  public:
-  AtOnce(std::span<State> states, int dimension)
+  Averaging(std::span<State> states, int dimension)
       : states_(states), nn_(dimension), estimates_(states.size() * row()), scratch_(estimates_.size()) {}
 
   /// Whether all estimates are finite after sensing, and whether they were then averaged; if not, the states
@@ -45,35 +45,36 @@ class AtOnce {
     bool finite;
     bool averaged;
   };
-  /// One sample. `local(k)`, `y(k)`: Local and measurements of agent k in the order of the plan.
-  template <class Locals, class Measurements>
-  Outcome step(const ConsensusPlan& plan, const typename F::Gains& g, const Locals& local, std::int64_t t,
-               const Measurements& y, Workers& workers) {
+  template <class Sample>
+  Outcome step(const Sample& s) {
     const auto N = static_cast<std::int64_t>(states_.size());
     if (!gathered_)
       for (std::size_t k = 0; k < states_.size(); ++k)
         copy<n>(F::template averaged<n>(states_[k]), estimate(k), nn_);
     std::atomic<bool> finite{true};
     std::atomic<bool> alike{true};
-    workers.split(N, [&](std::int64_t begin, std::int64_t end, int) {
+    s.workers.split(N, [&](std::int64_t begin, std::int64_t end, int) {
       Sensed sensed{};
-      run_widest_of<Sense<Locals, Measurements>, n>(this, &g, &local, t, &y, static_cast<std::size_t>(begin),
-                                                    static_cast<std::size_t>(end), &sensed);
+      run_widest_of<Sense<decltype(s.local), decltype(s.y)>, n>(this, &s.gains, &s.local, s.t, &s.y,
+                                                                static_cast<std::size_t>(begin),
+                                                                static_cast<std::size_t>(end), &sensed);
       if (!sensed.finite) finite = false;
       if (!sensed.alike) alike = false;
     });
-    for (int part = 1; part < workers.threads(); ++part)
-      if (!same(0, static_cast<std::size_t>(workers.begin(N, part)))) alike = false;
+    for (int part = 1; part < s.workers.threads(); ++part)
+      if (!same(0, static_cast<std::size_t>(s.workers.begin(N, part)))) alike = false;
     gathered_ = finite && alike;
     stale_ = true;
     if (gathered_) {
-      const auto [alpha, omega] = F::averaging(g);
-      plan.run(estimates_.data(), scratch_.data(), alpha, omega, F::rounds(g), &workers);
+      const auto [alpha, omega] = F::averaging(s.gains);
+      s.plan.run(estimates_.data(), scratch_.data(), alpha, omega, F::rounds(s.gains), &s.workers);
     } else {
       settle();
     }
     return {finite, gathered_};
   }
+
+  void send(std::size_t k, typename F::template Message<n>& m) const { F::template send<n>(states_[k], m); }
 
   /// Brings the states up to date.
   void settle() {
@@ -104,7 +105,7 @@ class AtOnce {
   template <class Locals, class Measurements>
   struct Sense {
     template <int B>
-    GARRISON_INLINE static void run(AtOnce* all, const typename F::Gains* g, const Locals* local,
+    GARRISON_INLINE static void run(Averaging* all, const typename F::Gains* g, const Locals* local,
                                     std::int64_t t, const Measurements* y, std::size_t begin, std::size_t end,
                                     Sensed* sensed) {
       *sensed = all->template sense<B>(*g, *local, t, *y, begin, end);
@@ -144,22 +145,5 @@ class AtOnce {
   bool gathered_ = false;  // `estimates_` is up to date
   bool stale_ = false;     // the states are not
 };
-
-namespace detail {
-template <class F, int n>
-struct AtOnceOf {
-  struct type {
-    template <class... Args>
-    explicit type(const Args&...) {}
-    void settle() {}
-    void release() {}
-  };
-};
-template <class F, int n>
-  requires Averages<F, n>
-struct AtOnceOf<F, n> {
-  using type = AtOnce<F, n>;
-};
-}  // namespace detail
 
 }  // namespace garrison

@@ -8,7 +8,6 @@ namespace garrison {
 
 template <int n>
 void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
-  using partial_sharing::packed;
   const int nn = dimension<n>(l);
   const int q = l.outputs;
   if (!s.group) s.group = std::make_shared<partial_sharing::Group<n>>(nn, q);
@@ -102,7 +101,7 @@ Report PartialSharing::report(const Local& l, const Gains&, const State<n>& s) n
     double e = 0.0;
     for (int c = 0; c <= r; ++c) {
       const double innovation = group.at(group.y, c, s.lane);
-      if (!std::isnan(innovation)) e += group.at(group.W, partial_sharing::packed(r, c), s.lane) * innovation;
+      if (!std::isnan(innovation)) e += group.at(group.W, packed(r, c), s.lane) * innovation;
     }
     largest = std::max(largest, std::abs(e));
     used += std::isnan(group.at(group.y, r, s.lane)) ? 0 : 1;

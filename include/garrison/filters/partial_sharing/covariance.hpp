@@ -15,7 +15,7 @@
 
 #include <cmath>
 
-#include "garrison/filters/partial_sharing/lanes.hpp"
+#include "garrison/kernel/lanes.hpp"
 
 namespace garrison::partial_sharing {
 

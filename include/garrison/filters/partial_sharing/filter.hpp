@@ -116,8 +116,8 @@ struct GARRISON_EXPORT PartialSharing {
       };
       all("innovations", g.y, g.q);
       all("estimate", g.z, g.m);
-      all("P", g.P, partial_sharing::packed(g.m));
-      all("G", g.G, partial_sharing::packed(g.m));
+      all("P", g.P, packed(g.m));
+      all("G", g.G, packed(g.m));
       all("K", g.K, g.q * g.m);
       v("prediction", std::span<double>(g.prediction(lane), static_cast<std::size_t>(g.m)));
       bool frozen = g.is_frozen(lane);
@@ -210,14 +210,14 @@ struct GARRISON_EXPORT PartialSharing {
   static void signals(const Local& l, const Gains& g, const State<n>& s, double* out) noexcept {
     const int nn = dimension<n>(l);
     out[0] = 0.0;
-    for (int i = 0; i < nn; ++i) out[0] += s.group->at(s.group->P, partial_sharing::packed(i, i), s.lane);
+    for (int i = 0; i < nn; ++i) out[0] += s.group->at(s.group->P, packed(i, i), s.lane);
     out[1] = s.group->is_frozen(s.lane) ? 1.0 : 0.0;
     out[2] = static_cast<double>(g.selection.shared(l.id));
   }
 
-  /// The agents of a whole network in groups (engine/batch/side_by_side.hpp).
+  /// Several agents at once (engine/batch/side_by_side.hpp).
   template <int n>
-  class Together;
+  class SideBySide;
 
  private:
   static partial_sharing::Common common(const Local& l, const Gains& g) noexcept {

@@ -23,6 +23,13 @@ struct Common {
 struct Outcome {
   alignas(64) double squares[kGroup]{};  ///< of predictions, summed by lane
   bool rested = false;                   ///< all gains of some group have become constant
+
+  static bool plain(double sum) { return sum < kPlain; }
+  bool plain() const {
+    bool all = true;
+    for (const double sum : squares) all = all && plain(sum);
+    return all;
+  }
 };
 
 /// One sample of a group, `B` lanes at a time.

@@ -32,7 +32,7 @@
 
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/filter.hpp"
-#include "garrison/core/lanes.hpp"
+#include "garrison/core/trials.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
@@ -157,7 +157,7 @@ struct GARRISON_EXPORT Saturation {
   /// What a user should know of a run: it refuted an assumption.
   static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
   /// Eight trials at once; null when the detector makes trials take different branches.
-  static std::unique_ptr<LaneRunner> lanes(std::shared_ptr<const Gains> gains, const Model& model,
+  static std::unique_ptr<TrialsRunner> trials(std::shared_ptr<const Gains> gains, const Model& model,
                                            const Network& network);
   static int rounds(const Gains& g) { return g.rounds; }
   static Averaging averaging(const Gains& g) { return {g.alpha, g.omega}; }

@@ -4,8 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "garrison/filters/partial_sharing/moments.hpp"
-#include "garrison/filters/partial_sharing/selection_attack.hpp"
+#include "garrison/filters/partial_sharing/errors.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

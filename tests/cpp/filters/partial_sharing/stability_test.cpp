@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // gamma* (22) where some agent does not see the whole state.
-#include "garrison/filters/partial_sharing/stability.hpp"
-
 #include <doctest/doctest.h>
 
+#include "garrison/filters/partial_sharing/errors.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;

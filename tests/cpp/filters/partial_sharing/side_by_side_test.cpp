@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Agents of a group have the bits of agents on their own.
-#include "garrison/filters/partial_sharing/together.hpp"
+#include "garrison/filters/partial_sharing/side_by_side.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,6 +9,7 @@
 
 #include "../../agents_by_hand.hpp"
 #include "garrison/engine/any_filter.hpp"
+#include "garrison/engine/batch/batch.hpp"
 #include "garrison/engine/mailroom.hpp"
 #include "garrison/engine/workers.hpp"
 #include "random_setting.hpp"
@@ -167,11 +168,11 @@ TEST_CASE("groups of like agents read one copy of sensors and gains") {
       const auto local = [&](std::size_t k) {
         return Local{static_cast<int>(k), 20, 4, 2, 0, p.model.A().data(), C.data() + 8 * k};
       };
-      PartialSharing::Together<4> together;
-      together.join(states.data(), states.size(), local);
+      SideBySide<PartialSharing, 4> all(std::span<PartialSharing::State<4>>(states), 4);
+      all.join(local);
       for (std::size_t k = 0; k < states.size(); ++k)
         PartialSharing::init<4>(local(k), g, Vec<4>::Zero(), states[k], unused);
-      together.start(g, local);
+      all.start(g, local);
       const auto& [first, second, last] = std::tie(*states[0].group, *states[8].group, *states[16].group);
       const auto sharing = [&] { return second.C == first.C && second.G == first.G; };
       CHECK(sharing() == (alike && g.steady.size() == 20));
@@ -179,10 +180,10 @@ TEST_CASE("groups of like agents read one copy of sensors and gains") {
       Workers workers(1);
       const std::vector<std::size_t> nobody(21, 0);
       const Vector y = Vector::Ones(40);
+      const ConsensusPlan plan(p.network.offsets(), p.network.lists(), 4);
       for (int t = 1; t <= 200; ++t)
-        together.step(
-            g, local(0), t, [&](std::size_t k) { return y.data() + 2 * k; }, Wiring{nobody.data(), nullptr},
-            workers);
+        all.step(BatchSample{g, plan, Wiring{nobody.data(), nullptr}, workers, t, local,
+                             [&](std::size_t k) { return y.data() + 2 * k; }});
       CHECK(!first.moving());
       CHECK(sharing() == alike);
     }

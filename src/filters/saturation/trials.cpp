@@ -98,9 +98,9 @@ struct Read {
 };
 
 template <int n>
-class SaturationLanes final : public LaneRunner {
+class SaturationTrials final : public TrialsRunner {
  public:
-  SaturationLanes(std::shared_ptr<const Saturation::Gains> gains, const Model& model, const Network& network)
+  SaturationTrials(std::shared_ptr<const Saturation::Gains> gains, const Model& model, const Network& network)
       : gains_(std::move(gains)), model_(model), plan_(network.offsets(), network.lists(), n * kLanes) {
     places_.resize(static_cast<std::size_t>(model_.agents()));
     for (const int i : plan_.order()) {
@@ -157,13 +157,13 @@ class SaturationLanes final : public LaneRunner {
 
 }  // namespace
 
-std::unique_ptr<LaneRunner> Saturation::lanes(std::shared_ptr<const Gains> gains, const Model& model,
-                                              const Network& network) {
+std::unique_ptr<TrialsRunner> Saturation::trials(std::shared_ptr<const Gains> gains, const Model& model,
+                                                 const Network& network) {
   if (gains->detector || model.states() > 8) return nullptr;
-  std::unique_ptr<LaneRunner> runner;
+  std::unique_ptr<TrialsRunner> runner;
   [&]<int... k>(std::integer_sequence<int, k...>) {
     const auto make = [&]<int n>(std::integral_constant<int, n>) {
-      if (model.states() == n) runner = std::make_unique<SaturationLanes<n>>(gains, model, network);
+      if (model.states() == n) runner = std::make_unique<SaturationTrials<n>>(gains, model, network);
     };
     (make(std::integral_constant<int, k + 1>{}), ...);
   }(std::make_integer_sequence<int, 8>{});

@@ -14,9 +14,9 @@ inline constexpr int kLanes = 8;
 
 /// Steps kLanes independent trials of a whole network at once. Every operation acts lane by lane, so each
 /// trial has the bits it would have alone.
-class GARRISON_EXPORT LaneRunner {
+class GARRISON_EXPORT TrialsRunner {
  public:
-  virtual ~LaneRunner() = default;
+  virtual ~TrialsRunner() = default;
   /// x0: one n x N matrix per lane.
   virtual void reset(const Matrix* x0) = 0;
   /// y: total_outputs x kLanes numbers, [measurement][lane]; NaN = missing.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A few agents side by side: where their numbers are, and how they get there.
+// Things calculated side by side, one in every lane of a register: how their numbers get there and back.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include "garrison/kernel/block.hpp"
 #include "garrison/kernel/isa.hpp"
 
-namespace garrison::partial_sharing {
+namespace garrison {
 
 /// Where entry (i, j), j <= i, of a symmetric or lower triangular matrix is; also the number of entries
 /// before row i.
@@ -26,8 +26,8 @@ GARRISON_INLINE void for_each_state(int m, const Body& body) {
     }(std::make_integer_sequence<int, n>{});
 }
 
-/// m numbers each of `used` agents, one agent after the other, into a lane per agent. Idle lanes repeat the
-/// last agent.
+/// m numbers each of `used` things, one thing after the other, into a lane for each. Idle lanes repeat the
+/// last one.
 template <int n, int B>
 GARRISON_INLINE void load_lanes(const double* from, int m, int used, typename Block<B>::type* to) {
   if constexpr (n != Dynamic && n % B == 0) {
@@ -62,4 +62,4 @@ GARRISON_INLINE void store_lanes(const typename Block<B>::type* from, int m, int
     for (int i = 0; i < m; ++i) to[static_cast<std::ptrdiff_t>(lane) * m + i] = from[i][lane];
 }
 
-}  // namespace garrison::partial_sharing
+}  // namespace garrison
