@@ -109,3 +109,20 @@ def test_too_few_records_are_called_so(tmp_path: Path) -> None:
     path.write_text("day,a,b\n2020-02-27,1,2\n2020-02-28,2,3\n2020-02-29,3,3\n")
     with pytest.raises(gr.InvalidInput, match=r"fit.harmonics: got 2 with 3 records, expected at least 6 records"):
         gr.fit(read_records(path))
+
+
+def test_two_rows_that_mean_an_edge_list_are_no_matrix() -> None:
+    assert gr.Network(np.array([[0, 1], [1, 2]])).edges == [(0, 1), (1, 2)]
+    for unclear in ([[1, 0], [0, 1]], pd.DataFrame([[1, 0], [0, 1]], columns=["u", "v"])):
+        with pytest.raises(gr.InvalidInput, match="two edges or an adjacency matrix"):
+            gr.Network(unclear)
+    with pytest.raises(gr.InvalidInput, match=r"adjacency\[1, 1\]: got 2, expected 0 or 1"):
+        gr.Network(pd.DataFrame({"u": [0, 1], "v": [1, 2]}))
+
+
+def test_rows_of_an_adjacency_table_are_matched_by_name() -> None:
+    names = list("abc")
+    path = pd.DataFrame([[0, 1, 0], [1, 0, 1], [0, 1, 0]], index=names, columns=names)
+    assert gr.Network(path.loc[["c", "a", "b"]]) == gr.Network(path)
+    with pytest.raises(gr.InvalidInput, match="matched by name"):
+        gr.Network(path.rename(index={"a": "x"}))
