@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from garrison import _core, arguments, doubts
+from garrison import _core, arguments, doubts, refuted
 from garrison.numeric import matched, numbers
 from garrison.record import Run
 from garrison.sizes import require_memory
@@ -46,6 +46,8 @@ def _run(
     if conditions:
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
     quiet = max((a.start for a in attacks), default=0)
+    run.warnings += refuted.of_bounds(model, filter, run.measurements)
+    run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
     run.warnings += doubts.of_divergence(model, run.estimate, run.error, quiet)
     return run
 
