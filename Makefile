@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev test test-fast lint format bench clean
+.PHONY: help setup run dev test test-fast fuzz lint format bench clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
 cpp = $(shell find include src bindings tests bench -name '*.hpp' -o -name '*.cpp')
@@ -40,6 +40,9 @@ format: setup ## format C++ and Python, write the type stubs anew
 	@.venv/bin/ruff format --quiet
 	@.venv/bin/clang-format -i $(cpp)
 	@tools/stubs.sh
+
+fuzz: setup ## two minutes: every public callable with bad values, mutated scenarios and CSV files; prints the figures
+	@.venv/bin/pytest -q tests/fuzz
 
 bench: ## measure against the peers; results in bench/results
 	@tools/setup.sh bench

@@ -74,7 +74,9 @@ bool ambiguous(const py::object& given, const py::list& items, bool directed) {
   for (const auto& item : items)
     if (py::isinstance<py::tuple>(item) || !py::hasattr(item, "__len__") || py::len(item) != 2) return false;
   const auto a = convert::array("edges", given, kSources);
-  if (a.ndim() != 2 || a.at(0, 0) != 0.0 || a.at(1, 1) != 0.0) return false;
+  if (a.ndim() != 2) return false;
+  if (a.at(0, 0) == 1.0 && a.at(1, 1) == 1.0 && a.at(0, 1) == 0.0 && a.at(1, 0) == 0.0) return true;
+  if (a.at(0, 0) != 0.0 || a.at(1, 1) != 0.0) return false;
   return (directed || a.at(0, 1) == a.at(1, 0)) && !(a.at(0, 1) == 1.0 && a.at(1, 0) == 1.0);
 }
 
@@ -91,6 +93,27 @@ Edge edge_of(const std::string& which, py::handle item, const Numbering& number)
   return {number(which + "[0]", ends[0]), number(which + "[1]", ends[1])};
 }
 
+/// A DataFrame of pandas.
+bool table(const py::object& given) {
+  return py::hasattr(given, "columns") && py::hasattr(given, "to_numpy") && py::hasattr(given, "index");
+}
+
+/// An adjacency table with its rows in the order of its columns, by their labels; rows that are numbered, not
+/// labelled, stay as they are.
+py::object aligned(const py::object& given) {
+  const py::list columns(given.attr("columns"));
+  const py::list rows(given.attr("index"));
+  bool numbered = true;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    numbered = numbered && PyLong_Check(rows[k].ptr()) && py::int_(k).equal(rows[k]);
+  if (numbered || rows.equal(columns)) return given;
+  const py::set labels(columns);
+  if (!labels.equal(py::set(rows)) || labels.size() != columns.size() || rows.size() != columns.size())
+    refuse("adjacency.index", convert::shown(rows), "the same different labels as the columns have",
+           "rows and columns are matched by name");
+  return given.attr("loc")[columns];
+}
+
 /// A square table of more than two rows is an adjacency matrix.
 bool square(const py::list& items) {
   const auto N = items.size();
@@ -102,9 +125,10 @@ bool square(const py::list& items) {
 
 }  // namespace
 
-Network from_adjacency(const py::object& given, bool directed, Names names) {
+Network from_adjacency(const py::object& source, bool directed, Names names) {
   const char* which = "adjacency";
-  if (names.empty() && py::hasattr(given, "columns") && py::hasattr(given, "to_numpy")) {  // a DataFrame
+  const py::object given = table(source) ? aligned(source) : source;
+  if (names.empty() && table(given)) {
     const py::list columns(given.attr("columns"));
     if (columns.size() > 0 && py::isinstance<py::str>(columns[0]))
       names = convert::names("adjacency.columns", columns);
@@ -135,10 +159,11 @@ Network from_adjacency(const py::object& given, bool directed, Names names) {
   std::vector<Edge> edges;
   for (const auto& [place, value] : entries) {
     const auto [i, j] = place;
-    if (value == 0.0 || i == j) continue;
+    if (value == 0.0) continue;
     if (value != 1.0)
       refuse(which + ("[" + std::to_string(i)) + ", " + std::to_string(j) + "]", text(value), "0 or 1",
              "a network has no weights; pass matrix != 0");
+    if (i == j) continue;  // an agent always knows itself
     edges.emplace_back(j, i);
   }
   Network network = build(shape.first, edges, directed, std::move(names));
@@ -156,16 +181,19 @@ Network make_network(const py::object& source, const py::object& agents, bool di
   if (py::isinstance<py::str>(source) || py::isinstance<py::bytes>(source) ||
       py::isinstance<py::dict>(source) || convert::scalar(source))
     if (!py::hasattr(source, "tocoo")) refuse("edges", convert::shown(source), kSources);
-  const bool table = py::hasattr(source, "columns") && py::hasattr(source, "to_numpy");
-  const py::list items = py::hasattr(source, "tocoo") || table ? py::list() : py::list(source);
-  if (py::hasattr(source, "tocoo") || table || square(items)) {
+  const bool sparse = py::hasattr(source, "tocoo");
+  const py::list items = sparse          ? py::list()
+                         : table(source) ? py::list(source.attr("to_numpy")())
+                                         : py::list(source);
+  const bool unclear = ambiguous(source, items, directed);
+  if (!unclear && (sparse || table(source) || square(items))) {
     Network network = from_adjacency(source, directed, std::move(names));
     const int count = agents.is_none() ? network.agents() : convert::small("agents", agents);
     if (count != network.agents())
       refuse("agents", std::to_string(count), std::to_string(network.agents()) + ", the size of the matrix");
     return network;
   }
-  if (ambiguous(source, items, directed))
+  if (unclear)
     refuse("edges", "two rows that may be two edges or an adjacency matrix", "one of them",
            "use Network.from_adjacency(matrix), or tuples for edges");
   const Numbering number(names);

@@ -37,6 +37,7 @@ from garrison.drivers import central_kalman, replay, simulate
 from garrison.prepared import Prepared, prepare
 from garrison.record import Run
 from garrison.verdict import Verdict
+from garrison.words import refuse_attribute
 
 if TYPE_CHECKING:
     from garrison.calibration import Calibration, calibrate
@@ -107,7 +108,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
-        raise AttributeError(f"module 'garrison' has no attribute {name!r}")
+        refuse_attribute("garrison", name, __all__)
     from importlib import import_module
 
     value = getattr(import_module(f"garrison.{_LATER[name]}"), name)

@@ -20,9 +20,16 @@ def whole(which: str, value: Any, least: int, most: int = _MOST) -> int:
     except TypeError:
         found = least - 1
     if isinstance(value, bool) or not least <= found <= most:
-        words = f"a whole number >= {least}" if most >= _MOST else f"a whole number in {least}..{most}"
+        small = most >= _MOST and not found > most
+        words = f"a whole number >= {least}" if small else f"a whole number in {least}..{most}"
         raise refusal(which, shown(value), words)
     return found
+
+
+def whole_numbers(which: str, value: Any, least: int = 0) -> list[int]:
+    """Whole numbers in a list; one alone is a list of one."""
+    found = [value] if hasattr(value, "__index__") else _list(which, value, f"a list of whole numbers >= {least}")
+    return [whole(f"{which}[{k}]", one, least) for k, one in enumerate(found)]
 
 
 def number(which: str, value: Any) -> float:
@@ -47,6 +54,32 @@ def path(which: str, value: Any) -> Path:
     return Path(value)
 
 
+def read(which: str, where: Any, expected: str) -> bytes:
+    """All bytes of a file. Raises IoError when it cannot be read."""
+    try:
+        return path(which, where).read_bytes()
+    except (OSError, ValueError) as error:
+        raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected {expected}") from error
+
+
+def write(which: str, where: Any, data: bytes) -> None:
+    """A file of these bytes, created or replaced. Raises IoError when it cannot be written."""
+    try:
+        path(which, where).write_bytes(data)
+    except (OSError, ValueError) as error:
+        raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected the name of a file to write") from error
+
+
+def _named(where: Any) -> str:
+    """A path in full, for messages."""
+    text = str(where)
+    return text if text.isprintable() else repr(text)
+
+
+def _why(error: OSError | ValueError) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
+
+
 def choices(which: str, value: Any, known: tuple[str, ...]) -> list[str]:
     """Some of the known words; one word is a list of one."""
     found = [value] if isinstance(value, str) else _list(which, value, f"some of {', '.join(known)}")
@@ -60,7 +93,7 @@ def choices(which: str, value: Any, known: tuple[str, ...]) -> list[str]:
 def attacks(value: Any) -> list[_core.Attack]:
     """One attack or several."""
     words = "an attack of garrison.attacks, or a list of them"
-    found = [value] if isinstance(value, _core.Attack) else _list("attack", value, words)
+    found: list[Any] = [value] if isinstance(value, (_core.Attack, str)) else _list("attack", value, words)
     for one in found:
         if not isinstance(one, _core.Attack):
             raise refusal("attack", shown(one), words)

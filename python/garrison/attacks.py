@@ -11,12 +11,12 @@ The other parameters are those of the attack. Raises InvalidInput when something
 """
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NoReturn
 
 from garrison import _core
 from garrison._core import Attack
 from garrison._core.attacks import *  # noqa: F403  (what the core registers)
-from garrison.words import refusal, require_order
+from garrison.words import hinted, refusal, refuse_attribute, require_order
 
 #: the name of every attack's function
 ATTACKS = tuple(name for name in vars(_core.attacks) if not name.startswith("_"))
@@ -24,6 +24,7 @@ ATTACKS = tuple(name for name in vars(_core.attacks) if not name.startswith("_")
 __all__ = ["ATTACKS", "Attack", "make", "worst_covariance", *ATTACKS]
 
 
+@hinted
 def make(name: str, agents: Iterable[int] | int | None = None, **arguments: Any) -> Attack:
     """Make the attack `name` (as in a scenario file); see the module's text for the arguments."""
     names = [info["name"] for info in _core.attack_infos()]
@@ -33,6 +34,7 @@ def make(name: str, agents: Iterable[int] | int | None = None, **arguments: Any)
     return attack
 
 
+@hinted
 def worst_covariance(
     model: _core.Model,
     network: _core.Network,
@@ -64,7 +66,5 @@ def worst_covariance(
     )
 
 
-def __getattr__(name: str) -> Any:
-    near = _core.nearest_name(name, list(ATTACKS))
-    hint = f"; did you mean {near}?" if near else ""
-    raise AttributeError(f"garrison.attacks has no {name}{hint} (it has {', '.join(ATTACKS)})")
+def __getattr__(name: str) -> NoReturn:
+    refuse_attribute(__name__, name, __all__)

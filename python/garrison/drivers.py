@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from garrison import _core, arguments, doubts
+from garrison import _core, arguments, doubts, refuted
 from garrison.numeric import matched, numbers
 from garrison.record import Run
 from garrison.sizes import require_memory
@@ -46,6 +46,8 @@ def _run(
     if conditions:
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
     quiet = max((a.start for a in attacks), default=0)
+    run.warnings += refuted.of_bounds(model, filter, run.measurements)
+    run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
     run.warnings += doubts.of_divergence(model, run.estimate, run.error, quiet)
     return run
 
@@ -111,7 +113,7 @@ def simulate(
     return _run(data, model, network, filter, attacks, wanted)
 
 
-def output_names(model: _core.Model, network: _core.Network) -> list[str] | None:
+def output_names(model: _core.Model, network: _core.Network | None = None) -> list[str] | None:
     """Names of the columns of measurements: the outputs', or the agents' where each has one output; else None."""
     if names := getattr(model, "output_names", None):
         return [str(n) for n in names]
@@ -178,12 +180,12 @@ def central_kalman(
     """Estimates (samples + 1, n) of a central Kalman filter that sees all measurements (samples, outputs).
 
     The unprotected ideal that distributed filters are compared with. Needs the model's covariances; nan or masked =
-    missing.
+    missing. A pandas table with columns named as the model's outputs is matched by name.
     """
     if not isinstance(model, _core.Model):
         raise refusal("central_kalman: model", f"a {type(model).__name__}", "a garrison.Model")
     x0 = np.zeros(model.states) if start is None else numbers("start", start)
-    y = numbers("measurements", measurements)
+    y = numbers("measurements", matched("measurements", measurements, output_names(model)))
     if y.ndim != 2 or x0.shape != (model.states,):
         got = f"measurements {y.shape} and start {x0.shape}"
         raise refusal("central_kalman", got, f"(samples, {model.outputs}) and ({model.states},)")

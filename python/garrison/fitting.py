@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.numeric import real
 from garrison.sizes import require_memory
 from garrison.tables import Records
-from garrison.words import only, refusal, shown
+from garrison.words import hinted, only, refusal, shown
 
 Array = NDArray[np.float64]
 #: p-value below which residuals are called not white
@@ -145,12 +146,14 @@ def _options(records: Records, given: dict[str, Any]) -> dict[str, Any]:
         if name == "root":
             if not isinstance(value, bool):
                 raise refusal(where, shown(value), "true or false")
-        elif isinstance(value, bool) or not isinstance(value, (int, float)):
+        elif (found := real(value)) is None:
             raise refusal(where, shown(value), "a number")
         elif name in ("factors", "harmonics"):
-            if value != int(value) or not 0 <= value <= _MOST:
+            if not 0 <= found <= _MOST or found != int(found):
                 raise refusal(where, shown(value), f"a whole number in 0..{_MOST}")
-            value = int(value)
+            value = int(found)
+        else:
+            value = found
         out[name] = value
     columns = 1 + 2 * out.get("harmonics", 2)
     require_memory("fit.harmonics", str(out.get("harmonics", 2)), float(len(records.values)) * columns)
@@ -169,6 +172,7 @@ def _by_name(message: str, records: Records) -> str:
     return re.sub(r"^records\[(\d+), (\d+)\]", record, re.sub(r"^station (\d+)\b", station, message))
 
 
+@hinted
 def fit(records: Records, **options: Any) -> Fit:
     """Identify seasonal cycle, factors, A, C, noise levels and bounds from clean records.
 
@@ -176,6 +180,8 @@ def fit(records: Records, **options: Any) -> Fit:
     (False: True works on square roots), factor (1: unit conversion). Raises InvalidInput when the records do not
     suffice.
     """
+    if not isinstance(records, Records):
+        raise refusal("fit.records", shown(records), "Records, as garrison.tables.read_records returns them")
     try:
         i = _core.identify(records.values, records.first, **_options(records, options))
     except _core.Error as error:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison._core import DesignInfeasible, Error, structural
+from garrison.words import hinted
 
 Array = NDArray[np.float64]
 
@@ -22,6 +23,7 @@ def _cvxpy() -> Any:
     return cvxpy
 
 
+@hinted
 def lmi_gains(setting: structural.Setting, *, iterations: int = 20, margin: float = 1e-4) -> list[Array]:
     """Block-diagonal gains with rho(Ahat) < 1 by LMI (8) and iterative cone complementarity.
 

@@ -1,6 +1,6 @@
 """Detection and mitigation in one run: Algorithm 1 of the structural paper goes on through the switch of sensors."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,9 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, filters
 from garrison._core import structure
+from garrison.arguments import whole
 from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.record import Run
+from garrison.words import hinted, refusal, shown
 
 Array = NDArray[np.float64]
 
@@ -47,6 +49,28 @@ def _model(A: Array, E: Array, R: Array, measured: Sequence[int | None]) -> _cor
     return _core.Model(A, C, process_covariance=E, measurement_covariance=covariances)
 
 
+def _shaped(which: str, value: Any, *shapes: tuple[int, ...]) -> Array:
+    """Numbers of one of these shapes; -1 is any length of at least 1."""
+    found = numbers(which, value)
+    for shape in shapes:
+        if len(shape) == found.ndim and all(a == b or (b < 0 < a) for a, b in zip(found.shape, shape, strict=True)):
+            return found
+    words = " or ".join(str(s).replace("-1", "any") if s else "one number" for s in shapes)
+    raise refusal(which, f"shape {found.shape}", words)
+
+
+def _sensors(measured: Any, n: int, N: int) -> list[int | None]:
+    """The state that each agent measures, None for a relay."""
+    expected = f"{N} entries, one per agent: the state it measures, in 0..{n - 1}, or None"
+    if isinstance(measured, (str, bytes)) or not isinstance(measured, Iterable):
+        raise refusal("measured", shown(measured), expected)
+    found = list(measured)
+    if len(found) != N:
+        raise refusal("measured", f"{len(found)} entries", expected)
+    return [None if s is None else whole(f"measured[{i}]", s, 0, n - 1) for i, s in enumerate(found)]
+
+
+@hinted
 def replay_mitigated(
     network: _core.Network,
     *,
@@ -70,20 +94,20 @@ def replay_mitigated(
     of the Structural filter, without weights, sharing and gain, which are designed for every segment.
     Raises DesignInfeasible when no stabilising gain is left, InvalidInput when something does not fit.
     """
-    x, v, tau = numbers("truth", truth), numbers("noise", noise), numbers("attack", attack)
-    A_, E = numbers("A", A), numbers("process_covariance", process_covariance)
-    R = np.broadcast_to(numbers("measurement_variance", measurement_variance), (len(measured),))
-    if x.ndim != 2 or v.shape != (len(x) - 1, len(measured)) or tau.shape != v.shape:
-        raise _core.InvalidInput(
-            f"truth, noise, attack: got shapes {x.shape}, {v.shape}, {tau.shape}, "
-            f"expected (samples + 1, n) and twice (samples, {len(measured)})"
-        )
+    if not isinstance(network, _core.Network):
+        raise refusal("network", f"a {type(network).__name__}", "a garrison.Network")
+    A_ = _shaped("A", A, (-1, -1))
+    n, N = len(A_), network.agents
+    E = _shaped("process_covariance", process_covariance, (n, n))
+    R = np.broadcast_to(_shaped("measurement_variance", measurement_variance, (), (N,)), (N,))
+    now = _sensors(measured, n, N)
+    x = _shaped("truth", truth, (-1, n))
+    v, tau = _shaped("noise", noise, (len(x) - 1, N)), _shaped("attack", attack, (len(x) - 1, N))
     system = structure.System(structure.Pattern.of(A_))
     filter = filters.Structural(**params)
-    now: list[int | None] = list(measured)
     kinds = system.classes([[] if s is None else [s] for s in now])
-    begin = np.zeros((len(now), len(A_))) if start is None else np.asarray(start, dtype=float)
-    begin = np.broadcast_to(begin, (len(now), len(A_)))
+    begin = np.zeros(n) if start is None else _shaped("start", start, (n,), (N, n))
+    begin = np.broadcast_to(begin, (N, n))
     out = Mitigated(np.empty((len(x), *begin.shape)), np.empty((len(x), len(now))))
     out.estimate[0] = begin
     out.error[0] = np.linalg.norm(x[0] - begin, axis=1)

@@ -77,9 +77,9 @@ def matched(which: str, value: Any, names: list[str] | None) -> Any:
 
     Raises InvalidInput when the table's columns have other names.
     """
-    columns = getattr(value, "columns", None)
-    if columns is None or not names:
+    if not names or not (hasattr(value, "columns") and hasattr(value, "to_numpy")):
         return value
+    columns = value.columns
     found = [str(c) for c in columns]
     if found == [str(k) for k in range(len(names))]:
         return value  # numbered, not named

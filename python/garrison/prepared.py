@@ -4,8 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from garrison import _core, drivers
-from garrison.arguments import path as path_of
-from garrison.arguments import whole
+from garrison.arguments import read, whole, write
 from garrison.checks import Check, check
 from garrison.record import Run
 from garrison.words import hinted, refusal, require_order
@@ -67,12 +66,12 @@ class Prepared:
 
     def save(self, path: str | Path, agent: int | None = None) -> None:
         """Write the design file (created, or replaced), or the part of one agent."""
-        path_of("save", path).write_bytes(self.to_bytes() if agent is None else self.part(agent))
+        write("save", path, self.to_bytes() if agent is None else self.part(agent))
 
     @classmethod
     def load(cls, path: str | Path) -> "Prepared":
         """The design in a file. Raises InvalidInput when it is damaged, of another version or no design."""
-        return cls.from_bytes(path_of("load", path).read_bytes())
+        return cls.from_bytes(read("load", path, "a file that `save` of a prepared filter wrote"))
 
     @property
     def outline(self) -> list[str]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.arguments import path as path_of
-from garrison.arguments import whole
+from garrison.arguments import read, whole, write
 from garrison.families import family_of
 from garrison.objects import described, filter_of, model_of, network_of
 from garrison.verdict import Verdict
@@ -98,16 +98,12 @@ class Run:
 
     def save(self, path: str | Path) -> None:
         """Write everything to a NumPy .npz file (created, or replaced), without pickles; read it with `Run.load`."""
-        path_of("path", path).write_bytes(self._packed())
+        write("path", path, self._packed())
 
     @staticmethod
     def load(path: str | Path) -> Run:
         """The run that `save` wrote. Raises IoError when the file cannot be read or holds no run."""
-        try:
-            data = path_of("path", path).read_bytes()
-        except OSError as error:
-            raise _core.IoError(f"{path}: got {error.strerror}, expected a run written by Run.save") from error
-        return _restored(data, str(path))
+        return _restored(read("path", path, "a run written by Run.save"), str(path))
 
     def _document(self) -> dict[str, Any]:
         """Everything but the arrays, as plain data."""

@@ -8,7 +8,9 @@ import numpy as np
 
 from garrison import _core
 from garrison._core import partial_sharing as theory
+from garrison.arguments import number, whole_numbers
 from garrison.filters import PartialSharing
+from garrison.words import hinted, refusal
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,7 @@ class Resilience:
     radius: float
 
 
+@hinted
 def resilience_per_byte(
     model: _core.Model,
     network: _core.Network,
@@ -42,15 +45,18 @@ def resilience_per_byte(
     shared: the l to try, default 1..states; params: others of filters.PartialSharing. Raises InvalidInput when an agent
     cannot detect the state alone, or something does not fit.
     """
-    liars = list(agents)
+    if not isinstance(model, _core.Model) or not isinstance(network, _core.Network):
+        got = f"({type(model).__name__}, {type(network).__name__})"
+        raise refusal("resilience_per_byte", got, "(model, network, agents)")
+    liars = whole_numbers("agents", agents)
     out = []
-    for entries in range(1, model.states + 1) if shared is None else shared:
+    for entries in range(1, model.states + 1) if shared is None else whole_numbers("shared", shared, 1):
         filt = PartialSharing(gain=gain, shared=entries, **params)
         analysis = theory.Analysis(filt, model, network)
         radius = analysis.cycle_radius()
         mse = attacked = float("inf")
         if radius < 1:
             mse = float(np.mean(analysis.periodic_mse()))
-            attacked = mse + float(analysis.worst(liars, energy)["gain"]) / model.agents
+            attacked = mse + float(analysis.worst(liars, number("energy", energy))["gain"]) / model.agents
         out.append(Resilience(entries, analysis.bytes_per_step, mse, attacked, radius))
     return out

@@ -3,6 +3,7 @@
 import io
 import json
 import zipfile
+import zlib
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,17 @@ def unpack(data: bytes, name: str) -> tuple[dict[str, Any], dict[str, NDArray[An
             found = {key: archive[key] for key in archive.files}
         document = json.loads(str(found.pop(_DOCUMENT)))
         version = document.pop("version")
-    except (OSError, ValueError, KeyError, EOFError, AttributeError, zipfile.BadZipFile) as error:
+    except (
+        OSError,
+        ValueError,
+        KeyError,
+        EOFError,
+        AttributeError,
+        NotImplementedError,
+        RuntimeError,
+        zipfile.BadZipFile,
+        zlib.error,
+    ) as error:
         raise _core.IoError(f"{name}: got {error}, expected a run written by Run.save") from None
     if version != _VERSION:
         raise _core.IoError(f"{name}: got format {version}, expected {_VERSION}; another version of garrison wrote it")

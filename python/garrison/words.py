@@ -1,8 +1,9 @@
 """How garrison says no: one form of refusal, near names, plurals, the order of arguments."""
 
 import functools
+import inspect
 from collections.abc import Callable, Iterable
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, NoReturn, ParamSpec, TypeVar
 
 from garrison import _core
 
@@ -35,6 +36,12 @@ def near(name: str, known: Iterable[str]) -> str:
     return f'did you mean "{found}"?' if found else ""
 
 
+def refuse_attribute(module: str, name: str, known: Iterable[str]) -> NoReturn:
+    """The AttributeError of a module that lacks `name`, with the name that was probably meant."""
+    known = list(known)
+    raise AttributeError("; ".join(filter(None, [f"module {module!r} has no attribute {name!r}", near(name, known)])))
+
+
 def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:
     """Refuse names that are not known, with the nearest one."""
     known = list(known)
@@ -44,16 +51,30 @@ def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:
 
 
 def hinted(function: Callable[P, T]) -> Callable[P, T]:
-    """`function`, but a keyword that it does not have is refused with the nearest one that it has."""
-    code = function.__code__
-    known = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+    """`function`, but arguments that it does not have, or that are missing, are refused in our words."""
+    parameters = inspect.signature(function).parameters.values()
+    own = [p for p in parameters if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
+    known = [p.name for p in own]
+    ordered = [p.name for p in own if p.kind is not p.KEYWORD_ONLY]
+    needed = [p.name for p in own if p.default is p.empty]
+    open_ended = any(p.kind is p.VAR_KEYWORD for p in parameters)
+    name = function.__name__
 
     @functools.wraps(function)
     def guarded(*args: P.args, **keywords: P.kwargs) -> T:
-        for name in keywords:
-            if name not in known:
-                got = f"the unknown argument {name!r}"
-                raise refusal(function.__name__, got, f"one of {', '.join(known)}", near(name, known))
+        if len(args) > len(ordered):
+            expected = f"{len(ordered)} at most; {', '.join(known)}"
+            raise refusal(name, f"{len(args)} arguments without a name", expected)
+        given = [*ordered[: len(args)], *keywords]
+        for one in keywords:
+            if one not in known and not open_ended:
+                got = f"the unknown argument {one!r}"
+                raise refusal(name, got, f"one of {', '.join(known)}", near(one, known))
+        if len(set(given)) < len(given):
+            twice = next(one for one in given if given.count(one) > 1)
+            raise refusal(f"{name}.{twice}", "two values", "one")
+        if missing := [one for one in needed if one not in given]:
+            raise refusal(name, f"no {', '.join(missing)}", f"{', '.join(needed)}")
         return function(*args, **keywords)
 
     return guarded

@@ -15,7 +15,7 @@ using Index = Eigen::Index;
 constexpr int kMostSteps = 120;
 constexpr double kSettled = 1e-13;
 /// A step that small, and no smaller than the one before, is where rounding stops it.
-constexpr double kRounded = 1e-9;
+constexpr double kRounded = 1e-6;
 
 Vector stacked(const Matrices& D) {
   const Index size = D.front().size();

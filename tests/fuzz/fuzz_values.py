@@ -72,6 +72,9 @@ def samples() -> dict[str, list[Any]]:
     driven = [f for f in filters if f.name in ("saturation", "rdkf", "structural", "partial_sharing")]
     found["Agent"] = [gr.Agent(model, network, f, 0) for f in driven]
     found["Message"] = [gr.Agent(model, network, f, 1).sense(1, [0.1]) for f in driven]
+    prepared = gr.prepare(model, network, driven[0])
+    found["Prepared"], found["Check"] = [prepared], [prepared.check()]
+    found["Run"] = [prepared.simulate(steps=3, keep=["estimate", "report", "measurements", "signals", "details"])]
     found["Design"] = [_core.Design(model, network, f) for f in driven]
     return found | {type(one).__name__: [one] for one in certificates()}
 

@@ -14,7 +14,7 @@ LAYERS = (
     ("words", "verdict"),
     ("numeric", "sizes", "storage", "objects", "filters"),
     ("arguments", "parameters", "checks", "families", "tables", "longform"),
-    ("attacks", "record", "doubts"),
+    ("attacks", "record", "doubts", "refuted"),
     ("drivers", "fitting", "calibration", "certificate"),
     ("prepared",),
     ("resilience", "mitigation", "lmi", "scenario"),

@@ -127,7 +127,7 @@ REFUSED = [
     ("plant.toml", "steps = 20", "", ["[run] steps"]),
     ("plant.toml", "steps = 20", "steps = 2000000000", ["steps", "GB", "GARRISON_MEMORY_GB"]),
     ("plant.toml", "steps = 20", "steps = 20\ntrials = 2147483647", ["trials", "GB"]),
-    ("plant.toml", "steps = 20", "steps = 99999999999999", ["steps", ">= 1"]),
+    ("plant.toml", "steps = 20", "steps = 99999999999999", ["steps", "in 1..2147483647"]),
     ("plant.toml", "steps = 20", 'steps = "20"', ["[run].steps", "'20'", "whole number"]),
     ("plant.toml", "steps = 20", "steps = 20\nseed = -1", ["[run].seed", "-1", ">= 0"]),
     ("plant.toml", "steps = 20", 'steps = 20\nthreads = "5"', ["[run].threads", "'5'"]),

@@ -99,7 +99,8 @@ def whole(where: str, value: Any, least: int = 0, most: int = _MOST) -> int:
     if isinstance(value, float) and math.isfinite(value) and value == int(value):
         value = int(value)
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        words = f"a whole number >= {least}" if most >= _MOST else f"a whole number in {least}..{most}"
+        above = isinstance(value, int) and value > most
+        words = f"a whole number in {least}..{most}" if above or most < _MOST else f"a whole number >= {least}"
         raise refusal(where, shown(value), words)
     return value
 
@@ -142,5 +143,6 @@ def _plain(value: dt.datetime) -> dt.datetime:
 
 
 def renamed(error: _core.Error, where: str) -> _core.Error:
-    """The same refusal with its place in the scenario in front."""
-    return type(error)(f"{where} {error}")
+    """The same refusal with its place in the scenario in front, if it does not name it itself."""
+    words = str(error)
+    return error if words.startswith(where) else type(error)(f"{where} {words}")

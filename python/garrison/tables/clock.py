@@ -25,6 +25,8 @@ _JITTER = 0.05
 _MOST_FILLED = 50
 _SLASHED = re.compile(r"(\d{1,4})[./-](\d{1,2})[./-](\d{1,4})(?:[T ]+(\d{1,2}):(\d{2})(?::(\d{2})(?:[.,]\d*)?)?)?")
 _ISO = re.compile(r"\d{4}-\d{2}-\d{2}([T ]\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?\s*(Z|[+-]\d{2}:?\d{2})?)?")
+#: YYYYMMDD, as plain digits
+_COMPACT = re.compile(r"((?:18|19|20)\d{2})(0[1-9]|1[0-2])(0[1-9]|[12]\d|3[01])")
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,8 @@ def read_clock(rows: Rows, cells: list[str]) -> Clock:
     for place, cell in zip(places, cells, strict=True):
         if is_missing(cell):
             raise refusal(place, "no time", "a date or a number of seconds in the first column")
+    if all(_COMPACT.fullmatch(c.strip()) for c in cells):
+        cells = [_COMPACT.sub(r"\1-\2-\3", c.strip()) for c in cells]
     plain = [number(c, rows.separator != ",") for c in cells]
     moments: list[Moment]
     if plain[0] is not None and not looks_like_time(cells[0]):

@@ -142,27 +142,96 @@ class Fusion : public detail::RiccatiMap {
   std::vector<std::vector<Matrix>> weights_;  // sqrt(d_i) L_ij A, in the order of N_i
 };
 
-/// Newton's method on (5), from the solution for more process noise: that one is an upper bound, and with
-/// enough of it the sweeps settle quickly.
-bool newton(const Setting& s, const std::vector<Matrix>& seen, SteadyState& out) {
+/// What n samples of all sensors tell of the state, without process noise.
+Matrix information(const Matrix& A, const std::vector<Matrix>& seen) {
+  Matrix all = Matrix::Zero(A.rows(), A.cols());
+  for (const Matrix& one : seen) all += one;
+  Matrix O = all;
+  for (Eigen::Index k = 1; k < A.rows(); ++k) O = all + A.transpose() * O * A;
+  return O;
+}
+
+/// Units of the states, powers of 2, in which they are seen about equally well; 1 for states nobody sees.
+Vector units(const Setting& s) {
+  return information(s.A, measured(s)).diagonal().unaryExpr([](double seen) {
+    return seen > 0.0 ? std::exp2(-std::round(0.5 * std::log2(seen))) : 1.0;
+  });
+}
+
+/// The same problem for the states x / unit.
+Setting in_units(const Setting& s, const Vector& unit) {
+  const Vector back = unit.cwiseInverse();
+  Setting own = s;
+  own.A = back.asDiagonal() * s.A * unit.asDiagonal();
+  for (Matrix& C : own.C) C = C * unit.asDiagonal();
+  for (Matrix& M : own.M) M = M * unit.asDiagonal();
+  for (Matrix& Sw : own.Sw) Sw = back.asDiagonal() * Sw * back.asDiagonal();
+  return own;
+}
+
+/// Process noise that excites every seen mode about as strongly as it is seen, and none less than Sw does:
+/// with it no mode is slow to settle. `s`: in `units`.
+Matrix even_noise(const Setting& s, const std::vector<Matrix>& seen) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(information(s.A, seen));
+  constexpr double kLeast = 1e-12;  // times the largest; below it rounding decides
+  const double least = kLeast * eigen.eigenvalues().maxCoeff();
+  const Vector inverse = eigen.eigenvalues().unaryExpr([&](double v) { return 1.0 / std::max(v, least); });
+  const Matrix shape = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+  double most = 1.0;
+  for (const Matrix& Sw : s.Sw)
+    most = std::max(most, Sw.diagonal().cwiseQuotient(shape.diagonal()).maxCoeff());
+  return most * shape;
+}
+
+std::vector<Matrix> noisier(const Setting& s, double more, const Matrix& even) {
+  std::vector<Matrix> all;
+  for (const Matrix& Sw : s.Sw) all.push_back(Sw + more * (Sw + even));
+  return all;
+}
+
+/// Times `even` at which every state has about the noise of Sw alone.
+double own_noise(const Setting& s, const Matrix& even) {
+  double least = 1.0;
+  for (const Matrix& Sw : s.Sw)
+    least = std::min(least, Sw.diagonal().cwiseQuotient(even.diagonal()).minCoeff());
+  return least;
+}
+
+/// Newton's method on (5). The solution for more process noise is an upper bound, as it needs one to start
+/// from; with enough noise the sweeps settle quickly. From there the noise falls step by step, so that an
+/// upper bound is never so much larger than the solution that rounding hides what is well known.
+bool newton(const Setting& given, SteadyState& out) {
+  constexpr double kFall = 1e-4;
+  const Vector unit = units(given);
+  const Setting s = in_units(given, unit);
+  const std::vector<Matrix> seen = measured(s);
+  const Matrix even = even_noise(s, seen);
+  const double own = own_noise(s, even);
   Setting noisy = s;
-  for (double more = 1e2; more < 1e40; more *= 1e2) {
-    SteadyState rough;
+  SteadyState rough;
+  double more = 1.0;
+  for (bool settled = false; !settled; out.sweeps += rough.sweeps) {
+    more *= 1e2;
+    if (more > 1e20) return false;
+    rough = {};
     rough.P.assign(s.C.size(), Matrix::Zero(s.A.rows(), s.A.cols()));
-    for (std::size_t i = 0; i < s.Sw.size(); ++i) noisy.Sw[i] = more * s.Sw[i];
-    const bool settled = settle(noisy, seen, 1e-6, kQuickSweeps, rough);
-    out.sweeps += rough.sweeps;
-    if (!settled) continue;
-    for (Matrix& P : rough.P) P *= 1.01;
-    Fusion fusion(s, seen);
-    const auto found = detail::policy_iteration(fusion, std::move(rough.P));
-    out.sweeps += found.steps;
-    if (!found.converged) continue;
-    out.P = found.P;
-    out.change = found.change;
-    return true;
+    noisy.Sw = noisier(s, more, even);
+    settled = settle(noisy, seen, 1e-6, kQuickSweeps, rough);
   }
-  return false;
+  std::vector<Matrix> P = std::move(rough.P);
+  while (more > 0.0) {
+    more = more > own ? more * kFall : 0.0;
+    noisy.Sw = noisier(s, more, even);
+    for (Matrix& one : P) one *= 1.01;
+    Fusion fusion(noisy, seen);
+    auto found = detail::policy_iteration(fusion, std::move(P));
+    out.sweeps += found.steps;
+    if (!found.converged) return false;
+    P = std::move(found.P);
+    out.change = found.change;
+  }
+  for (std::size_t i = 0; i < P.size(); ++i) out.P[i] = unit.asDiagonal() * P[i] * unit.asDiagonal();
+  return true;
 }
 
 void require_start(const Setting& s, const std::vector<Matrix>& P) {
@@ -189,11 +258,13 @@ SteadyState steady_state(const Setting& s, const SteadyOptions& options) {
   out.P = options.start.empty() ? std::vector<Matrix>(s.C.size(), Matrix::Zero(n, n)) : options.start;
   require_start(s, out.P);
   if (!settle(s, seen, options.tolerance, std::min(kQuickSweeps, options.most_sweeps), out) &&
-      !newton(s, seen, out) && !settle(s, seen, options.tolerance, options.most_sweeps - out.sweeps, out))
+      !newton(s, out) && !settle(s, seen, options.tolerance, options.most_sweeps - out.sweeps, out))
     refuse("model",
            "covariances that still change by " + text(out.change) + " after " + std::to_string(out.sweeps) +
                " sweeps",
-           "a pair (A, C) that is detectable with some margin");
+           "a pair (A, C) that is detectable with some margin, and process noise of at least about 1e-14 of "
+           "what the measurements tell",
+           "raise process_covariance, or leave out what is hardly seen");
   for (std::size_t j = 0; j < s.C.size(); ++j) out.Pbar.push_back(predicted(s, j, out.P[j]));
   out.Q = fused(s, out.P);
   return out;

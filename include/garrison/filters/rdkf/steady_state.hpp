@@ -29,8 +29,9 @@ struct SteadyState {
       0.0;  ///< relative change in the last sweep: at most the tolerance, or where rounding stops it
 };
 
-/// Any ratio of process to measurement noise: where 400 sweeps do not settle (Sw/Sv below about 1e-3),
-/// Newton's method does, from the solution for more process noise.
+/// Where 400 sweeps do not settle (Sw/Sv below about 1e-3, integrators at a small period), Newton's method
+/// does, from the solution for more process noise; for Sw/Sv down to about 1e-14, below which rounding
+/// decides.
 /// @throws InvalidInput when a start has a wrong shape, when P grows beyond 1e14 times the noise (a mode that
 /// is hardly seen), or when nothing settles
 GARRISON_EXPORT SteadyState steady_state(const Setting& s, const SteadyOptions& options = {});

@@ -31,6 +31,77 @@ TEST_CASE("one agent has the covariance of the ordinary Kalman filter") {
   }
 }
 
+namespace {
+
+/// Prior covariance of one agent by the structure-preserving doubling algorithm (Chu, Fan, Lin 2005), k steps
+/// of which are 2^k sweeps; nothing shared with ours.
+Matrix doubled(const Setting& s) {
+  using Wide = Eigen::Matrix<long double, Dynamic, Dynamic>;
+  const Wide I = Wide::Identity(s.states(), s.states());
+  Wide A = s.A.transpose().cast<long double>();
+  Wide G = (s.M[0].transpose() * s.M[0]).cast<long double>();
+  Wide H = s.Sw[0].cast<long double>();
+  for (int k = 0; k < 60; ++k) {
+    const Wide W = (I + G * H).inverse();
+    const Wide next = A * W * A;
+    const Wide G_more = A * W * G * A.transpose();
+    const Wide H_more = A.transpose() * H * W * A;
+    G += G_more;
+    H += H_more;
+    A = next;
+  }
+  return H.cast<double>();
+}
+
+Setting alone(const Matrix& A, const Matrix& C, double q) {
+  Noise noise;
+  noise.process_covariance = q * Matrix::Identity(A.rows(), A.rows());
+  noise.measurement_covariance = {Matrix::Identity(C.rows(), C.rows())};
+  return setting(Model(A, {C}, noise), Network(1, {}));
+}
+
+}  // namespace
+
+TEST_CASE("slow modes: integrators at a small period in any units, and very small process noise") {
+  for (const double q : {1.0, 1e-6})
+    for (const double period : {1e-2, 1e-3, 1e-5})
+      for (const double unit : {1.0, 1e6}) {
+        CAPTURE(q);
+        CAPTURE(period);
+        CAPTURE(unit);
+        const Setting s = alone(Matrix{{1.0, period}, {0.0, 1.0}}, Matrix{{unit, 0.0}}, q);
+        const Matrix right = doubled(s);
+        CHECK((steady_state(s).Pbar[0] - right).norm() <= 1e-8 * right.norm());
+      }
+  for (const double q : {1e-8, 1e-12, 1e-14}) {
+    CAPTURE(q);
+    const Setting s = alone(Matrix{{1.0, 0.3}, {0.0, 0.2}}, Matrix{{0.7, 0.4}}, q);
+    const Matrix right = doubled(s);
+    CHECK((steady_state(s).Pbar[0] - right).norm() <= 1e-6 * right.norm());
+  }
+}
+
+TEST_CASE("a network of slow modes keeps (5), and more noise never gives less error") {
+  Rng rng(9);
+  const Model model = covariance_model(rng, 2, 4, 0.9);
+  Setting s = setting(model, connected_network(rng, 4));
+  s.A = Matrix{{1.0, 1e-3}, {0.0, 1.0}};
+  std::vector<Matrix> below;
+  for (const double q : {1e-13, 1e-9, 1e-5}) {
+    CAPTURE(q);
+    for (Matrix& Sw : s.Sw) Sw = q * Matrix::Identity(2, 2);
+    const SteadyState steady = steady_state(s);
+    for (std::size_t i = 0; i < steady.P.size(); ++i) {
+      CHECK(steady.P[i].diagonal().minCoeff() > 0.0);
+      if (!below.empty()) CHECK((steady.P[i] - below[i]).diagonal().minCoeff() > 0.0);
+    }
+    below = steady.P;
+    const std::vector<Matrix> again = riccati_sweep(s, steady.P);
+    for (std::size_t i = 0; i < again.size(); ++i)
+      CHECK((again[i] - steady.P[i]).norm() <= 1e-9 * steady.P[i].norm());
+  }
+}
+
 TEST_CASE("the limit does not depend on the start, and a warm start takes fewer sweeps") {
   Rng rng(2);
   for (int instance = 0; instance < 20; ++instance) {

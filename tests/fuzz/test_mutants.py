@@ -9,6 +9,8 @@ from garrison.cli import main
 
 SEED = 20240607
 SCENARIOS, TABLES = 200, 100
+#: exit codes, in words
+ENDS = {0: "fine", 1: "with a check that fails", 2: "refused in one line"}
 
 #: values that people and machines put where something else belongs
 _LONG = "1" + 400 * "0"
@@ -208,7 +210,13 @@ def test_the_originals_are_fine(folder: Path, capsys: pytest.CaptureFixture[str]
         assert require_orderly(["run", str(folder / f"fine{k}.toml"), "-o", str(folder / f"o{k}")], text, capsys) == 0
 
 
-def test_mutated_scenarios(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def counted(what: str, codes: list[int]) -> str:
+    """The figures of one kind of mutants; require_orderly has refused anything else."""
+    ends = ", ".join(f"{codes.count(code)} {words}" for code, words in ENDS.items())
+    return f"{what}: {len(codes)} mutated, {ends}; no traceback, no bug"
+
+
+def test_mutated_scenarios(folder: Path, figures: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     rng = random.Random(SEED)
     path = folder / "mutant.toml"
     codes = []
@@ -216,29 +224,34 @@ def test_mutated_scenarios(folder: Path, capsys: pytest.CaptureFixture[str]) -> 
         text = mutated(rng.choice([PLANT, PLANT, WIND, STRING]), rng)
         path.write_text(text, encoding="utf-8")
         codes.append(require_orderly(["check", str(path)], text, capsys))
+    figures.append(counted("scenarios", codes))
     assert 10 < codes.count(2) < SCENARIOS - 10  # neither all of them wrong, nor none
 
 
 def test_what_check_accepts_runs(
-    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    folder: Path, figures: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`check` looks at everything that `run` will look at."""
     monkeypatch.setattr("garrison._commands.run._write_pictures", lambda *a: None)  # slow, and tested elsewhere
     rng = random.Random(SEED + 1)
     path, out = folder / "twice.toml", folder / "twice"
+    codes = []
     for _ in range(60):
         text = mutated(rng.choice([PLANT, WIND, STRING]), rng)
         path.write_text(text, encoding="utf-8")
         checked = require_orderly(["check", str(path)], text, capsys)
         ran = require_orderly(["run", str(path), "-o", str(out), "--force"], text, capsys)
         assert (checked == 2) == (ran == 2), f"check {checked}, run {ran}\n{text}"
+        codes.append(ran)
+    figures.append(counted("scenarios, checked and run alike", codes))
 
 
-def test_mutated_tables(folder: Path, wind: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_mutated_tables(folder: Path, wind: Path, figures: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     rng = random.Random(SEED + 2)
     records, stations = (folder / "wind.csv").read_text(), (folder / "stations.csv").read_text()
     square = "\n".join(",".join(str(int(i == j or i + 1 == j)) for j in range(6)) for i in range(6))
     path, scenario = folder / "m.csv", folder / "m.toml"
+    codes = []
     for k in range(TABLES):
         source = stations if k % 4 == 0 else square if k % 4 == 2 else records
         data = mutated_table(source, rng)
@@ -253,4 +266,6 @@ def test_mutated_tables(folder: Path, wind: Path, capsys: pytest.CaptureFixture[
             arguments = ["structure", str(path)]
         else:
             arguments = ["fit", str(path), "--json"]
-        require_orderly(arguments, repr(data[:300]), capsys)
+        codes.append(require_orderly(arguments, repr(data[:300]), capsys))
+    figures.append(counted("CSV files", codes))
+    assert codes.count(0) > 0 and codes.count(2) > 10  # neither all of them wrong, nor none

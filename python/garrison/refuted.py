@@ -1,0 +1,105 @@
+"""Noise that is larger than a filter was told: what the data of a run themselves say against the assumptions."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+
+Array = NDArray[np.float64]
+#: times `false_alarm` that most sensors must exceed, and standard deviations of a rate beyond that
+_TIMES, _SURE = 2.0, 5.0
+#: fewest sensors of which a median says something while one lies
+_SENSORS = 3
+#: most sensors that measure the same and are compared with each other
+_EQUAL = 64
+
+
+def of_rate(filter: _core.Filter, statistic: Array | None, threshold: Array | None) -> list[str]:
+    """A line when most sensors exceed the level of their test far more often than `false_alarm` says.
+
+    The median over sensors counts, so that a few liars raise no doubt about the noise.
+    """
+    asked = filter.params.get("false_alarm")
+    if not isinstance(asked, float) or statistic is None or threshold is None:
+        return []
+    tested = np.isfinite(statistic) & np.isfinite(threshold)
+    tests = tested.sum(axis=(0, 1))
+    over = (tested & (statistic > threshold)).sum(axis=(0, 1))[tests > 0]
+    tests = tests[tests > 0]
+    if len(tests) < _SENSORS:
+        return []
+    rate = float(np.median(over / tests))
+    independent = float(np.median(tests)) / float(filter.params.get("window", 1))
+    if rate <= _TIMES * asked + _SURE * math.sqrt(asked / independent):
+        return []
+    return [
+        f"most sensors exceed the level of their test in a share of {rate:.2g} of the samples, asked {asked:g}: "
+        "process_covariance or measurement_covariance is too small, the noise depends on its past, A or C is wrong, "
+        "or a lie has moved all estimates; see garrison.calibrate"
+    ]
+
+
+def of_bounds(model: _core.Model, filter: _core.Filter, measurements: Array | None) -> list[str]:
+    """A line when sensors that measure the same contradict each other more than `attacked` of them can explain.
+
+    Where two differ by more than the sum of their bounds, one of them is off by more than its own. Pairs without a
+    common sensor are counted: over the whole first trial where the attacked ones must stay the same (a detector), else
+    in one sample.
+    """
+    attacked = filter.params.get("attacked")
+    bounds = np.asarray(model.measurement_bound, dtype=float)
+    if measurements is None or not isinstance(attacked, int) or len(bounds) != model.agents:
+        return []
+    groups = _groups(model)
+    pairs = _for_good if filter.params.get("detector", False) else _in_one_sample
+    with np.errstate(invalid="ignore", over="ignore"):
+        found = sum(pairs(measurements[0][:, columns], bounds[agents]) for columns, agents in groups)
+    most = int(np.max(found)) if groups else 0
+    if most <= attacked:
+        return []
+    return [
+        f"{most} pairs of sensors that measure the same differ by more than measurement_bound allows, and only "
+        f"{attacked} sensors may be attacked: measurement_bound is too small, or more of them lie"
+    ]
+
+
+def _groups(model: _core.Model) -> list[tuple[list[int], list[int]]]:
+    """Columns of measurements, and agents, that measure the same, where there are at least two."""
+    same: dict[bytes, tuple[list[int], list[int]]] = {}
+    column = 0
+    for agent, C in enumerate(model.C):
+        row = np.asarray(C, dtype=float)
+        if len(row) == 1:
+            columns, agents = same.setdefault((row + 0.0).tobytes(), ([], []))
+            columns.append(column)
+            agents.append(agent)
+        column += len(row)
+    return [(columns[:_EQUAL], agents[:_EQUAL]) for columns, agents in same.values() if len(columns) > 1]
+
+
+def _in_one_sample(y: Array, bounds: Array) -> NDArray[np.int64]:
+    """Pairs without a common sensor that contradict each other, per sample: the extremes, then the next ones, ..."""
+    ordered = np.sort(np.where(np.isfinite(y), y, np.nan), axis=1)  # nan at the end
+    known = np.isfinite(ordered).sum(axis=1)
+    count = np.zeros(len(y), dtype=np.int64)
+    limit = 2.0 * float(bounds.max()) * (1.0 + 1e-9)
+    samples = np.arange(len(y))
+    for k in range(y.shape[1] // 2):
+        top = known - 1 - k
+        apart = ordered[samples, np.maximum(top, 0)] - ordered[:, k]
+        count += (top > k) & (apart > limit)
+    return count
+
+
+def _for_good(y: Array, bounds: Array) -> int:
+    """The same for pairs that contradict each other in any sample."""
+    free = set(range(y.shape[1]))
+    count = 0
+    for i in range(y.shape[1]):
+        for j in range(i):
+            if {i, j} <= free and (np.abs(y[:, i] - y[:, j]) > (bounds[i] + bounds[j]) * (1.0 + 1e-9)).any():
+                free -= {i, j}
+                count += 1
+    return count

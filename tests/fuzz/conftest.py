@@ -1,0 +1,26 @@
+"""Figures of the fuzz, printed at the end of `make fuzz`."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+_LINES: list[str] = []
+
+
+@pytest.fixture(scope="session")
+def figures() -> list[str]:
+    """Lines to be printed at the end."""
+    return _LINES
+
+
+@pytest.fixture(scope="session")
+def wind() -> Path:
+    """Folder of the real data."""
+    return Path(__file__).parents[2] / "examples" / "wind"
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Print them."""
+    for line in _LINES:
+        terminalreporter.write_line(line)

@@ -1,0 +1,128 @@
+"""Slips in calls of the Python layer, and files that are not what they should be: refused in our words."""
+
+import copy
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import garrison as gr
+import numpy as np
+import pandas as pd
+import pytest
+from garrison.tables import read_records
+
+MODEL = gr.Model([[0.8]], [[1.0]] * 3, process_covariance=0.2, measurement_covariance=[0.1, 0.5, 2.0])
+NET = gr.Network.ring(3)
+FILTER = gr.filters.Structural()
+PARTS = (MODEL, NET, FILTER)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: gr.simulate(MODEL, NET), "simulate: got no filter, steps, expected model, network, filter, steps"),
+        (lambda: gr.replay(*PARTS, np.zeros((2, 3))), "replay: got 4 arguments without a name, expected 3 at most"),
+        (lambda: gr.simulate(*PARTS, steps=2, model=MODEL), "simulate.model: got two values"),
+        (lambda: gr.calibrate(*PARTS, records=np.zeros((2, 3))), "calibrate: got the unknown argument 'records'"),
+        (lambda: gr.calibrate(NET, MODEL, FILTER, measurements=np.zeros((2, 3))), "calibrate: got (network, model"),
+        (lambda: gr.attacks.worst_covariance(*PARTS, energy=1.0), "worst_covariance: got no agents"),
+        (lambda: gr.resilience_per_byte(NET, MODEL, [0], gain=0.1, energy=1.0), "resilience_per_byte: got (Network"),
+        (lambda: gr.replay_mitigated(NET), "replay_mitigated: got no A"),
+        (lambda: gr.fit(3), "fit.records: got 3, expected Records"),
+        (lambda: gr.simulate(*PARTS, steps=2, seed=2**64), f"seed: got {2**64}, expected a whole number in 0.."),
+        (lambda: gr.simulate(*PARTS, steps=2, trials=2**31), f"trials: got {2**31}, expected a whole number in 1.."),
+        (lambda: gr.simulate(*PARTS, steps=2, attack="bias"), "attack: got 'bias', expected an attack"),
+    ],
+)  # fmt: skip
+def test_wrong_arguments(call: Callable[[], object], words: str) -> None:
+    with pytest.raises(gr.InvalidInput) as refused:
+        call()
+    assert words in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "meant"),
+    [(gr.filters, "Strctural", "Structural"), (gr.attacks, "Bis", "Bias"), (gr, "simulat", "simulate")],
+)
+def test_misspelt_names_get_the_nearest(module: Any, name: str, meant: str) -> None:
+    with pytest.raises(AttributeError, match=f'did you mean "{meant}"'):
+        getattr(module, name)
+
+
+def test_central_kalman_matches_columns_by_name() -> None:
+    model = gr.Model(
+        [[0.8]], [[1.0]] * 3, process_covariance=0.2, measurement_covariance=[0.1, 0.5, 2.0], outputs=["a", "b", "c"]
+    )
+    y = pd.DataFrame({"c": [3.0, 3.0], "b": [2.0, 2.0], "a": [1.0, 1.0]})
+    right = gr.central_kalman(model, y[["a", "b", "c"]].to_numpy())
+    assert np.array_equal(gr.central_kalman(model, y), right)
+    with pytest.raises(gr.InvalidInput, match="matched by name"):
+        gr.central_kalman(model, y.rename(columns={"c": "d"}))
+
+
+def test_files_that_cannot_be_used(tmp_path: Path) -> None:
+    prepared, run = gr.prepare(*PARTS), gr.simulate(*PARTS, steps=2)
+    calls: list[Callable[[Path], object]] = [prepared.save, run.save, gr.Prepared.load, gr.Run.load]
+    for where in (tmp_path, tmp_path / "none" / "x", Path("a\0b")):
+        for call in calls:
+            with pytest.raises(gr.IoError, match=r"got .*, expected"):
+                call(where)
+
+
+def test_damaged_runs_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.npz"
+    run = gr.simulate(*PARTS, steps=20)
+    run.save(path)
+    assert gr.Run.load(path) == run
+    whole, rng = path.read_bytes(), np.random.default_rng(0)
+    for k in range(200):
+        damaged = bytearray(whole)
+        damaged[rng.integers(len(damaged))] ^= 1 << int(rng.integers(8))
+        path.write_bytes(damaged[: rng.integers(len(damaged))] if k % 2 else damaged)
+        try:
+            gr.Run.load(path)  # a bit that nobody reads, such as a time stamp
+        except gr.IoError as refused:
+            assert "expected a run written by Run.save" in str(refused)
+
+
+def test_checks_compare_after_pickling() -> None:
+    found = gr.check(*PARTS)
+    assert pickle.loads(pickle.dumps(found)) == found == copy.deepcopy(found)
+    assert found != gr.check(MODEL, gr.Network.complete(3), gr.filters.Dkf())
+
+
+def test_compact_dates_are_dates(tmp_path: Path) -> None:
+    days = pd.date_range("2019-12-30", periods=70)
+    path = tmp_path / "r.csv"
+    rows = [f"{d:%Y%m%d},{k % 7},{k % 5}" for k, d in enumerate(days)]
+    path.write_text("\n".join(["day,a,b", *rows]) + "\n")
+    found = read_records(path)
+    assert found.dates == [d.date() for d in days] and found.step == 86400.0 and not found.notes
+    path.write_text("day,a,b\n20200227,1,2\n20200230,2,3\n20200231,3,3\n")
+    with pytest.raises(gr.InvalidInput, match="line 3"):
+        read_records(path)
+
+
+def test_too_few_records_are_called_so(tmp_path: Path) -> None:
+    path = tmp_path / "r.csv"
+    path.write_text("day,a,b\n2020-02-27,1,2\n2020-02-28,2,3\n2020-02-29,3,3\n")
+    with pytest.raises(gr.InvalidInput, match=r"fit.harmonics: got 2 with 3 records, expected at least 6 records"):
+        gr.fit(read_records(path))
+
+
+def test_two_rows_that_mean_an_edge_list_are_no_matrix() -> None:
+    assert gr.Network(np.array([[0, 1], [1, 2]])).edges == [(0, 1), (1, 2)]
+    for unclear in ([[1, 0], [0, 1]], pd.DataFrame([[1, 0], [0, 1]], columns=["u", "v"])):
+        with pytest.raises(gr.InvalidInput, match="two edges or an adjacency matrix"):
+            gr.Network(unclear)
+    with pytest.raises(gr.InvalidInput, match=r"adjacency\[1, 1\]: got 2, expected 0 or 1"):
+        gr.Network(pd.DataFrame({"u": [0, 1], "v": [1, 2]}))
+
+
+def test_rows_of_an_adjacency_table_are_matched_by_name() -> None:
+    names = list("abc")
+    path = pd.DataFrame([[0, 1, 0], [1, 0, 1], [0, 1, 0]], index=names, columns=names)
+    assert gr.Network(path.loc[["c", "a", "b"]]) == gr.Network(path)
+    with pytest.raises(gr.InvalidInput, match="matched by name"):
+        gr.Network(path.rename(index={"a": "x"}))

@@ -1,0 +1,56 @@
+"""Noise that is larger than a filter was told is named in the warnings; noise as told, and a few liars, are not."""
+
+import garrison as gr
+import pytest
+
+NET = gr.Network.complete(6)
+
+
+def bounded(size: float) -> gr.Model:
+    return gr.Model([[1.0, 0.1], [0.0, 0.9]], [[1, 0], [0, 1]] * 3, process_bound=0.02, measurement_bound=0.01 * size)
+
+
+def gaussian(size: float) -> gr.Model:
+    return gr.Model(
+        [[1.0, 0.1], [0.0, 0.9]],
+        [[1, 0], [0, 1]] * 3,
+        process_covariance=0.02 * size**2,
+        measurement_covariance=0.1 * size**2,
+    )
+
+
+@pytest.mark.parametrize("noise", ["uniform", "extreme"])
+@pytest.mark.parametrize("detector", [True, False])
+def test_bounds_told_a_quarter_too_small(noise: str, detector: bool) -> None:
+    filt = gr.filters.Saturation(
+        threshold=1.0, rounds=12, attacked=1, initial_error=2.0, chebyshev=True, detector=detector
+    )
+    liar = gr.attacks.Bias([1], value=3.0, start=50)
+    for seed in range(3):
+        for size, named in ((1.0, False), (4 / 3, True)):
+            true = gr.simulate(
+                bounded(size), NET, filt, steps=300, seed=seed, x0=[1, 1], start=[1, 0], noise=noise, attack=liar
+            )
+            assert true.measurements is not None
+            told = gr.replay(bounded(1.0), NET, filt, measurements=true.measurements[0], start=[1, 0])
+            assert any("measurement_bound is too small" in w for w in told.warnings) == named, told.warnings
+
+
+def test_more_liars_than_told_are_named() -> None:
+    filt = gr.filters.Saturation(threshold=1.0, rounds=12, attacked=1, initial_error=2.0)
+    for agents, named in (([0], False), ([0, 1, 2], True)):  # 0 and 2 lie alike, and 4 measures the same
+        attack = gr.attacks.Random(agents=agents, size=5.0, start=50)
+        run = gr.simulate(bounded(1.0), NET, filt, steps=100, attack=attack, x0=[1, 1], start=[1, 0])
+        assert any("or more of them lie" in w for w in run.warnings) == named
+
+
+@pytest.mark.parametrize("options", [{}, {"window": 5}, {"test": "innovation"}, {"isolate": True}])
+def test_covariances_told_too_small(options: dict[str, object]) -> None:
+    filt = gr.filters.Structural(**options)
+    liar = gr.attacks.Bias([3], value=50.0, start=300) if "isolate" in options else ()
+    for seed in range(3):
+        for size, named in ((1.0, False), (4 / 3, True)):
+            true = gr.simulate(gaussian(size), NET, filt, steps=2000, seed=seed, noise="normal", attack=liar)
+            assert true.measurements is not None
+            told = gr.replay(gaussian(1.0), NET, filt, measurements=true.measurements[0])
+            assert any("measurement_covariance is too small" in w for w in told.warnings) == named, told.warnings
