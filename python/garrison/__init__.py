@@ -20,6 +20,7 @@ from garrison._core import (
     Network,
     SubsetBound,
     __version__,
+    budget,
     certificate,
     lambda0,
     observable,
@@ -39,14 +40,18 @@ from garrison.record import Run
 from garrison.verdict import Verdict
 
 if TYPE_CHECKING:
+    from garrison.answers import Analysis, analyze
     from garrison.calibration import Calibration, calibrate
     from garrison.fitting import Fit, fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
     from garrison.resilience import Resilience, resilience_per_byte
+    from garrison.sweeps import Sweep, sweep
 
 #: what is imported when it is asked for -> its module
 _LATER = {
+    "Analysis": "answers",
+    "analyze": "answers",
     "Calibration": "calibration",
     "calibrate": "calibration",
     "Fit": "fitting",
@@ -56,10 +61,13 @@ _LATER = {
     "Resilience": "resilience",
     "resilience_per_byte": "resilience",
     "lmi_gains": "lmi",
+    "Sweep": "sweeps",
+    "sweep": "sweeps",
 }
 
 __all__ = [
     "Agent",
+    "Analysis",
     "Attack",
     "Calibration",
     "Check",
@@ -77,9 +85,12 @@ __all__ = [
     "Resilience",
     "Run",
     "SubsetBound",
+    "Sweep",
     "Verdict",
     "__version__",
+    "analyze",
     "attacks",
+    "budget",
     "calibrate",
     "central_kalman",
     "certificate",
@@ -102,6 +113,7 @@ __all__ = [
     "split_outputs",
     "structural",
     "structure",
+    "sweep",
 ]
 
 
