@@ -5,6 +5,7 @@
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/split_outputs.hpp"
+#include "time_limit.hpp"
 
 using namespace garrison;
 
@@ -12,6 +13,25 @@ namespace {
 
 py::object value_to_python(const ParamValue& value) {
   return std::visit([](const auto& v) -> py::object { return py::cast(v); }, value);
+}
+
+void bind_budget(py::module_& m) {
+  py::class_<TimeLimit, std::shared_ptr<TimeLimit>>(
+      m, "budget",
+      "`with budget(seconds) as b:` is the time of everything computed in the block (> 0, inf = no "
+      "limit).\nSearches end with what they have proved; what has no partial result raises "
+      "InvalidInput. Ctrl-C ends both.")
+      .def(py::init<double>(), py::arg("seconds") = kInfinity)
+      .def("__enter__",
+           [](const std::shared_ptr<TimeLimit>& self) {
+             self->enter();
+             return self;
+           })
+      .def(
+          "__exit__",
+          [](TimeLimit& self, const py::object&, const py::object&, const py::object&) { self.leave(); },
+          py::arg("type"), py::arg("value"), py::arg("traceback"))
+      .def_property_readonly("over", &TimeLimit::over, "The time is up, or Ctrl-C was pressed.");
 }
 
 ParamValue numbers(const std::string& which, py::handle given) {
@@ -98,6 +118,7 @@ void bind_core(py::module_& m) {
                                            py::make_tuple(error, py::handle(PyExc_ValueError)));
   py::register_exception<IoError>(m, "IoError", py::make_tuple(error, py::handle(PyExc_OSError)));
 
+  bind_budget(m);
   bind_model(m);
   bind_network(m);
   m.def(

@@ -33,11 +33,13 @@ std::vector<Lost> lost_of(const py::handle& given) {
   return lost;
 }
 
-RunOptions run_options(int trials, std::uint64_t seed, int threads, const std::optional<Matrix>& start,
-                       const std::vector<AnyAttack>& attacks, const py::dict& link,
-                       const std::vector<std::string>& keep, const py::object& progress) {
+RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int threads,
+                       const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks,
+                       const py::dict& link, const std::vector<std::string>& keep,
+                       const py::object& progress) {
   RunOptions o;
   o.trials = trials;
+  o.first_trial = first_trial;
   o.seed = seed;
   o.threads = threads;
   if (start) o.start = start->transpose();  // Python has one row per agent
@@ -167,10 +169,12 @@ void bind_drivers(py::module_& m) {
   m.def(
       "simulate",
       [](const std::shared_ptr<Prepared>& prepared, int steps, const Vector& x0, double start_error,
-         const std::string& noise, const Matrix& disturbances, int trials, std::uint64_t seed, int threads,
-         const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
-         const std::vector<std::string>& keep, const py::object& progress) {
-        const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
+         const std::string& noise, const Matrix& disturbances, int trials, int first_trial,
+         std::uint64_t seed, int threads, const std::optional<Matrix>& start,
+         const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
+         const py::object& progress) {
+        const RunOptions options =
+            run_options(trials, first_trial, seed, threads, start, attacks, link, keep, progress);
         Record record;
         {
           const py::gil_scoped_release no_gil;
@@ -179,16 +183,17 @@ void bind_drivers(py::module_& m) {
         return from_record(std::move(record));
       },
       py::arg("design"), py::kw_only(), py::arg("steps"), py::arg("x0"), py::arg("start_error"),
-      py::arg("noise"), py::arg("disturbances"), py::arg("trials"), py::arg("seed"), py::arg("threads"),
-      py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"), py::arg("progress"),
-      "Arrays of a simulated run; use garrison.simulate.");
+      py::arg("noise"), py::arg("disturbances"), py::arg("trials"), py::arg("first_trial"), py::arg("seed"),
+      py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"),
+      py::arg("progress"), "Arrays of a simulated run; use garrison.simulate.");
   m.def(
       "replay",
       [](const std::shared_ptr<Prepared>& prepared, const Array& measurements,
-         const std::optional<Array>& truth, int trials, std::uint64_t seed, int threads,
+         const std::optional<Array>& truth, int trials, int first_trial, std::uint64_t seed, int threads,
          const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
          const std::vector<std::string>& keep, const py::object& progress) {
-        const RunOptions options = run_options(trials, seed, threads, start, attacks, link, keep, progress);
+        const RunOptions options =
+            run_options(trials, first_trial, seed, threads, start, attacks, link, keep, progress);
         const Log log = log_of(prepared->model(), prepared->filter(), measurements, truth);
         Record record;
         {
@@ -198,6 +203,7 @@ void bind_drivers(py::module_& m) {
         return from_record(std::move(record));
       },
       py::arg("design"), py::kw_only(), py::arg("measurements"), py::arg("truth"), py::arg("trials"),
-      py::arg("seed"), py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"),
-      py::arg("keep"), py::arg("progress"), "Arrays of a replayed run; use garrison.replay.");
+      py::arg("first_trial"), py::arg("seed"), py::arg("threads"), py::arg("start"), py::arg("attacks"),
+      py::arg("link"), py::arg("keep"), py::arg("progress"),
+      "Arrays of a replayed run; use garrison.replay.");
 }

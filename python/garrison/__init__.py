@@ -20,6 +20,7 @@ from garrison._core import (
     Network,
     SubsetBound,
     __version__,
+    budget,
     certificate,
     lambda0,
     observable,
@@ -40,14 +41,18 @@ from garrison.verdict import Verdict
 from garrison.words import refuse_attribute
 
 if TYPE_CHECKING:
+    from garrison.answers import Analysis, analyze
     from garrison.calibration import Calibration, calibrate
     from garrison.fitting import Fit, fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
     from garrison.resilience import Resilience, resilience_per_byte
+    from garrison.sweeps import Sweep, sweep
 
 #: what is imported when it is asked for -> its module
 _LATER = {
+    "Analysis": "answers",
+    "analyze": "answers",
     "Calibration": "calibration",
     "calibrate": "calibration",
     "Fit": "fitting",
@@ -57,10 +62,13 @@ _LATER = {
     "Resilience": "resilience",
     "resilience_per_byte": "resilience",
     "lmi_gains": "lmi",
+    "Sweep": "sweeps",
+    "sweep": "sweeps",
 }
 
 __all__ = [
     "Agent",
+    "Analysis",
     "Attack",
     "Calibration",
     "Check",
@@ -78,9 +86,12 @@ __all__ = [
     "Resilience",
     "Run",
     "SubsetBound",
+    "Sweep",
     "Verdict",
     "__version__",
+    "analyze",
     "attacks",
+    "budget",
     "calibrate",
     "central_kalman",
     "certificate",
@@ -103,6 +114,7 @@ __all__ = [
     "split_outputs",
     "structural",
     "structure",
+    "sweep",
 ]
 
 

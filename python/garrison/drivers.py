@@ -19,6 +19,8 @@ Attacks = _core.Attack | Iterable[_core.Attack]
 #: what a run keeps when nothing else is asked for, and everything that it can keep
 KEEP = ("estimate", "report", "measurements")
 _KEEPABLE = (*KEEP, "signals", "details")
+#: trials have numbers below this one
+_MOST_TRIALS = 2**24
 
 
 def require_room(model: _core.Model, filter: _core.Filter, keep: Iterable[str], trials: int, steps: int) -> None:
@@ -61,6 +63,7 @@ def simulate(
     steps: int,
     attack: Attacks = (),
     trials: int = 1,
+    first_trial: int = 0,
     seed: int = 0,
     x0: ArrayLike | None = None,
     start: ArrayLike | None = None,
@@ -80,6 +83,8 @@ def simulate(
     that length per trial. noise: "uniform" within the model's bounds, "extreme" at them, "normal", "none", "auto";
     families whose agents drive plants of their own have laws of their own, x0 (N, n), default: where they should be,
     and take recorded disturbances, one row per time 0..steps, in place of a law (garrison.platoon).
+    first_trial: trial k of this run has the bits of trial first_trial + k of a run from 0, so that a run can be had in
+    parts; first_trial + trials <= 2^24.
     link: drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says), cuts: a
     list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of (sample,
     round, sender, receiver). keep: of "estimate", "report", "signals", "measurements",
@@ -102,6 +107,7 @@ def simulate(
         noise=noise if isinstance(noise, str) else "auto",
         disturbances=np.zeros((0, 0)) if isinstance(noise, str) else arguments.table("noise", noise),
         trials=trials,
+        first_trial=arguments.whole("first_trial", first_trial, 0, _MOST_TRIALS - trials),
         seed=arguments.whole("seed", seed, 0, 2**64 - 1),
         threads=arguments.whole("threads", threads, 0),
         start=None if start is None else arguments.table("start", start),
@@ -132,6 +138,7 @@ def replay(
     start: ArrayLike | None = None,
     attack: Attacks = (),
     trials: int | None = None,
+    first_trial: int = 0,
     seed: int = 0,
     link: Mapping[str, float] | None = None,
     keep: Iterable[str] = KEEP,
@@ -158,6 +165,7 @@ def replay(
         measurements=y,
         truth=None if truth is None else numbers("truth", truth),
         trials=trials,
+        first_trial=arguments.whole("first_trial", first_trial, 0, _MOST_TRIALS - trials),
         seed=arguments.whole("seed", seed, 0, 2**64 - 1),
         threads=arguments.whole("threads", threads, 0),
         start=None if start is None else arguments.table("start", start),

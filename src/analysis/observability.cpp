@@ -6,6 +6,7 @@
 
 #include "garrison/analysis/modes.hpp"
 #include "garrison/analysis/subsets.hpp"
+#include "garrison/core/budget.hpp"
 #include "row_groups.hpp"
 #include "splitting.hpp"
 
@@ -42,6 +43,7 @@ class Removals {
   bool survives(S z, const std::vector<Group>& kept, const std::vector<Group>& free, int s) {
     if (++tried_ > kMostRemovals)
       refuse("s_sparse_observable", "more than " + text(kMostRemovals) + " sets to try", "a smaller s or N");
+    require_time("the search for sensors whose loss ends observability");
     const MatrixOf<S> R = detail::triangle<S>(pair_A_, rows(pair_C_, kept), z);
     detail::VectorOf<S> v;
     if (detail::least_singular<S>(R, v) <= kWeak * size_ && !observable(A_, rows(C_, kept))) return false;

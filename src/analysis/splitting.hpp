@@ -6,6 +6,7 @@
 
 #include "balance.hpp"
 #include "garrison/analysis/modes.hpp"
+#include "garrison/core/budget.hpp"
 #include "pencil.hpp"
 #include "unseen_part.hpp"
 
@@ -44,9 +45,11 @@ class Splitting {
   static constexpr double kGoal = 0.1;  // part of the level below which a mode need not be refined
 
   void sweep(const std::vector<Complex>& candidates, double bar) {
-    for (const Complex candidate : candidates)
+    for (const Complex candidate : candidates) {
+      require_time("the decision which modes are seen");
       while (A_.rows() > 0 && one_mode(scalar_of<S>(candidate), bar)) {
       }
+    }
   }
 
   /// Looks at one z; true when something of relative distance up to `bar` was taken out there.

@@ -12,7 +12,13 @@
 namespace garrison {
 namespace {
 
+/// Of the run's trial 0, 1, ..
 using MakeSource = std::function<std::unique_ptr<detail::Source>(std::uint32_t trial)>;
+
+/// The number under which a trial of this run draws its random numbers.
+std::uint32_t drawn_as(const RunOptions& options, std::uint32_t trial) {
+  return static_cast<std::uint32_t>(options.first_trial) + trial;
+}
 
 class RunnerVictims final : public Victims {
  public:
@@ -74,7 +80,7 @@ void run_trial(const Prepared& prepared, const RunOptions& options, Runner& runn
                detail::Recorder& recorder, int trial, Progress& progress) {
   const Model& model = prepared.model();
   const Network& network = prepared.network();
-  const auto id = static_cast<std::uint32_t>(trial);
+  const std::uint32_t id = drawn_as(options, static_cast<std::uint32_t>(trial));
   Link link(network, options.link, options.message_attacks, options.seed, id);
   auto attacks = start_attacks(model, options, id);
   const RunnerVictims victims(runner);
@@ -117,7 +123,7 @@ bool run_side_by_side(const Model& model, const RunOptions& options, TrialsRunne
   const Matrix start = starts(model, options.start);
   for (int l = 0; l < kLanes; ++l) {
     const auto trial = static_cast<std::uint32_t>(first + std::min(l, used - 1));
-    lanes.push_back({make(trial), start_attacks(model, options, trial)});
+    lanes.push_back({make(trial), start_attacks(model, options, drawn_as(options, trial))});
     x0.push_back(lanes.back().source->start(start));
   }
   std::vector<double> y(M);
@@ -154,6 +160,9 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
   const Network& network = prepared.network();
   const AnyFilter& filter = prepared.filter();
   if (options.trials < 1) refuse("trials", std::to_string(options.trials), "at least 1");
+  if (options.first_trial < 0 || options.first_trial > kMostTrials - options.trials)
+    refuse("first_trial", std::to_string(options.first_trial),
+           "a number >= 0 with first_trial + trials <= " + std::to_string(kMostTrials));
   for (const Attack& attack : options.attacks) attack->schedule().require_agents_below(model.agents());
   for (const auto& attack : options.message_attacks)
     if (!attack->fits(model.states()))
@@ -241,9 +250,9 @@ Record simulate(const Prepared& prepared, const PlantOptions& plant, const RunOp
              std::to_string(plant.steps + 1) + ", one per time 0..steps");
     const Matrix start = starts(model, options.start);
     return drive(prepared, plant.steps, true, options, [&](std::uint32_t trial) {
-      return detail::world_source(
-          prepared.world({plant.x0, start, plant.start_error, plant.noise, recorded, options.seed, trial}),
-          model.agents());
+      return detail::world_source(prepared.world({plant.x0, start, plant.start_error, plant.noise, recorded,
+                                                  options.seed, drawn_as(options, trial)}),
+                                  model.agents());
     });
   }
   if (plant.disturbances.size() != 0)
@@ -251,7 +260,7 @@ Record simulate(const Prepared& prepared, const PlantOptions& plant, const RunOp
            "only families whose agents drive plants of their own take recorded ones");
   const detail::NoiseLaw law(plant.noise, model);
   return drive(prepared, plant.steps, true, options, [&](std::uint32_t trial) {
-    return detail::simulated_source(model, law, plant, options.seed, trial);
+    return detail::simulated_source(model, law, plant, options.seed, drawn_as(options, trial));
   });
 }
 

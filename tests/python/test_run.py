@@ -70,3 +70,25 @@ def test_networks_from_other_libraries() -> None:
     assert gr.Network(nx.cycle_graph(6)).edges == ring.edges
     W = csr_array(nx.to_scipy_sparse_array(nx.cycle_graph(6)))
     assert gr.Network(W).edges == ring.edges
+
+
+@pytest.mark.parametrize("keep", [(), ("estimate", "report", "measurements")])
+def test_a_run_in_parts_has_the_bits_of_the_whole(keep):
+    model = gr.Model(
+        [[1.0, 0.1], [0.0, 0.9]], [[[1.0, 0.0]], [[0.0, 1.0]]] * 4, process_bound=0.02, measurement_bound=0.01
+    )
+    network = gr.Network.ring(8)
+    filter = gr.filters.Saturation(threshold=1.0, rounds=4, attacked=1)
+    link = {"drop": 0.1} if keep else {}
+    attack = gr.attacks.Random([2], size=3.0, start=5, probability=0.5)
+    options = {"steps": 20, "attack": attack, "link": link, "keep": keep, "start_error": 1.0, "seed": 7}
+    whole = gr.simulate(model, network, filter, trials=23, **options)
+    for first, trials in ((0, 3), (3, 9), (12, 11)):
+        part = gr.simulate(model, network, filter, trials=trials, first_trial=first, **options)
+        assert np.array_equal(part.error, whole.error[first : first + trials], equal_nan=True)
+    with pytest.raises(gr.InvalidInput, match="first_trial"):
+        gr.simulate(model, network, filter, trials=2, first_trial=2**24 - 1, **options)
+    y = whole.measurements[0] if keep else np.ones((20, 8))
+    log = gr.replay(model, network, filter, measurements=y, trials=6, seed=3, attack=attack)
+    rest = gr.replay(model, network, filter, measurements=y, trials=2, first_trial=4, seed=3, attack=attack)
+    assert np.array_equal(rest.estimate, log.estimate[4:])

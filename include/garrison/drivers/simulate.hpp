@@ -13,6 +13,9 @@
 
 namespace garrison {
 
+/// Trials have numbers below this one: their random streams are apart from each other.
+inline constexpr int kMostTrials = 1 << 24;
+
 /// What to keep of a run. Errors are always kept when the truth is known.
 struct GARRISON_EXPORT Keep {
   bool estimate = true;
@@ -25,6 +28,9 @@ struct GARRISON_EXPORT Keep {
 /// Settings that simulation and replay share.
 struct GARRISON_EXPORT RunOptions {
   int trials = 1;
+  /// Number of the first trial, >= 0: trial k of the run has the bits of trial first_trial + k of a run from
+  /// 0.
+  int first_trial = 0;
   std::uint64_t seed = 0;
   int threads = 0;              ///< 0 = all cores it may use; the result does not depend on it
   Matrix start;                 ///< initial estimates, n x N, or n x 1 for all agents alike; empty = zeros

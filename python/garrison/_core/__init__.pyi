@@ -34,6 +34,7 @@ __all__: list[str] = [
     "SubsetBound",
     "attack_infos",
     "attacks",
+    "budget",
     "central_kalman",
     "certificate",
     "chebyshev_contraction",
@@ -75,6 +76,20 @@ class DesignInfeasible(Error, ValueError):
 
 class IoError(Error, OSError):
     pass
+
+class budget:
+    """
+    `with budget(seconds) as b:` is the time of everything computed in the block (> 0, inf = no limit).
+    Searches end with what they have proved; what has no partial result raises InvalidInput. Ctrl-C ends both.
+    """
+    def __enter__(self) -> budget: ...
+    def __exit__(self, type: typing.Any, value: typing.Any, traceback: typing.Any) -> None: ...
+    def __init__(self, seconds: typing.SupportsFloat | typing.SupportsIndex = ...) -> None: ...
+    @property
+    def over(self) -> bool:
+        """
+        The time is up, or Ctrl-C was pressed.
+        """
 
 class Model:
     """
@@ -785,6 +800,7 @@ def replay(
     measurements: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     truth: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
     trials: typing.SupportsInt | typing.SupportsIndex,
+    first_trial: typing.SupportsInt | typing.SupportsIndex,
     seed: typing.SupportsInt | typing.SupportsIndex,
     threads: typing.SupportsInt | typing.SupportsIndex,
     start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None,
@@ -815,6 +831,7 @@ def simulate(
     noise: str,
     disturbances: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     trials: typing.SupportsInt | typing.SupportsIndex,
+    first_trial: typing.SupportsInt | typing.SupportsIndex,
     seed: typing.SupportsInt | typing.SupportsIndex,
     threads: typing.SupportsInt | typing.SupportsIndex,
     start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None,

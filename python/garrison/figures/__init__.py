@@ -10,6 +10,7 @@ try:
 except ImportError:
     raise refusal("figures", "no matplotlib", 'it installed: pip install "garrison[plot]"') from None
 
+from garrison.figures.analysis import analysis_figure
 from garrison.figures.anatomy import anatomy_figure
 from garrison.figures.errors import error_figure
 from garrison.figures.innovations import innovation_figure
@@ -17,8 +18,10 @@ from garrison.figures.map import map_figure, overview_figure
 from garrison.figures.resilience import resilience_figure
 from garrison.figures.run import run_figure
 from garrison.figures.string import animate, string_figure
+from garrison.figures.sweep import sweep_figure
 
 __all__ = [
+    "analysis_figure",
     "anatomy_figure",
     "animate",
     "error_figure",
@@ -28,4 +31,5 @@ __all__ = [
     "resilience_figure",
     "run_figure",
     "string_figure",
+    "sweep_figure",
 ]

@@ -1,6 +1,7 @@
 """A scenario file as objects, all of it checked."""
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from garrison.scenario.data import Recording, read_data
 from garrison.scenario.filters import CENTRAL_KALMAN, read_filters
 from garrison.scenario.model import read_model
 from garrison.scenario.network import read_network
+from garrison.scenario.overrides import overridden
 from garrison.scenario.section import Section, tables_of, whole
 from garrison.tables import Records
 from garrison.tables.clock import Moment
@@ -77,14 +79,16 @@ class Scenario:
         return max(1, min((attack.start for attack in self.attacks), default=1))
 
 
-def read_scenario(path: str | Path) -> Scenario:
+def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Scenario:
     """Read and check a scenario file; paths in it are relative to the file.
+
+    set: other values for some keys, as `{"filter.threshold": 0.7, "attack[0].value": 5}`.
 
     Raises IoError when a file cannot be read, InvalidInput when its content does not fit, always with where, what
     was found and what was expected.
     """
     path = Path(path)
-    document = _document(path)
+    document = overridden(read_document(path), set or {})
     only("scenario", document, ["title", *_TABLES])
     folder = path.parent
 
@@ -121,7 +125,8 @@ def read_scenario(path: str | Path) -> Scenario:
     return scenario
 
 
-def _document(path: Path) -> dict[str, Any]:
+def read_document(path: Path) -> dict[str, Any]:
+    """The tables of a scenario file, unchecked. Raises IoError or InvalidInput."""
     try:
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
@@ -195,4 +200,4 @@ def _put(scenario: Scenario, recording: Recording | None) -> None:
     scenario.notes += [note for note in recording.notes if note not in scenario.notes]
 
 
-__all__ = ["CENTRAL_KALMAN", "Scenario", "read_scenario"]
+__all__ = ["CENTRAL_KALMAN", "Scenario", "read_document", "read_scenario"]

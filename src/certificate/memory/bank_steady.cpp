@@ -7,6 +7,7 @@
 #include "choices.hpp"
 #include "core/solvers.hpp"
 #include "garrison/certificate/kernels.hpp"
+#include "garrison/core/budget.hpp"
 #include "riccati.hpp"
 
 namespace garrison::certificate {
@@ -110,6 +111,7 @@ Vector bank_steady(const MatrixRef& A, const MatrixRef& Q, const std::vector<Ban
     for (const int id : ids)
       if (out[static_cast<std::size_t>(id)] == 0) rest.push_back(id);
     return detail::each_choice(std::span<const int>(rest), second, std::span(out), char{1}, [&] {
+      require_time("the bank's steady error");
       const auto H = settle(A, Q, sources, out);
       if (!H) return false;
       worst = worst.cwiseMax(width(A, *K, *H, out, z));

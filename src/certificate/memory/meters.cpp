@@ -4,17 +4,20 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "../require.hpp"
 #include "../top.hpp"
 #include "dense.hpp"
 #include "garrison/certificate/kernels.hpp"
+#include "garrison/core/budget.hpp"
 
 namespace garrison::certificate {
 namespace {
 
-constexpr double kNear = 1e-9;  // of 1: rounding of a leverage
+constexpr double kNear = 1e-9;       // of 1: rounding of a leverage
+constexpr std::int64_t kPoll = 256;  // steps of the search between two looks at the clock
 
 bool determines(const Matrix& H) {
   if (H.rows() < H.cols()) return false;
@@ -79,6 +82,8 @@ class Search {
  private:
   /// Row i of an eigenvector to 1 with the largest entry: sum over the set of |Lam_ij| >= 1.
   bool extend(std::size_t i, std::size_t from, double total, int need, bool& complete) {
+    if (++steps_ % kPoll == 0 && current_budget().over()) complete = false;
+    if (!complete) return false;
     if (need == 0) return judge(complete);
     const auto more = static_cast<std::size_t>(need);
     for (std::size_t q = from; q + more <= partners_[i].size(); ++q) {
@@ -109,6 +114,7 @@ class Search {
   const Matrix& H_;
   Matrix hat_, size_;
   double tries_;
+  std::int64_t steps_ = 0;
   std::vector<std::vector<int>> partners_;
   std::vector<std::vector<double>> sums_;
   std::vector<int> set_;

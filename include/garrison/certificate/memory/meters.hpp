@@ -33,7 +33,8 @@ struct SmallestAttack {
 };
 
 /// Exact search up to `most` >= 1 meters, by eigenvectors of the hat matrix; `tries`: sets that are looked at
-/// before it gives up with what is certain so far. H as for meters(); its rows must not be 0.
+/// before it gives up with what is certain so far, as it does when current_budget() is over. H as for
+/// meters(); its rows must not be 0.
 /// @throws InvalidInput
 GARRISON_EXPORT SmallestAttack smallest_undetectable(const MatrixRef& H, int most, double tries = 1e7);
 

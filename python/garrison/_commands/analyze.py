@@ -1,0 +1,81 @@
+"""`garrison analyze`: how many may lie, which sensors and links must not fail, what to add."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from garrison._commands.output import new_file, write_whole
+from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
+from garrison.answers import Analysis, analyze
+from garrison.answers.text import limit_rows, sensor_rows, sentences
+from garrison.scenario import read_scenario
+from garrison.words import refusal
+
+_MOST_ROWS = 60
+
+
+def add(commands: Commands) -> None:
+    """Declare the command."""
+    command = commands.add_parser(
+        "analyze",
+        help="tell how many sensors may lie, which must not fail, who can lie unseen and what to add; exit 1 if the "
+        "sensors do not show the whole state",
+        allow_abbrev=False,
+    )
+    command.add_argument("scenario", help="scenario file (TOML)")
+    command.add_argument("--seconds", type=float, default=30.0, help="time for all searches together (default 30)")
+    command.add_argument("-o", "--output", help="picture to write (.png, .svg, .pdf)")
+    command.add_argument("--force", action="store_true", help="replace an existing picture")
+    command.add_argument("--json", action="store_true", help="print JSON")
+    command.set_defaults(do=do)
+
+
+def do(args: argparse.Namespace) -> int:
+    """Run the command."""
+    target = new_file(args.output, args.force) if args.output else None
+    scenario = read_scenario(args.scenario)
+    found = analyze(
+        scenario.model,
+        scenario.network,
+        scenario.filters[0][1],
+        names=scenario.names,
+        title=scenario.title,
+        seconds=args.seconds,
+        progress=_tell if sys.stderr.isatty() else None,
+    )
+    if target is not None:
+        _write_picture(target, found)
+    if args.json:
+        print_json(found.report())
+    else:
+        _print(found, args.output)
+    return NO if found.over_time.most == 0 else OK
+
+
+def _tell(words: str, done: int, total: int) -> None:
+    line = "" if done >= total else f"{done + 1} of {total}: {words}"
+    print(f"\r\033[K{line[:100]}", end="", file=sys.stderr, flush=True)
+
+
+def _print(found: Analysis, output: str | None) -> None:
+    console = console_for()
+    for line in sentences(found):
+        console.print(line)
+    console.print()
+    print_table("guarantees", ["guarantee", "liars", "needs", "in the way of one more"], limit_rows(found), console)
+    console.print()
+    rows = sensor_rows(found)
+    head = ["sensor", "critical", "unchecked share", "could measure instead"]
+    print_table("sensors", head, rows[:_MOST_ROWS], console)
+    if len(rows) > _MOST_ROWS:
+        console.print(f"... and {len(rows) - _MOST_ROWS} more; see --json")
+    if output:
+        console.print(f"\nwritten to {output}")
+
+
+def _write_picture(target: Path, found: Analysis) -> None:
+    figure = found.plot()
+    kind = target.suffix.lower().removeprefix(".")
+    if kind not in figure.canvas.get_supported_filetypes():
+        raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
+    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))

@@ -1,0 +1,143 @@
+"""The most liars for which each guarantee holds."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison._core import saturation
+from garrison.answers.removals import Removal
+from garrison.answers.sensors import Sensors
+from garrison.checks import check
+from garrison.filters import make_filter
+
+Array = NDArray[np.float64]
+
+#: rounds per sample beyond which the saturation filter is not called feasible
+MOST_ROUNDS = 10_000
+#: why nothing is known
+LATE = "the time was up"
+#: our name -> name in the filter's check
+_NAMES = {"a": "||A||", "gamma": "gamma", "lambda0": "lambda_0"}
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A guarantee, with what it needs.
+
+    holds: for any so many liars, for certain. fails: for some so many it does not; None: not known. why: what stands in
+    the way of one more.
+    """
+
+    guarantee: str
+    holds: int
+    fails: int | None
+    needs: str
+    why: str
+
+    @property
+    def exact(self) -> bool:
+        """The largest number is known."""
+        return self.fails == self.holds + 1
+
+
+def from_removal(guarantee: str, needs: str, removal: Removal, per_liar: int, names: list[str], can_lie: int) -> Limit:
+    """A guarantee for s liars, of can_lie, that needs any per_liar * s sensors to be dispensable."""
+    if removal.most == 0:
+        return Limit(guarantee, 0, 0, needs, "not even all sensors together show the whole state")
+    holds = min(max(removal.spare, 0) // per_liar, can_lie)
+    if not removal.example:
+        return Limit(guarantee, can_lie, None, needs, "") if removal.exact else Limit(guarantee, 0, None, needs, LATE)
+    fails = -(-removal.most // per_liar)
+    who = listed([names[k] for k in removal.example])
+    why = f"without {who} part of the state is not seen"
+    return Limit(guarantee, holds, fails, needs, why)
+
+
+def listed(names: list[str], most: int = 8) -> str:
+    """Names for people."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
+
+
+@dataclass(frozen=True)
+class SaturationFacts:
+    """What the theorems of the saturation filter need, for s liars; rounds: the fewest that suffice, None:
+    none do."""
+
+    attacked: int
+    setting: saturation.Setting
+    norm_A: float
+    lambda0: float
+    rounds: int | None
+
+    @property
+    def holds(self) -> bool:
+        """Some threshold and number of rounds satisfies condition (9)."""
+        return self.rounds is not None
+
+
+def saturation_facts(sensors: Sensors, added: Array, attacked: int, gamma: float, seconds: float) -> SaturationFacts:
+    """Of the sensors and those `added` (k, n), each on an agent of its own, all rows scaled to length 1."""
+    n = sensors.model.states
+    silent = np.zeros((0, n))
+    C = [silent] * sensors.model.agents
+    if len(sensors.rows):
+        for agent, row in zip(sensors.agent, _unit(sensors.rows), strict=True):
+            C[agent] = row[None]
+    C += [row[None] for row in _unit(added)] if len(added) else []
+    # Any connected network of as many agents: what is asked of the check depends on plant and rows only.
+    params = {"threshold": 1.0, "rounds": 1, "attacked": attacked}
+    filter = make_filter("saturation", params)
+    of_plant = check(_core.Model(sensors.model.A, C), _core.Network.star(len(C)), filter, seconds=seconds)
+    a, lambda0 = of_plant[_NAMES["a"]], of_plant[_NAMES["lambda0"]]
+    setting = saturation.Setting(agents=len(C), a=a, lambda0=lambda0, contraction=0.0, attacked=attacked)
+    rounds = saturation.minimal_rounds(setting, gamma) if gamma < 1 else None
+    few = rounds if rounds and rounds <= MOST_ROUNDS else None
+    return SaturationFacts(attacked, setting, a, lambda0, few)
+
+
+def _unit(rows: Array) -> Array:
+    return np.asarray(saturation.normalise_rows(rows, np.zeros(len(rows)))["C"])
+
+
+def contraction(sensors: Sensors) -> float:
+    """gamma of one round on the sensors' network."""
+    net = sensors.network
+    if net.agents == 1:
+        return 0.0
+    if net.directed or not net.connected:
+        return 1.0
+    plain = _core.Model([[1.0]], [[[1.0]]] * net.agents)
+    found = check(plain, net, make_filter("saturation", {"threshold": 1.0, "rounds": 1, "attacked": 0}))
+    return found[_NAMES["gamma"]]
+
+
+def of_filter(model: _core.Model, network: _core.Network, filter: _core.Filter, budget: Any) -> Limit | None:
+    """The largest `attacked` with which the filter, otherwise as it is, meets all its required conditions."""
+    if "attacked" not in filter.params:
+        return None
+    needs = "all required conditions of `garrison check`, with the parameters given"
+    last, failed = -1, ""
+    for attacked in range(model.agents + 1):
+        if budget.over:
+            return Limit(_titled(filter), max(last, 0), None, needs, LATE)
+        try:
+            found = check(model, network, make_filter(filter.name, filter.params | {"attacked": attacked}))
+        except _core.InvalidInput as refused:
+            if attacked == 0 and filter.name.startswith("platoon"):
+                continue  # its b starts at 1
+            failed = str(refused)
+            break
+        if not found.holds:
+            failed = "; ".join(c["name"] for c in found.failed)
+            if attacked > 0 or not filter.name.startswith("platoon"):
+                break
+        last = attacked
+    return Limit(_titled(filter), max(last, 0), last + 1 if last >= 0 else 0, needs, f"not met: {failed}")
+
+
+def _titled(filter: _core.Filter) -> str:
+    return f"the filter {filter.name} as given keeps its theorem"

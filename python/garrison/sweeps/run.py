@@ -1,0 +1,228 @@
+"""gr.sweep: all points and trials, resumed where an earlier run ended."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from garrison import _core, arguments
+from garrison.scenario import read_document
+from garrison.scenario.overrides import digest, overridden
+from garrison.sweeps.grid import Point, points_of
+from garrison.sweeps.pool import outcomes
+from garrison.sweeps.tables import Row, point_rows, read_part, trial_rows, write_csv, write_parquet
+from garrison.sweeps.work import COLUMNS, Task, rows_of
+from garrison.words import count, hinted, refusal
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Progress = Callable[[int, int], None]
+
+#: what an output folder holds that says which sweep it is of
+MANIFEST = "sweep.json"
+#: seconds that a task should last, and the trials that lanes take at once
+_LASTS, _LANES = 5.0, 8
+
+
+@dataclass
+class Sweep:
+    """trials: one row (a dict) per point, filter, condition and trial; points: one per point, filter and condition.
+
+    keys: what was varied. refused, lost: points that were refused, trials that were lost. folder: with trials.csv,
+    points.csv (and .parquet where pyarrow is installed), sweep.json and the parts.
+    """
+
+    title: str
+    keys: list[str]
+    trials: list[Row] = field(repr=False)
+    points: list[Row] = field(repr=False)
+    refused: list[str]
+    lost: list[str]
+    folder: Path
+
+    def to_pandas(self) -> Any:
+        """trials.csv as a pandas.DataFrame (extra: pandas)."""
+        import pandas as pd
+
+        return pd.read_csv(self.folder / "trials.csv")
+
+    def plot(self) -> Figure:
+        """Errors over the values: bands for one key, maps for two (extra: plot)."""
+        from garrison.figures import sweep_figure
+
+        figure: Figure = sweep_figure(self)
+        return figure
+
+
+@hinted
+def sweep(
+    scenario: str | Path,
+    *,
+    set: Mapping[str, Iterable[Any]] | None = None,
+    points: Sequence[Point] | None = None,
+    trials: int = 1,
+    out: str | Path,
+    workers: int = 1,
+    client: Any = None,
+    block: int | None = None,
+    independent: bool = False,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Run the scenario's filters at all combinations of the values in `set`, and sum up every trial.
+
+    set: key of the scenario -> values, as {"filter.threshold": np.linspace(.5, 2, 8), "attack[0].value": [1, 5, 25]};
+    points: a list of such keys and values in place of all combinations. trials: of every point, >= 1. out: folder for
+    the tables; where it holds a part of the same sweep, that is kept and the rest is run. workers: processes on
+    this machine, each with one thread (a script that starts more than one must guard its main code by
+    `if __name__ == "__main__":`); client: a dask.distributed Client in their place, whose workers see the same files.
+    block: trials of a task, default: so many that one lasts a few seconds. independent: another seed at every
+    point; else all points have the same noise. progress(done, total) counts tasks.
+
+    trials.csv has the same bytes for any workers, client, block and number of restarts, but for its column `seconds`.
+    A point that is refused is a row with the reason; a task whose worker dies three times is a row "lost". Ctrl-C
+    keeps what is done. Raises InvalidInput when something does not fit or `out` holds another sweep.
+    """
+    path = Path(scenario).absolute()
+    document = read_document(path)
+    if points is None:
+        points = points_of(set or {})
+    elif set:
+        raise refusal("sweep", "both set and points", "one of them")
+    trials = arguments.whole("trials", trials, 1, 2**24)
+    workers = arguments.whole("workers", workers, 1, 4096)
+    if block is not None:
+        block = arguments.whole("block", block, 1)
+    hashes = [_hash(document, point, path) for point in points]
+    seeds = [_seed(document, h) if independent else None for h in hashes]
+    folder = arguments.path("out", out).absolute()
+    plan = {
+        "scenario": digest(document, path.parent),
+        "version": _core.__version__,
+        "points": list(points),
+        "trials": trials,
+        "independent": independent,
+    }
+    known = _claimed(folder, plan, path)
+    if block is None:
+        block = known or _fitting_block(path, points, hashes, trials)
+    _write_manifest(folder, plan, block, path)
+    jobs = [
+        Task(str(path), k, json.dumps(point), seeds[k], first, min(block, trials - first), str(folder), "")
+        for k, point in enumerate(points)
+        for first in range(0, trials, block)
+    ]
+    jobs = [_named(job, hashes[job.point]) for job in jobs]
+    lost = _run(jobs, workers, client, progress)
+    return _collected(path, document, list(points), jobs, lost, plan, folder)
+
+
+def _hash(document: dict[str, Any], point: Point, path: Path) -> str:
+    try:
+        return digest(overridden(document, point), path.parent)
+    except _core.InvalidInput as error:  # a key that leads nowhere is a mistake in the command, not in a point
+        raise _core.InvalidInput(f"set: {error}") from None
+
+
+def _seed(document: dict[str, Any], hashed: str) -> int:
+    own = document.get("run", {}).get("seed", 0)
+    return (int(own) ^ int(hashed, 16)) & (2**63 - 1)
+
+
+def _named(job: Task, hashed: str) -> Task:
+    seed = "" if job.seed is None else "-i"
+    return Task(**(vars(job) | {"name": f"{hashed}{seed}-{job.first}-{job.count}"}))
+
+
+def _claimed(folder: Path, plan: dict[str, Any], path: Path) -> int | None:
+    """Make the folder, or see that it holds the same sweep; its block where it does."""
+    manifest = folder / MANIFEST
+    if not folder.exists() or not any(folder.iterdir()):
+        (folder / "parts").mkdir(parents=True, exist_ok=True)
+        return None
+    try:
+        found = json.loads(manifest.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise refusal(
+            "out", f"{folder}, which holds something else", "a new folder, or one of the same sweep"
+        ) from None
+    plain = json.loads(json.dumps(plan))
+    for key, value in plain.items():
+        if found.get(key) != value:
+            what = f"{folder} with a sweep of another {key}"
+            raise refusal("out", what, "a new folder, or the same sweep", f"it was made from {found.get('path', path)}")
+    (folder / "parts").mkdir(exist_ok=True)
+    return int(found["block"])
+
+
+def _write_manifest(folder: Path, plan: dict[str, Any], block: int, path: Path) -> None:
+    temporary = folder / f"{MANIFEST}.tmp"
+    content = {"program": "garrison", "path": str(path)} | plan | {"block": block}
+    temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
+    temporary.replace(folder / MANIFEST)
+
+
+def _fitting_block(path: Path, points: Sequence[Point], hashes: list[str], trials: int) -> int:
+    """Trials that last a few seconds, by some timed trials of the first point that runs; a multiple of 8."""
+    return max(_LANES, round(_LASTS / timed(path, points, hashes) / _LANES) * _LANES) if trials > _LANES else trials
+
+
+def timed(path: Path, points: Sequence[Point], hashes: list[str]) -> float:
+    """Seconds of a trial with all filters, without design, at the first point that is not refused."""
+    for k, point in enumerate(points):
+        job = Task(str(path), k, json.dumps(point), None, 0, _LANES, "", f"{hashes[k]}-0-{_LANES}")
+        try:
+            rows_of(job)  # designs
+            start = time.perf_counter()
+            rows_of(job)
+        except _core.Error:
+            continue
+        return max((time.perf_counter() - start) / _LANES, 1e-6)
+    return 1.0
+
+
+def _run(jobs: list[Task], workers: int, client: Any, progress: Progress | None) -> dict[Task, str]:
+    todo = [job for job in jobs if not job.part.exists()]
+    done = len(jobs) - len(todo)
+    lost: dict[Task, str] = {}
+    if progress is not None:
+        progress(done, len(jobs))
+    for task, trouble in outcomes(todo, workers, client):
+        done += 1
+        if trouble is not None:
+            lost[task] = trouble
+        if progress is not None:
+            progress(done, len(jobs))
+    return lost
+
+
+def _collected(
+    path: Path,
+    document: dict[str, Any],
+    points: list[Point],
+    jobs: list[Task],
+    lost: dict[Task, str],
+    plan: dict[str, Any],
+    folder: Path,
+) -> Sweep:
+    marks = {"scenario_hash": plan["scenario"], "version": plan["version"]}
+    parts = [(job.point, read_part(job.part)) for job in jobs if job not in lost]
+    rows = trial_rows(points, parts, marks)
+    rows += [{"point": job.point} | points[job.point] | _lost_row(job, why) | marks for job, why in lost.items()]
+    sums = point_rows(points, rows)
+    write_csv(folder / "trials.csv", rows)
+    write_csv(folder / "points.csv", sums)
+    write_parquet(folder / "trials.parquet", rows)
+    write_parquet(folder / "points.parquet", sums)
+    refused = [f"point {row['point']}: {row['status']}" for row in rows if str(row["status"]).startswith("refused")]
+    keys = list(dict.fromkeys(key for point in points for key in point))
+    missing = [f"point {job.point}, {count(job.count, 'trial')}: {why}" for job, why in lost.items()]
+    return Sweep(str(document.get("title", path.stem)), keys, rows, sums, refused, missing, folder)
+
+
+def _lost_row(job: Task, why: str) -> Row:
+    return dict.fromkeys(COLUMNS, "") | {"trial": job.first, "status": f"lost: {count(job.count, 'trial')}, {why}"}
