@@ -32,6 +32,7 @@ from garrison._core import (
     structural,
     structure,
 )
+from garrison.bound_kind import BoundKind
 from garrison.checks import Check, check
 from garrison.drivers import central_kalman, replay, simulate
 from garrison.prepared import Prepared, prepare
@@ -61,6 +62,7 @@ _LATER = {
 __all__ = [
     "Agent",
     "Attack",
+    "BoundKind",
     "Calibration",
     "Check",
     "DesignInfeasible",

@@ -12,6 +12,7 @@
 #include "garrison/core/network.hpp"
 #include "garrison/engine/batch/averaging.hpp"
 #include "garrison/engine/batch/side_by_side.hpp"
+#include "garrison/engine/certified_network.hpp"
 #include "garrison/engine/mailroom.hpp"
 #include "garrison/engine/plan/consensus.hpp"
 #include "garrison/engine/runner.hpp"
@@ -34,7 +35,7 @@ class Engine final : public Runner {
 
  public:
   Engine(std::shared_ptr<const typename F::Gains> gains, const Model& model, const Network& network,
-         int threads)
+         int threads, std::unique_ptr<CertifiedNetwork> certified = nullptr)
       : gains_(std::move(gains)),
         model_(model),
         plan_(network.offsets(), network.lists(), model.states()),
@@ -42,6 +43,7 @@ class Engine final : public Runner {
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
         states_(static_cast<std::size_t>(model.agents())),
         at_once_(std::span<State>(states_), model.states()),
+        certified_(std::move(certified)),
         accused_(model.agents()) {
     position_.resize(states_.size());
     lost_.reserve(states_.size());
@@ -69,19 +71,13 @@ class Engine final : public Runner {
     variable_ = mail_.variable();
     samples_ = 0;
     overflows_ = resets_ = 0;
+    if (certified_) certified_->reset(first_sample<F>() - 1);
   }
 
   void step(std::int64_t t, const double* y) override {
-    if constexpr (Averages<F, n>)
-      if (mail_.perfect()) return step_at_once(t, y);
-    at_once_.release();
-    if constexpr (StepsTogether<F, n>)
-      if (mail_.perfect() && together_.agreed())
-        return together_.step(*gains_, local(0), t, measured(y), mail_.wiring(), workers_);
-    each([&, y = measured(y)](std::size_t k, Message* out) {
-      F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
-    });
-    rounds(t, all_usable());
+    if (certified_) certified_->begin(t, y);
+    filter(t, y);
+    if (certified_) certified_->finish(workers_);
   }
 
   void read(const Frame& f) const override {
@@ -92,9 +88,13 @@ class Engine final : public Runner {
       const auto i = static_cast<std::size_t>(places_[k].id);
       const Vec<n>& x = F::template estimate<n>(states_[k]);
       const Report r = F::template report<n>(local(k), *gains_, states_[k]);
+      const Bound bound = certificate::least(r.bound, certified_ ? certified_->of(places_[k].id) : nullptr,
+                                             {x.data(), static_cast<std::size_t>(x.size())});
       if (f.estimate != nullptr)
         std::copy_n(x.data(), x.size(), f.estimate + i * static_cast<std::size_t>(x.size()));
-      if (f.bound != nullptr) f.bound[i] = r.bound;
+      if (f.bound != nullptr) f.bound[i] = bound.value;
+      if (f.published != nullptr) f.published[i] = r.bound;
+      if (f.bound_kind != nullptr) f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
       if (f.statistic != nullptr) f.statistic[i] = r.statistic;
       if (f.threshold != nullptr) f.threshold[i] = r.threshold;
       if (f.verdict != nullptr) f.verdict[i] = static_cast<std::uint8_t>(r.verdict);
@@ -144,7 +144,8 @@ class Engine final : public Runner {
     return bits;
   }
   std::int64_t bytes_per_step() const override {
-    return variable_ && samples_ > 0 ? bytes_ / samples_ : bytes_;
+    return (variable_ && samples_ > 0 ? bytes_ / samples_ : bytes_) +
+           (certified_ ? certified_->bytes_per_step() : 0);
   }
 
  private:
@@ -168,6 +169,19 @@ class Engine final : public Runner {
     return [this, y](std::size_t k) { return y + first_output_[k]; };
   }
 
+  void filter(std::int64_t t, const double* y) {
+    if constexpr (Averages<F, n>)
+      if (mail_.perfect()) return step_at_once(t, y);
+    at_once_.release();
+    if constexpr (StepsTogether<F, n>)
+      if (mail_.perfect() && together_.agreed())
+        return together_.step(*gains_, local(0), t, measured(y), mail_.wiring(), workers_);
+    each([&, y = measured(y)](std::size_t k, Message* out) {
+      F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
+    });
+    rounds(t, all_usable());
+  }
+
   void step_at_once(std::int64_t t, const double* y) {
     const auto [plain, averaged] = at_once_.step(plan_, *gains_, locals(), t, measured(y), workers_);
     if (averaged) return;
@@ -185,6 +199,7 @@ class Engine final : public Runner {
       mail_.collect(t, round, plain, [&](std::size_t k, int sender, Message& m) {
         shape<F, n>(local(k), *gains_, sender, t, m);
       });
+      if (certified_) certified_->round(workers_, [this](int i, const auto& hear) { each_heard(i, hear); });
       if constexpr (StepsTogether<F, n>) {
         const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
         together_.fuse(*gains_, local(0), inbox, workers_);
@@ -211,6 +226,11 @@ class Engine final : public Runner {
       F::template rejoin<n>(local(k), *gains_, heard, t, states_[k]);
     }
     resets_ += static_cast<std::int64_t>(lost_.size());
+  }
+  template <class Hear>
+  void each_heard(int agent, const Hear& hear) const {
+    const auto inbox = mail_.inbox(position_[static_cast<std::size_t>(agent)]);
+    for (std::size_t j = 0; j < inbox.size(); ++j) hear(inbox.sender(j));
   }
   void count_bytes(int round) {
     if (!variable_) return;
@@ -243,6 +263,7 @@ class Engine final : public Runner {
   Aligned<State> states_;
   [[no_unique_address]] mutable typename detail::AtOnceOf<F, n>::type at_once_;
   [[no_unique_address]] typename detail::TogetherOf<F, n>::type together_;
+  std::unique_ptr<CertifiedNetwork> certified_;  // null: no certificate was asked for
   std::vector<Place> places_;
   Aligned<double> rows_;           // of all C_i
   std::vector<int> first_output_;  // of each agent in y
