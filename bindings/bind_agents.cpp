@@ -147,6 +147,7 @@ wire::FieldValue field_value(const wire::FieldInfo& info, const py::object& give
   try {
     switch (info.kind) {
       case FieldKind::numbers:
+      case FieldKind::sparse:
         return given.cast<std::vector<double>>();
       case FieldKind::optional:
         return given.cast<double>();
@@ -360,6 +361,9 @@ void bind_agent(py::module_& m) {
           "resets", [](const PyAgent& a) { return a->resets(); },
           "How often the estimate was of no use and was taken anew from the neighbours.")
       .def_property_readonly("bound", [](const PyAgent& a) { return a->report().bound; })
+      .def_property_readonly(
+          "bound_kind", [](const PyAgent& a) { return static_cast<int>(a->report().kind); },
+          "Value of garrison.BoundKind: where the bound comes from, or why there is none.")
       .def_property_readonly("statistic", [](const PyAgent& a) { return a->report().statistic; })
       .def_property_readonly("threshold", [](const PyAgent& a) { return a->report().threshold; })
       .def_property_readonly("verdict",
@@ -396,17 +400,47 @@ void bind_agent(py::module_& m) {
                       [](const py::bytes& b) { return agent_kept(from_python(b, "agent")); }));
 }
 
+constexpr const char* kSpreads[] = {"local", "flooded"};
+
+std::optional<certificate::Wanted> wanted_of(const std::string& name, double failure, int attacked) {
+  if (name == "none") return std::nullopt;
+  certificate::Wanted wanted;
+  wanted.failure = failure;
+  wanted.attacked = attacked;
+  if (name == "flooded")
+    wanted.spread = certificate::Spread::flooded;
+  else if (name != "local")
+    refuse_unknown("certificate", name, std::vector<std::string>{"none", "local", "flooded"});
+  return wanted;
+}
+
 }  // namespace
 
 void bind_agents(py::module_& m) {
   bind_message(m);
   bind_agent(m);
   py::class_<Prepared, std::shared_ptr<Prepared>>(m, "Design", "A filter designed for one model and network.")
-      .def(py::init([](const Model& model, const Network& network, const FilterHandle& filter) {
+      .def(py::init([](const Model& model, const Network& network, const FilterHandle& filter,
+                       const std::string& certificate, double failure, int attacked) {
+             const auto wanted = wanted_of(certificate, failure, attacked);
              const py::gil_scoped_release no_gil;
-             return std::const_pointer_cast<Prepared>(filter.filter->prepare(model, network));
+             auto prepared = filter.filter->prepare(model, network);
+             if (wanted) prepared = certified(*prepared, *wanted);
+             return std::const_pointer_cast<Prepared>(prepared);
            }),
-           py::arg("model"), py::arg("network"), py::arg("filter"))
+           py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("certificate") = "none",
+           py::arg("failure") = 1e-6, py::arg("attacked") = 0)
+      .def_property_readonly(
+          "certificate",
+          [](const Prepared& p) -> py::object {
+            const auto plan = p.certificate();
+            if (plan == nullptr) return py::none();
+            const auto& wanted = plan->wanted;
+            return py::dict(py::arg("certificate") = kSpreads[static_cast<std::size_t>(wanted.spread)],
+                            py::arg("failure") = wanted.failure, py::arg("attacked") = wanted.attacked);
+          },
+          "What its runs certify (certificate, failure, attacked); None = nothing but the family's own "
+          "bound.")
       .def_property_readonly("model", &Prepared::model)
       .def_property_readonly("network", &Prepared::network)
       .def_property_readonly("filter_name", [](const Prepared& p) { return p.filter().name(); })

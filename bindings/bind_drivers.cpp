@@ -114,6 +114,8 @@ py::dict from_record(Record&& r) {
   put("estimate", r.estimate, {K, T, N, n});
   put("error", r.error, {K, T, N});
   put("bound", r.bound, {K, T, N});
+  put("published", r.published, {K, T, N});
+  put("bound_kind", r.bound_kind, {K, T, N});
   put("statistic", r.statistic, {K, T, N});
   put("threshold", r.threshold, {K, T, N});
   put("verdict", r.verdict, {K, T, N});

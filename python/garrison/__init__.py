@@ -33,6 +33,7 @@ from garrison._core import (
     structural,
     structure,
 )
+from garrison.bound_kind import BoundKind
 from garrison.checks import Check, check
 from garrison.drivers import central_kalman, replay, simulate
 from garrison.prepared import Prepared, prepare
@@ -70,6 +71,7 @@ __all__ = [
     "Agent",
     "Analysis",
     "Attack",
+    "BoundKind",
     "Calibration",
     "Check",
     "DesignInfeasible",

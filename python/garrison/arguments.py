@@ -100,6 +100,24 @@ def attacks(value: Any) -> list[_core.Attack]:
     return found
 
 
+def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any) -> dict[str, Any]:
+    """What to certify: `attacked` is the filter's own where it has one."""
+    if not isinstance(name, str):
+        raise refusal("certificate", shown(name), '"none", "local" or "flooded"')
+    if name == "none":
+        return {}
+    if attacked is None:
+        attacked = filter.params.get("attacked")
+    if attacked is None:
+        advice = "say how many sources may be attacked at a time"
+        raise refusal("attacked", f"nothing, with certificate {name!r}", "a whole number >= 0", advice)
+    return {
+        "certificate": name,
+        "failure": number("failure", failure),
+        "attacked": whole("attacked", attacked, 0),
+    }
+
+
 def link(value: Mapping[str, Any] | None) -> dict[str, Any]:
     """Faults of the links."""
     if value is None:

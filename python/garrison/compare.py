@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.bound_kind import counts
 from garrison.drivers import KEEP, central_kalman, replay, require_room, simulate
 from garrison.families import family_of
 from garrison.record import Run
@@ -49,9 +50,15 @@ class Row:
         if run.bound is None:
             return {}
         bound = run.bound[:, 1:]
-        out: dict[str, Any] = {"share_with_bound": float(np.isfinite(bound).mean())}
+        known = np.isfinite(bound)
+        out: dict[str, Any] = {"share_with_bound": float(known.mean())}
+        since = run.bound[:, self.scenario.first_attack :]
+        if np.isfinite(since).any():
+            out["median_bound"] = float(np.median(since[np.isfinite(since)]))
+        if run.bound_kind is not None:
+            out["bound_kinds"] = counts(run.bound_kind[:, 1:])
         if self.error is not None:
-            known = np.isfinite(bound) & np.isfinite(self.error[:, 1:])
+            known &= np.isfinite(self.error[:, 1:])
             out["inside_bound"] = float((self.error[:, 1:] <= bound)[known].mean()) if known.any() else None
         return out
 
@@ -120,6 +127,8 @@ def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], Non
 def _options(scenario: Scenario, filter: _core.Filter, attacked: bool) -> dict[str, Any]:
     """Arguments that simulate and replay share."""
     options: dict[str, Any] = {k: scenario.run[k] for k in ("trials", "seed", "threads", "start") if k in scenario.run}
+    if not family_of(filter).own_plants:
+        options |= scenario.certificate
     sets = filter.detail_names  # sets over time, for the pictures
     options["keep"] = (*KEEP, "signals", "details") if sets else KEEP
     return options | {"attack": scenario.attacks if attacked else [], "link": scenario.link}

@@ -28,12 +28,28 @@ def require_room(model: _core.Model, filter: _core.Filter, keep: Iterable[str], 
     n, N = model.states, model.agents
     row = {
         "estimate": N * n,
-        "report": 5 * N,
+        "report": 6 * N,
         "measurements": model.outputs,
         "signals": len(filter.signal_names) * N,
     }
     doubles = trials * (steps + 1.0) * (n + sum(row.get(name, 0) for name in keep))
     require_memory("steps, trials", f"{count(steps, 'sample')} in {count(trials, 'trial')}", doubles)
+
+
+def _designed(
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    design: _core.Design | None,
+    certificate: dict[str, Any],
+) -> _core.Design:
+    if design is None:
+        return _core.Design(model, network, filter, **certificate)
+    if certificate:
+        raise refusal(
+            "certificate", f"{certificate['certificate']!r} with a design", "none", "garrison.prepare takes it"
+        )
+    return design
 
 
 def _run(
@@ -74,6 +90,9 @@ def simulate(
     threads: int = 0,
     progress: Progress | None = None,
     conditions: bool = True,
+    certificate: str = "none",
+    failure: float = 1e-6,
+    attacked: int | None = None,
     design: _core.Design | None = None,
 ) -> Run:
     """Simulate the plant, attack it, filter it.
@@ -90,8 +109,8 @@ def simulate(
     round, sender, receiver). keep: of "estimate", "report", "signals", "measurements",
     "details" (lists such as sets). threads: 0 = all cores it may use; the result does not depend on it.
     progress(done, total) is called at most once per percent. conditions: evaluate the filter's conditions first, and
-    put the required ones that are not met into the run's `warnings`. design: made before of these very three
-    (garrison.prepare does that).
+    put the required ones that are not met into the run's `warnings`. certificate, failure, attacked: what to certify at
+    run time (see garrison.prepare). design: made before of these very three (garrison.prepare does that).
     Deterministic: equal arguments give bit-identical results. Raises InvalidInput when something does not fit.
     """
     require_order("simulate", model, network, filter)
@@ -100,7 +119,7 @@ def simulate(
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     require_room(model, filter, kept, trials, steps)
     data = _core.simulate(
-        _core.Design(model, network, filter) if design is None else design,
+        _designed(model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
         steps=steps,
         x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
         start_error=arguments.number("start_error", start_error),
@@ -145,6 +164,9 @@ def replay(
     threads: int = 0,
     progress: Progress | None = None,
     conditions: bool = True,
+    certificate: str = "none",
+    failure: float = 1e-6,
+    attacked: int | None = None,
     design: _core.Design | None = None,
 ) -> Run:
     """Feed recorded measurements, (samples, outputs), nan or masked = missing; row r belongs to time r + 1.
@@ -161,7 +183,7 @@ def replay(
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     require_room(model, filter, kept, trials, y.shape[-2] if y.ndim >= 2 else 0)
     data = _core.replay(
-        _core.Design(model, network, filter) if design is None else design,
+        _designed(model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
         measurements=y,
         truth=None if truth is None else numbers("truth", truth),
         trials=trials,

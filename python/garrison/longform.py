@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from garrison.bound_kind import BoundKind
 from garrison.families import family_of
 from garrison.verdict import Verdict
 from garrison.words import refusal
@@ -42,9 +43,11 @@ def columns(run: Run) -> dict[str, Any]:
         truth = run.truth if family_of(run.filter).own_plants else run.truth[:, :, None]
         whole = np.broadcast_to(truth, (trials, times, agents, truth.shape[-1]))
         out |= {f"true_{name}": whole[..., k].ravel() for k, name in enumerate(states)}
-    for name in ("error", "bound", "statistic", "threshold"):
+    for name in ("error", "bound", "published", "statistic", "threshold"):
         if getattr(run, name) is not None:
             out[name] = getattr(run, name).ravel()
+    if run.bound_kind is not None:
+        out["bound_kind"] = np.array([k.word for k in BoundKind], dtype=object)[run.bound_kind.ravel()]
     if run.verdict is not None:
         words = np.array([v.word for v in Verdict], dtype=object)
         out["verdict"] = words[run.verdict.ravel()]

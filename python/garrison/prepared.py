@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from garrison import _core, drivers
+from garrison import _core, arguments, drivers
 from garrison.arguments import read, whole, write
 from garrison.checks import Check, check
 from garrison.record import Run
@@ -29,6 +29,12 @@ class Prepared:
     def network(self) -> _core.Network:
         """The network it was designed for."""
         return self._design.network
+
+    @property
+    def certificate(self) -> dict[str, Any] | None:
+        """What its runs and agents certify: certificate, failure, attacked; None = the filter's own bound alone."""
+        found = self._design.certificate
+        return None if found is None else dict(found)
 
     @property
     def filter(self) -> _core.Filter:
@@ -95,14 +101,31 @@ class Prepared:
         return Prepared.from_bytes, (self.to_bytes(),)
 
     def __repr__(self) -> str:
-        return f"garrison.prepare({self.model!r}, {self.network!r}, {self.filter!r})"
+        wanted = "".join(f", {k}={v!r}" for k, v in (self.certificate or {}).items())
+        return f"garrison.prepare({self.model!r}, {self.network!r}, {self.filter!r}{wanted})"
 
 
 @hinted
-def prepare(model: _core.Model, network: _core.Network, filter: _core.Filter) -> Prepared:
+def prepare(
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    *,
+    certificate: str = "none",
+    failure: float = 1e-6,
+    attacked: int | None = None,
+) -> Prepared:
     """Design the filter for this model and network, once.
+
+    certificate: what every agent proves of its error at run time, whatever filter it runs, whatever at most `attacked`
+    sources send (docs/certificates.md). "local": from its own measurement and its neighbours'; "flooded": from all
+    that the rounds of a sample bring, with larger messages; "none": the filter's own bound alone, no byte more.
+    failure: probability, per agent and sample, that such a bound is wrong, for the model's covariances; 0 = never, for
+    noise within its bounds. attacked: default the filter's parameter of that name. A source is an agent, or what the
+    model names as source. What is lost on the way makes a bound larger, never wrong.
 
     Raises InvalidInput when parameters, model and network do not fit together, DesignInfeasible when no gains exist.
     """
     require_order("prepare", model, network, filter)
-    return Prepared(_core.Design(model, network, filter))
+    wanted = arguments.certificate(filter, certificate, failure, attacked)
+    return Prepared(_core.Design(model, network, filter, **wanted))

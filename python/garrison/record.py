@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison.arguments import path as path_of
 from garrison.arguments import read, whole, write
+from garrison.bound_kind import BoundKind
 from garrison.families import family_of
 from garrison.objects import described, filter_of, model_of, network_of
 from garrison.verdict import Verdict
@@ -21,7 +22,18 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 #: arrays of a run, in the order of its text
-ARRAYS = ("truth", "measurements", "estimate", "error", "bound", "statistic", "threshold", "verdict")
+ARRAYS = (
+    "truth",
+    "measurements",
+    "estimate",
+    "error",
+    "bound",
+    "bound_kind",
+    "published",
+    "statistic",
+    "threshold",
+    "verdict",
+)
 
 #: what a run keeps besides arrays and objects
 _LISTS = ("accusations", "details", "counters", "warnings", "bytes_per_step")
@@ -33,9 +45,11 @@ class Run:
     """Arrays of a finished run, indexed [trial, time, agent, ...]; time 0 is the start, nan = does not exist.
 
     truth (trial, time, n), or (trial, time, agent, n) of agents with states of their own; estimate (trial, time, agent,
-    n); error, bound, statistic, threshold (trial, time, agent); verdict (trial, time, agent): values of
-    garrison.Verdict; measurements (trial, time 1.., output; from time 0 in families with a sample at the start),
-    as the filter received them; signals: name -> (trial, time, agent). An array that was not kept, or that cannot
+    n); error, bound, statistic, threshold (trial, time, agent); bound_kind (trial, time, agent): values of
+    garrison.BoundKind, which say where a bound comes from, or why it is inf or nan; published: with a certificate, the
+    bound of the filter's family alone; verdict (trial, time, agent): values of garrison.Verdict; measurements (trial,
+    time 1.., output; from time 0 in families with a sample at the start), as the filter received them; signals: name
+    -> (trial, time, agent). An array that was not kept, or that cannot
     exist (errors without truth), is None. Runs compare with ==, copy and pickle;
     `save` and `Run.load` keep everything.
     """
@@ -49,6 +63,8 @@ class Run:
         self.estimate: Array | None = data.get("estimate")
         self.error: Array | None = data.get("error")
         self.bound: Array | None = data.get("bound")
+        self.bound_kind: NDArray[np.uint8] | None = data.get("bound_kind")
+        self.published: Array | None = data.get("published")
         self.statistic: Array | None = data.get("statistic")
         self.threshold: Array | None = data.get("threshold")
         self.verdict: NDArray[np.uint8] | None = data.get("verdict")
@@ -82,6 +98,14 @@ class Run:
             raise refusal("limited", "a run without verdicts", 'keep to contain "report"')
         suspected = self.verdict[self._trial(trial), whole("start", start, 0) :] == Verdict.SUSPECTED
         return np.asarray(suspected.mean(axis=0), dtype=float)
+
+    def why_no_bound(self, agent: int, time: int, trial: int = 0) -> str:
+        """Why an agent has no bound at a time, in a sentence; empty where it has one."""
+        if self.bound_kind is None:
+            raise refusal("why_no_bound", "a run without bounds", 'keep to contain "report"')
+        _, times, agents = self.shape
+        i, t = whole("agent", agent, 0, agents - 1), whole("time", time, 0, times - 1)
+        return BoundKind(int(self.bound_kind[self._trial(trial), t, i])).why
 
     def first_accused(self, trial: int = 0) -> dict[int, int]:
         """Agent -> first time at which some agent took it for attacked."""

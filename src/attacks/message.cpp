@@ -149,6 +149,7 @@ class Falsify final : public MessageAttack {
     switch (field->kind) {
       case FieldKind::numbers:
       case FieldKind::optional:
+      case FieldKind::sparse:
         std::fill_n(static_cast<double*>(field->data), field->size, value_);
         break;
       case FieldKind::flag:

@@ -8,11 +8,12 @@
 
 namespace garrison::detail {
 
-Recorder::Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known,
-                   const RunOptions& options)
+Recorder::Recorder(const Prepared& prepared, int steps, bool truth_known, const RunOptions& options)
     : keep_(options.keep),
       vouch_(options.message_attacks.empty()),
-      outputs_(static_cast<std::size_t>(model.total_outputs())) {
+      outputs_(static_cast<std::size_t>(prepared.model().total_outputs())) {
+  const Model& model = prepared.model();
+  const AnyFilter& filter = prepared.filter();
   Record& r = record_;
   r.trials = options.trials;
   r.steps = steps;
@@ -36,6 +37,8 @@ Recorder::Recorder(const Model& model, const AnyFilter& filter, int steps, bool 
     estimates_.assign(trials, std::vector<double>(N * n));
   if (keep_.report) {
     r.bound.resize(rows * N);
+    r.bound_kind.resize(rows * N);
+    if (prepared.certificate() != nullptr) r.published.resize(rows * N);
     r.statistic.resize(rows * N);
     r.threshold.resize(rows * N);
     r.verdict.resize(rows * N);
@@ -100,13 +103,19 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
   frame.estimate = estimate(trial, t);
   if (keep_.report) {
     frame.bound = record_.bound.data() + at * N;
+    frame.bound_kind = record_.bound_kind.data() + at * N;
+    if (!record_.published.empty()) frame.published = record_.published.data() + at * N;
     frame.statistic = record_.statistic.data() + at * N;
     frame.threshold = record_.threshold.data() + at * N;
     frame.verdict = record_.verdict.data() + at * N;
   }
   if (keep_.signals) frame.signals = record_.signals.data() + at * N * record_.signal_names.size();
   runner.read(frame);
-  if (!vouch_ && frame.bound != nullptr) std::fill_n(frame.bound, N, kNaN);
+  if (!vouch_ && frame.bound != nullptr) {
+    std::fill_n(frame.bound, N, kNaN);
+    if (frame.published != nullptr) std::fill_n(frame.published, N, kNaN);
+    std::fill_n(frame.bound_kind, N, static_cast<std::uint8_t>(CertificateKind::liars));
+  }
   if (truth != nullptr) errors(at, frame.estimate, truth);
   if (keep_.report) accusations(trial, t, runner);
   if (keep_.details) details(trial, t, runner);

@@ -14,8 +14,7 @@ namespace garrison::detail {
 /// Trials write to disjoint parts of the arrays, so threads need no lock except for the counters.
 class Recorder {
  public:
-  Recorder(const Model& model, const AnyFilter& filter, int steps, bool truth_known,
-           const RunOptions& options);
+  Recorder(const Prepared& prepared, int steps, bool truth_known, const RunOptions& options);
 
   const Record& record() const { return record_; }
   /// Everything asked for at time t of a trial; y is what the filter received (not read at t = 0).

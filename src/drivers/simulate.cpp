@@ -172,7 +172,7 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
   for (const auto& attack : options.message_attacks) prepared.require(*attack);
   const Link rehearsal(network, options.link, options.message_attacks, options.seed, 0);
   prepared.check_start(starts(model, options.start));
-  detail::Recorder recorder(model, filter, steps, truth_known, options);
+  detail::Recorder recorder(prepared, steps, truth_known, options);
   Progress progress(options, static_cast<std::int64_t>(steps) * options.trials);
   const int threads = thread_count(options.threads);
   std::mutex mutex;

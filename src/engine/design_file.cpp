@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "garrison/certificate/online/certifier.hpp"
+#include "garrison/engine/agent.hpp"
 #include "garrison/wire/design_head.hpp"
 
 namespace garrison {
@@ -110,12 +112,14 @@ struct Design {
   ModelData model;
   NetworkData network;
   std::vector<std::uint8_t> gains;
+  std::vector<std::uint8_t> certificate;  // certificate::Plan; empty = none
 
   template <class V>
   void visit(V& v) {
     v("model", model);
     v("network", network);
     v("gains", gains);
+    v("certificate", certificate);
   }
 };
 
@@ -175,12 +179,21 @@ void require_end(const wire::Reader& reader) {
   if (reader.end() != Refusal::none) refuse_file("one that ends too early or too late");
 }
 
+certificate::Plan read_plan(std::span<const std::uint8_t> octets, int agents) {
+  certificate::Plan plan;
+  if (wire::from_bytes(std::as_bytes(octets), agents, plan) != Refusal::none ||
+      !certificate::consistent(plan) || plan.agents != agents)
+    refuse_file("a certificate that does not fit the network");
+  return plan;
+}
+
 }  // namespace
 
 std::vector<std::byte> write_design(const Prepared& prepared) {
-  return sealed(
-      head_of(prepared.filter(), prepared.model()),
-      Design{data_of(prepared.model()), data_of(prepared.network()), octets(prepared.gains_bytes())});
+  const auto plan = prepared.certificate();
+  return sealed(head_of(prepared.filter(), prepared.model()),
+                Design{data_of(prepared.model()), data_of(prepared.network()), octets(prepared.gains_bytes()),
+                       plan == nullptr ? std::vector<std::uint8_t>{} : octets(wire::to_bytes(*plan))});
 }
 
 std::shared_ptr<const Prepared> read_design(std::span<const std::byte> file) {
@@ -197,7 +210,35 @@ std::shared_ptr<const Prepared> read_design(std::span<const std::byte> file) {
   const Model model(design.model.A, design.model.C, design.model.noise, design.model.exposed,
                     design.model.labels);
   const Network network(head.agents, edges, design.network.directed, design.network.names);
-  return make_filter(head.filter, to_map(head.params))->restore(model, network, bytes_of(design.gains));
+  auto prepared =
+      make_filter(head.filter, to_map(head.params))->restore(model, network, bytes_of(design.gains));
+  if (design.certificate.empty()) return prepared;
+  return prepared->with(
+      std::make_shared<const certificate::Plan>(read_plan(design.certificate, model.agents())));
+}
+
+std::shared_ptr<const Prepared> certified(const Prepared& prepared, const certificate::Wanted& wanted) {
+  if (prepared.filter().own_states())
+    refuse("certificate", "one for " + prepared.filter().name(), "none",
+           "its agents have a state each, which the others do not measure; it reports bounds of its own");
+  return prepared.with(std::make_shared<const certificate::Plan>(
+      certificate::make_plan(wanted, prepared.model(), prepared.network())));
+}
+
+std::vector<std::uint8_t> certificate_part(const certificate::Plan* plan, const AgentPart& who) {
+  if (plan == nullptr) return {};
+  return octets(wire::to_bytes(certificate::part_of(*plan, who.id, who.neighbours)));
+}
+
+std::unique_ptr<certificate::Certifier> certifier_of(std::span<const std::uint8_t> bytes,
+                                                     const AgentPart& who, int rounds) {
+  if (bytes.empty()) return nullptr;
+  auto plan = std::make_shared<const certificate::Plan>(read_plan(bytes, who.agents));
+  bool whole = plan->place(who.id) >= 0 && plan->states() == who.A.rows() &&
+               plan->outputs(who.id) == who.C_transposed.cols();
+  for (const int j : who.neighbours) whole = whole && plan->place(j) >= 0;
+  if (!whole) refuse_file("a certificate of another agent");
+  return certificate::make_certifier(std::move(plan), who.id, who.neighbours, rounds);
 }
 
 std::vector<std::byte> write_part(const Prepared& prepared, int id) {
@@ -227,9 +268,8 @@ DesignSummary summary_of(std::span<const std::byte> file) {
   return s;
 }
 
-std::uint64_t fingerprint_of(const AnyFilter& filter, const Model& model, const Network& network,
-                             std::span<const std::byte> gains) {
-  const auto file = sealed(head_of(filter, model), Design{data_of(model), data_of(network), octets(gains)});
+std::uint64_t fingerprint_of(const Prepared& prepared) {
+  const auto file = write_design(prepared);
   return wire::load<std::uint64_t>(file.data() + file.size() - sizeof(wire::Digest));
 }
 

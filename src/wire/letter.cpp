@@ -21,7 +21,8 @@ class AnyFields {
   explicit AnyFields(const Letter& letter) : letter_(letter) {
     for (const FieldInfo& info : letter.fields) {
       Slot slot;
-      if (info.kind == FieldKind::numbers) slot.numbers.resize(static_cast<std::size_t>(info.size));
+      if (info.kind == FieldKind::numbers || info.kind == FieldKind::sparse)
+        slot.numbers.resize(static_cast<std::size_t>(info.size));
       if (info.kind == FieldKind::set) slot.set.resize(info.size);
       if (info.kind == FieldKind::labels) slot.labels = LabelSet(info.size);
       slots_.push_back(std::move(slot));
@@ -36,6 +37,9 @@ class AnyFields {
       switch (info.kind) {
         case FieldKind::numbers:
           v.numbers(info.name, std::span<double>(slot.numbers));
+          break;
+        case FieldKind::sparse:
+          v.sparse(info.name, std::span<double>(slot.numbers));
           break;
         case FieldKind::optional:
           v.optional(info.name, slot.number);
@@ -60,6 +64,7 @@ class AnyFields {
     const Slot& slot = slots_[k];
     switch (letter_.fields[k].kind) {
       case FieldKind::numbers:
+      case FieldKind::sparse:
         return slot.numbers;
       case FieldKind::optional:
         return slot.number;
@@ -86,7 +91,8 @@ class AnyFields {
       refuse("message field " + info.name, "another value", expected);
     };
     switch (info.kind) {
-      case FieldKind::numbers: {
+      case FieldKind::numbers:
+      case FieldKind::sparse: {
         const auto* numbers = std::get_if<std::vector<double>>(&value);
         if (numbers == nullptr || numbers->size() != slot.numbers.size())
           wrong(std::to_string(slot.numbers.size()) + " numbers");

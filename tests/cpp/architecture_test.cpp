@@ -23,8 +23,8 @@ const std::map<std::string, std::set<std::string>> allowed{
     {"certificate", {"certificate", "analysis", "core", "kernel"}},
     {"attacks", {"attacks", "core", "kernel"}},
     {"filters", {"filters", "certificate", "analysis", "core", "kernel"}},
-    {"engine", {"engine", "attacks", "wire", "core", "kernel"}},
-    {"drivers", {"drivers", "engine", "attacks", "wire", "core", "kernel"}},
+    {"engine", {"engine", "attacks", "certificate", "wire", "core", "kernel"}},
+    {"drivers", {"drivers", "engine", "attacks", "certificate", "wire", "core", "kernel"}},
 };
 
 /// The folder that a path below include/garrison or src begins with; the version belongs to the core.

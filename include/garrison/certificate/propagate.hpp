@@ -30,6 +30,9 @@ class GARRISON_EXPORT Propagation {
 
   int states() const { return static_cast<int>(power_.front().rows()); }
   int steps() const { return static_cast<int>(power_.size()) - 1; }
+  /// For balls alone, 0 <= age <= steps(): ||A^age||, and what the noise adds to a radius.
+  double norm(int age) const { return norm_[static_cast<std::size_t>(age)]; }
+  double added(int age) const { return added_[static_cast<std::size_t>(age)]; }
   /// `now` becomes the region of today for `then`, which held `age` steps ago; another object than `then`. It
   /// has a box, the least of what ball, box and ellipsoid of `then` give, and an ellipsoid if `then` has one.
   /// Known inputs move the centre: add theirs. A region without an answer stays as it is. Expects 0 <= age <=

@@ -3,6 +3,7 @@
 //
 //   v.numbers("estimate", x)        doubles, finite and below kHuge
 //   v.optional("bound", bound)      a double that may be absent (NaN)
+//   v.sparse("heard", y)            doubles, each of which may be absent (NaN)
 //   v.flag("intact", intact)        bool
 //   v.count("rest", rest, most)     a whole number in 0..most <= 65535
 //   v.set("proved", proved)         AgentSet
@@ -26,14 +27,15 @@
 
 namespace garrison {
 
-enum class FieldKind : std::uint8_t { numbers, optional, flag, count, set, labels };
+enum class FieldKind : std::uint8_t { numbers, optional, flag, count, set, labels, sparse };
+inline constexpr int kFieldKinds = 7;
 
 /// One field of a message in memory; what `data` points to follows from `kind`.
 struct FieldRef {
   std::string_view name;
   FieldKind kind;
   void* data;
-  int size;  ///< of numbers: how many; of a count: the largest; else 1
+  int size;  ///< of numbers and sparse: how many; of a count: the largest; else 1
 };
 
 /// What visitors of messages make of vectors that know their size.
@@ -43,6 +45,12 @@ struct NumbersOf {
     requires requires(Numbers& v) { v.data(); }
   void numbers(std::string_view name, Numbers& values) {
     static_cast<Derived*>(this)->numbers(
+        name, std::span<double>(values.data(), static_cast<std::size_t>(values.size())));
+  }
+  template <class Numbers>
+    requires requires(Numbers& v) { v.data(); }
+  void sparse(std::string_view name, Numbers& values) {
+    static_cast<Derived*>(this)->sparse(
         name, std::span<double>(values.data(), static_cast<std::size_t>(values.size())));
   }
 };
@@ -72,8 +80,12 @@ class FieldList : public NumbersOf<FieldList> {
   }
 
   using NumbersOf<FieldList>::numbers;
+  using NumbersOf<FieldList>::sparse;
   void numbers(std::string_view name, std::span<double> values) {
     add({name, FieldKind::numbers, values.data(), static_cast<int>(values.size())});
+  }
+  void sparse(std::string_view name, std::span<double> values) {
+    add({name, FieldKind::sparse, values.data(), static_cast<int>(values.size())});
   }
   void optional(std::string_view name, double& value) { add({name, FieldKind::optional, &value, 1}); }
   void flag(std::string_view name, bool& value) { add({name, FieldKind::flag, &value, 1}); }
@@ -91,8 +103,12 @@ namespace detail {
 struct Bounded : NumbersOf<Bounded> {
   bool all = true;
   using NumbersOf<Bounded>::numbers;
+  using NumbersOf<Bounded>::sparse;
   void numbers(std::string_view, std::span<double> values) {
     for (const double v : values) all &= std::abs(v) < kHuge;
+  }
+  void sparse(std::string_view, std::span<double> values) {
+    for (const double v : values) all &= std::isnan(v) || std::abs(v) < kHuge;
   }
   void optional(std::string_view, double v) { all &= std::isnan(v) || std::abs(v) < kHuge; }
   void flag(std::string_view, bool) {}

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "garrison/core/agent_set.hpp"
+#include "garrison/core/certificate_kind.hpp"
 #include "garrison/core/fields.hpp"
 #include "garrison/core/inbox.hpp"
 #include "garrison/core/types.hpp"
@@ -48,9 +49,10 @@ struct VerdictLog {
 
 /// Numbers that every family reports of one agent after a step; NaN = does not exist.
 struct Report {
-  double bound = kNaN;      ///< certified: ||estimate - state|| <= bound, under the family's assumptions
-  double statistic = kNaN;  ///< what is tested, e.g. |innovation|
-  double threshold = kNaN;  ///< what it is tested against
+  double bound = kNaN;  ///< certified: ||estimate - state|| <= bound, under the family's assumptions
+  CertificateKind kind = CertificateKind::none;  ///< of `bound`; drivers fill it in
+  double statistic = kNaN;                       ///< what is tested, e.g. |innovation|
+  double threshold = kNaN;                       ///< what it is tested against
   Verdict verdict = Verdict::cleared;
 };
 

@@ -18,11 +18,11 @@ struct GARRISON_EXPORT Noise {
   /// ||w(t)|| <= process_bound for all t; same unit as the state, >= 0; NaN = not known.
   double process_bound = kNaN;
   /// |v_i(t)| <= measurement_bound[i] for every output of agent i; length N; empty = not known.
-  Vector measurement_bound;
+  Vector measurement_bound = {};
   /// Covariance of w, n x n, symmetric positive semidefinite; empty = not known.
-  Matrix process_covariance;
+  Matrix process_covariance = {};
   /// Covariance of v_i, m_i x m_i, one per agent; empty = not known.
-  std::vector<Matrix> measurement_covariance;
+  std::vector<Matrix> measurement_covariance = {};
   /// What each agent takes for the covariance of w where they differ, n x n, one per agent; empty = all take
   /// process_covariance. Filters weigh with it; the simulated noise does not depend on it.
   std::vector<Matrix> agent_process_covariance = {};

@@ -27,7 +27,9 @@ struct GARRISON_EXPORT Record {
   Bulk<double> measurements;  ///< [trial][time first_sample..steps][measurement], as the filter received them
   Bulk<double> estimate;      ///< [trial][time][agent][state]
   Bulk<double> error;         ///< ||estimate - truth||; empty when the truth is not known
-  Bulk<double> bound;         ///< certified bound on the error; NaN when agents lie in messages
+  Bulk<double> bound;         ///< certified bound on the error; NaN or infinite as its kind says
+  Bulk<double> published;     ///< the family's own bound alone; empty without a certificate
+  Bulk<std::uint8_t> bound_kind;  ///< values of CertificateKind
   Bulk<double> statistic;
   Bulk<double> threshold;
   Bulk<std::uint8_t> verdict;  ///< values of Verdict

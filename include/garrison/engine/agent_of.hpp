@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "garrison/certificate/online/certifier.hpp"
 #include "garrison/engine/agent.hpp"
 #include "garrison/wire/archive.hpp"
 #include "garrison/wire/blake2b.hpp"
@@ -23,7 +24,8 @@ class AgentOf final : public Agent {
   using Message = typename F::template Message<n>;
 
  public:
-  AgentOf(std::shared_ptr<const Gains> gains, AgentPart part)
+  AgentOf(std::shared_ptr<const Gains> gains, AgentPart part,
+          std::unique_ptr<certificate::Certifier> certifier = nullptr)
       : gains_(std::move(gains)),
         part_(std::move(part)),
         local_{part_.id,
@@ -33,7 +35,8 @@ class AgentOf final : public Agent {
                static_cast<int>(part_.neighbours.size()),
                part_.A.data(),
                part_.C_transposed.data()},
-        rounds_(F::rounds(*gains_)) {
+        rounds_(F::rounds(*gains_)),
+        certifier_(std::move(certifier)) {
     const std::size_t places = 2 * static_cast<std::size_t>(rounds_) * part_.neighbours.size();
     arrived_.assign(places, kNever);
     slots_.reserve(part_.neighbours.size());
@@ -41,14 +44,23 @@ class AgentOf final : public Agent {
     silence_.assign(static_cast<std::size_t>(local_.outputs), kNaN);
     set_state(Vector::Zero(local_.states), start());
     mailbox_.assign(places, outgoing_);
+    evidence_.resize(certifier_ ? places : 0);
+    for (std::size_t k = 0; k < evidence_.size(); ++k)
+      certifier_->shape_evidence(part_.neighbours[k % part_.neighbours.size()], evidence_[k]);
     Message any = outgoing_;
     most_bytes_ = 0;
-    const auto look_at = [&](int sender) {
+    const auto look_at = [&](int sender, certificate::Evidence& said) {
       shape<F, n>(local_, *gains_, sender, first_sample<F>(), any);
-      most_bytes_ = std::max(most_bytes_, wire::most_bytes(any, local_.agents));
+      if (certifier_) certifier_->shape_evidence(sender, said);
+      most_bytes_ = std::max(most_bytes_, with_evidence(any, said, [&](const auto& body) {
+                               return wire::most_bytes(body, local_.agents);
+                             }));
     };
-    look_at(local_.id);
-    for (const int j : part_.neighbours) look_at(j);
+    look_at(local_.id, said_);
+    for (const int j : part_.neighbours) {
+      certificate::Evidence any_evidence;
+      look_at(j, any_evidence);
+    }
     snapshot_bytes_ = kHead + written({}) + 8;
   }
   AgentOf(const AgentOf&) = delete;
@@ -96,7 +108,7 @@ class AgentOf final : public Agent {
     const std::size_t at = place(t, envelope.round, neighbour);
     if (arrived_[at] == t) return Refusal::duplicate;
     shape<F, n>(local_, *gains_, envelope.sender, t, mailbox_[at]);
-    const Refusal refusal = wire::decode(body, local_.agents, mailbox_[at]);
+    const Refusal refusal = decode(body, at);
     if (refusal == Refusal::none) arrived_[at] = t;
     return refusal;
   }
@@ -121,12 +133,17 @@ class AgentOf final : public Agent {
     t_ = t;
     round_ = 0;
     listening_ = true;
+    if (certifier_) certifier_->begin(t, silence_.data());
     return Refusal::none;
   }
   Refusal join() noexcept override {
     if (!listening_) return Refusal::order;
     const Inbox<Message> heard = inbox();
     F::template rejoin<n>(local_, *gains_, heard, t_, state_);
+    if (certifier_) {
+      hear_evidence(heard);
+      certifier_->end_sample();
+    }
     uncover();
     round_ = rounds_;
     listening_ = false;
@@ -135,7 +152,15 @@ class AgentOf final : public Agent {
   }
   void uncover() noexcept override { garrison::uncover<F, n>(*gains_, state_); }
 
-  Report report() const noexcept override { return F::template report<n>(local_, *gains_, state_); }
+  Report report() const noexcept override {
+    Report found = F::template report<n>(local_, *gains_, state_);
+    const Vec<n>& x = F::template estimate<n>(state_);
+    const Bound bound =
+        certificate::least(found.bound, certifier_.get(), {x.data(), static_cast<std::size_t>(x.size())});
+    found.bound = bound.value;
+    found.kind = bound.kind;
+    return found;
+  }
   void estimate(std::span<double> out) const noexcept override {
     const Vec<n>& x = F::template estimate<n>(state_);
     std::copy_n(x.data(), std::min(out.size(), static_cast<std::size_t>(x.size())), out.data());
@@ -187,11 +212,14 @@ class AgentOf final : public Agent {
     if (wire::load<std::uint64_t>(at + end) != wire::checksum(snapshot.first(end))) return Refusal::damaged;
     wire::Reader reader(snapshot.subspan(kHead, end - kHead), local_.agents, false);
     reader("", state_);
+    if (certifier_) reader("certificate", certifier_->memory());
     const auto t = static_cast<std::int64_t>(wire::load<std::uint64_t>(at + 16));
-    if (reader.end() != Refusal::none || t < start() || t > kLatest) {
+    const bool certified = !certifier_ || (certifier_->usable() && certifier_->memory().t == t);
+    if (reader.end() != Refusal::none || t < start() || t > kLatest || !certified) {
       // Somebody forged a checksum: nothing of it may stay.
       Vec<n> zero = Vec<n>::Zero(local_.states);
       F::template init<n>(local_, *gains_, zero, state_, outgoing_);
+      if (certifier_) certifier_->reset(t_);
       uncover();
       return Refusal::damaged;
     }
@@ -205,13 +233,20 @@ class AgentOf final : public Agent {
     Message any = outgoing_;
     shape<F, n>(local_, *gains_, sender, t, any);
     std::vector<wire::FieldInfo> all;
-    const FieldList list(any);
-    for (const FieldRef& field : list.all()) {
-      int size = field.size;
-      if (field.kind == FieldKind::set)
-        size = static_cast<AgentSet*>(field.data)->empty() ? 0 : local_.agents;
-      if (field.kind == FieldKind::labels) size = static_cast<LabelSet*>(field.data)->capacity();
-      all.push_back({std::string(field.name), field.kind, size});
+    const auto list = [&](const FieldList& of) {
+      for (const FieldRef& field : of.all()) {
+        int size = field.size;
+        if (field.kind == FieldKind::set)
+          size = static_cast<AgentSet*>(field.data)->empty() ? 0 : local_.agents;
+        if (field.kind == FieldKind::labels) size = static_cast<LabelSet*>(field.data)->capacity();
+        all.push_back({std::string(field.name), field.kind, size});
+      }
+    };
+    list(FieldList(any));
+    certificate::Evidence evidence;
+    if (certifier_) {
+      certifier_->shape_evidence(sender, evidence);
+      list(FieldList(evidence));
     }
     return all;
   }
@@ -231,6 +266,7 @@ class AgentOf final : public Agent {
     round_ = rounds_;
     listening_ = lost_ = false;
     resets_ = 0;
+    if (certifier_) certifier_->reset(t);
     std::fill(arrived_.begin(), arrived_.end(), kNever);
   }
 
@@ -238,6 +274,7 @@ class AgentOf final : public Agent {
     t_ = t;
     round_ = 0;
     F::template sense<n>(local_, *gains_, state_, y, t, outgoing_);
+    if (certifier_) certifier_->begin(t, y);
     lost_ = fresh_ || !usable<n>(F::template estimate<n>(state_));
     if (rounds_ == 0 && lost_) rejoin({nullptr, {}, nullptr, 0});
   }
@@ -250,6 +287,10 @@ class AgentOf final : public Agent {
   }
   void fuse_round(const Inbox<Message>& inbox) noexcept {
     F::template fuse<n>(local_, *gains_, state_, inbox, round_, outgoing_);
+    if (certifier_) {
+      hear_evidence(inbox);
+      certifier_->end_round(round_);
+    }
     if (++round_ == rounds_ && lost_) rejoin(inbox);
   }
   void rejoin(const Inbox<Message>& inbox) noexcept {
@@ -268,9 +309,37 @@ class AgentOf final : public Agent {
     }
     return {mailbox_.data(), slots_, senders_.data(), local_.degree};
   }
-  Sent send(std::span<std::byte> out) const noexcept {
+  Sent send(std::span<std::byte> out) noexcept {
     if (fresh_ || !bounded(outgoing_)) return {};
-    return {Refusal::none, wire::encode(outgoing_, local_.agents, out.data())};
+    if (certifier_ && round_ < rounds_) certifier_->say(round_, said_);
+    return {Refusal::none, with_evidence(outgoing_, said_, [&](const auto& body) {
+              return wire::encode(body, local_.agents, out.data());
+            })};
+  }
+
+  /// A message as it travels: behind the family's fields those of the certificate, if there is one.
+  struct Both {
+    Message& message;
+    certificate::Evidence& evidence;
+    template <class V>
+    void visit(V& v) {
+      message.visit(v);
+      evidence.visit(v);
+    }
+  };
+  template <class Use>
+  std::size_t with_evidence(Message& message, certificate::Evidence& evidence,
+                            const Use& use) const noexcept {
+    return certifier_ ? use(Both{message, evidence}) : use(message);
+  }
+  Refusal decode(std::span<const std::byte> body, std::size_t place) noexcept {
+    if (!certifier_) return wire::decode(body, local_.agents, mailbox_[place]);
+    Both both{mailbox_[place], evidence_[place]};
+    return wire::decode(body, local_.agents, both);
+  }
+  void hear_evidence(const Inbox<Message>& inbox) noexcept {
+    for (std::size_t k = 0; k < inbox.size(); ++k)
+      certifier_->hear(round_, inbox.sender(k), evidence_[slots_[k]]);
   }
 
   /// Place of an agent among the neighbours; their number when it is none of them.
@@ -292,6 +361,7 @@ class AgentOf final : public Agent {
     wire::FixedSink sink(out);
     wire::Writer<wire::FixedSink> writer(sink);
     writer("", const_cast<State&>(state_));  // only read
+    if (certifier_) writer("certificate", certifier_->memory());
     return sink.used();
   }
 
@@ -299,9 +369,12 @@ class AgentOf final : public Agent {
   AgentPart part_;
   Local local_;
   int rounds_;
+  std::unique_ptr<certificate::Certifier> certifier_;  // null: no certificate was asked for
   State state_;
   Message outgoing_;
   std::vector<Message> mailbox_;
+  std::vector<certificate::Evidence> evidence_;  // of the message in each place; empty without a certificate
+  certificate::Evidence said_;
   std::vector<std::int64_t> arrived_;  // the sample that the message in each place is of
   std::vector<std::uint32_t> slots_;   // of the round that is being fused
   std::vector<int> senders_;

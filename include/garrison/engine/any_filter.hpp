@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "garrison/certificate/online/plan.hpp"
 #include "garrison/core/abi.hpp"
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/model.hpp"
@@ -44,6 +45,11 @@ class GARRISON_EXPORT Prepared {
   /// The plants that the agents drive, for one trial; null for families that watch one common plant.
   virtual std::unique_ptr<World> world(const WorldOptions& options) const = 0;
 
+  /// What its runs and agents certify of every estimate; null = nothing but the family's own bound.
+  virtual std::shared_ptr<const certificate::Plan> certificate() const = 0;
+  /// The same design with another certificate, or with none (null).
+  virtual std::shared_ptr<const Prepared> with(std::shared_ptr<const certificate::Plan> plan) const = 0;
+
   /// The gains alone (wire/archive.hpp), and as lines "name: size or number" for people.
   virtual std::vector<std::byte> gains_bytes() const = 0;
   virtual std::vector<std::string> gains_outline() const = 0;
@@ -52,6 +58,11 @@ class GARRISON_EXPORT Prepared {
   /// First eight bytes of the digest of the whole design (engine/design_file.hpp).
   virtual std::uint64_t fingerprint() const = 0;
 };
+
+/// The same design with a certificate. @throws InvalidInput when the model does not say what it needs, or the
+/// agents have states of their own
+GARRISON_EXPORT std::shared_ptr<const Prepared> certified(const Prepared& prepared,
+                                                          const certificate::Wanted& wanted);
 
 /// A filter with its parameters.
 class GARRISON_EXPORT AnyFilter {

@@ -11,6 +11,7 @@
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/engine/batch/batch.hpp"
+#include "garrison/engine/certified_network.hpp"
 #include "garrison/engine/mailroom.hpp"
 #include "garrison/engine/plan/consensus.hpp"
 #include "garrison/engine/runner.hpp"
@@ -33,7 +34,7 @@ class Engine final : public Runner {
 
  public:
   Engine(std::shared_ptr<const typename F::Gains> gains, const Model& model, const Network& network,
-         int threads)
+         int threads, std::unique_ptr<CertifiedNetwork> certified = nullptr)
       : gains_(std::move(gains)),
         model_(model),
         plan_(network.offsets(), network.lists(), model.states()),
@@ -41,6 +42,7 @@ class Engine final : public Runner {
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
         states_(static_cast<std::size_t>(model.agents())),
         batch_(std::span<State>(states_), model.states()),
+        certified_(std::move(certified)),
         accused_(model.agents()) {
     position_.resize(states_.size());
     lost_.reserve(states_.size());
@@ -68,23 +70,13 @@ class Engine final : public Runner {
     variable_ = mail_.variable();
     samples_ = 0;
     overflows_ = resets_ = 0;
+    if (certified_) certified_->reset(first_sample<F>() - 1);
   }
 
   void step(std::int64_t t, const double* y) override {
-    if (mail_.perfect()) {
-      const BatchStep taken =
-          batch_.step(BatchSample{*gains_, plan_, mail_.wiring(), workers_, t, locals(), measured(y)});
-      if (taken.done == BatchStep::everything) return;
-      if (taken.done == BatchStep::sensed) {
-        each([&](std::size_t k, Message* out) { batch_.send(k, out[k]); });
-        return rounds(t, taken.plain);
-      }
-    }
-    batch_.release();
-    each([&, y = measured(y)](std::size_t k, Message* out) {
-      F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
-    });
-    rounds(t, all_usable());
+    if (certified_) certified_->begin(t, y);
+    filter(t, y);
+    if (certified_) certified_->finish(workers_);
   }
 
   void read(const Frame& f) const override {
@@ -95,9 +87,13 @@ class Engine final : public Runner {
       const auto i = static_cast<std::size_t>(places_[k].id);
       const Vec<n>& x = F::template estimate<n>(states_[k]);
       const Report r = F::template report<n>(local(k), *gains_, states_[k]);
+      const Bound bound = certificate::least(r.bound, certified_ ? certified_->of(places_[k].id) : nullptr,
+                                             {x.data(), static_cast<std::size_t>(x.size())});
       if (f.estimate != nullptr)
         std::copy_n(x.data(), x.size(), f.estimate + i * static_cast<std::size_t>(x.size()));
-      if (f.bound != nullptr) f.bound[i] = r.bound;
+      if (f.bound != nullptr) f.bound[i] = bound.value;
+      if (f.published != nullptr) f.published[i] = r.bound;
+      if (f.bound_kind != nullptr) f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
       if (f.statistic != nullptr) f.statistic[i] = r.statistic;
       if (f.threshold != nullptr) f.threshold[i] = r.threshold;
       if (f.verdict != nullptr) f.verdict[i] = static_cast<std::uint8_t>(r.verdict);
@@ -147,7 +143,8 @@ class Engine final : public Runner {
     return bits;
   }
   std::int64_t bytes_per_step() const override {
-    return variable_ && samples_ > 0 ? bytes_ / samples_ : bytes_;
+    return (variable_ && samples_ > 0 ? bytes_ / samples_ : bytes_) +
+           (certified_ ? certified_->bytes_per_step() : 0);
   }
 
  private:
@@ -171,6 +168,23 @@ class Engine final : public Runner {
     return [this, y](std::size_t k) { return y + first_output_[k]; };
   }
 
+  void filter(std::int64_t t, const double* y) {
+    if (mail_.perfect()) {
+      const BatchStep taken =
+          batch_.step(BatchSample{*gains_, plan_, mail_.wiring(), workers_, t, locals(), measured(y)});
+      if (taken.done == BatchStep::everything) return;
+      if (taken.done == BatchStep::sensed) {
+        each([&](std::size_t k, Message* out) { batch_.send(k, out[k]); });
+        return rounds(t, taken.plain);
+      }
+    }
+    batch_.release();
+    each([&, y = measured(y)](std::size_t k, Message* out) {
+      F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
+    });
+    rounds(t, all_usable());
+  }
+
   /// `plain`: every estimate can be worked with. Agents whose cannot send nothing that is delivered, and
   /// rejoin after the last round.
   void rounds(std::int64_t t, bool plain) {
@@ -181,6 +195,7 @@ class Engine final : public Runner {
       mail_.collect(t, round, plain, [&](std::size_t k, int sender, Message& m) {
         shape<F, n>(local(k), *gains_, sender, t, m);
       });
+      if (certified_) certified_->round(workers_, [this](int i, const auto& hear) { each_heard(i, hear); });
       const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
       if (batch_.fuse(*gains_, locals(), inbox, workers_))
         mail_.post();
@@ -205,6 +220,11 @@ class Engine final : public Runner {
       F::template rejoin<n>(local(k), *gains_, heard, t, states_[k]);
     }
     resets_ += static_cast<std::int64_t>(lost_.size());
+  }
+  template <class Hear>
+  void each_heard(int agent, const Hear& hear) const {
+    const auto inbox = mail_.inbox(position_[static_cast<std::size_t>(agent)]);
+    for (std::size_t j = 0; j < inbox.size(); ++j) hear(inbox.sender(j));
   }
   void count_bytes(int round) {
     if (!variable_) return;
@@ -236,6 +256,7 @@ class Engine final : public Runner {
   Workers workers_;
   Aligned<State> states_;
   [[no_unique_address]] mutable Batch<F, n> batch_;
+  std::unique_ptr<CertifiedNetwork> certified_;  // null: no certificate was asked for
   std::vector<Place> places_;
   Aligned<double> rows_;           // of all C_i
   std::vector<int> first_output_;  // of each agent in y

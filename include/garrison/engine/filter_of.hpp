@@ -28,28 +28,34 @@ auto dispatched(int states, const Action& action) {
 
 template <class F>
 std::unique_ptr<Agent> agent_of(Part<F> part) {
+  auto certifier = certifier_of(part.certificate, part.who, F::rounds(part.gains));
   auto gains = std::make_shared<const typename F::Gains>(std::move(part.gains));
   return dispatched<F>(static_cast<int>(part.who.A.rows()), [&]<int n>() -> std::unique_ptr<Agent> {
-    return std::make_unique<AgentOf<F, n>>(std::move(gains), std::move(part.who));
+    return std::make_unique<AgentOf<F, n>>(std::move(gains), std::move(part.who), std::move(certifier));
   });
 }
 
 template <class F>
 class PreparedOf final : public Prepared {
  public:
-  PreparedOf(std::shared_ptr<const AnyFilter> filter, typename F::Gains gains, const Model& model,
-             const Network& network)
+  PreparedOf(std::shared_ptr<const AnyFilter> filter, std::shared_ptr<const typename F::Gains> gains,
+             const Model& model, const Network& network,
+             std::shared_ptr<const certificate::Plan> certificate = nullptr)
       : filter_(std::move(filter)),
-        gains_(std::make_shared<const typename F::Gains>(std::move(gains))),
+        gains_(std::move(gains)),
         model_(model),
-        network_(network) {}
+        network_(network),
+        certificate_(std::move(certificate)) {}
 
   const Model& model() const override { return model_; }
   const Network& network() const override { return network_; }
   const AnyFilter& filter() const override { return *filter_; }
   std::unique_ptr<Runner> runner(int threads) const override {
     return dispatched<F>(model_.states(), [&]<int n>() -> std::unique_ptr<Runner> {
-      return std::make_unique<Engine<F, n>>(gains_, model_, network_, threads);
+      auto certified = certificate_ == nullptr
+                           ? nullptr
+                           : std::make_unique<CertifiedNetwork>(certificate_, network_, F::rounds(*gains_));
+      return std::make_unique<Engine<F, n>>(gains_, model_, network_, threads, std::move(certified));
     });
   }
   void check_start(const Matrix& x0) const override {
@@ -84,6 +90,7 @@ class PreparedOf final : public Prepared {
     });
   }
   std::unique_ptr<TrialsRunner> trials() const override {
+    if (certificate_ != nullptr) return nullptr;
     if constexpr (requires { F::trials(gains_, model_, network_); })
       return F::trials(gains_, model_, network_);
     else
@@ -96,11 +103,16 @@ class PreparedOf final : public Prepared {
       return nullptr;
   }
 
+  std::shared_ptr<const certificate::Plan> certificate() const override { return certificate_; }
+  std::shared_ptr<const Prepared> with(std::shared_ptr<const certificate::Plan> plan) const override {
+    return std::make_shared<PreparedOf>(filter_, gains_, model_, network_, std::move(plan));
+  }
+
   std::vector<std::byte> gains_bytes() const override { return wire::to_bytes(*gains_); }
   std::vector<std::string> gains_outline() const override { return wire::outline(*gains_); }
   std::vector<std::byte> part_bytes(int id) const override { return wire::to_bytes(part(id)); }
   std::uint64_t fingerprint() const override {
-    std::call_once(known_, [&] { fingerprint_ = fingerprint_of(*filter_, model_, network_, gains_bytes()); });
+    std::call_once(known_, [&] { fingerprint_ = fingerprint_of(*this); });
     return fingerprint_;
   }
 
@@ -114,16 +126,18 @@ class PreparedOf final : public Prepared {
   Part<F> part(int id) const {
     AgentPart who = part_of(id);
     who.design = fingerprint();
+    auto certificate = certificate_part(certificate_.get(), who);
     if constexpr (requires { F::part(*gains_, id, std::span<const int>()); })
-      return {who, F::part(*gains_, id, who.neighbours)};
+      return {who, F::part(*gains_, id, who.neighbours), std::move(certificate)};
     else
-      return {who, *gains_};
+      return {who, *gains_, std::move(certificate)};
   }
 
   std::shared_ptr<const AnyFilter> filter_;
   std::shared_ptr<const typename F::Gains> gains_;
   Model model_;
   Network network_;
+  std::shared_ptr<const certificate::Plan> certificate_;  // null = none
   mutable std::once_flag known_;
   mutable std::uint64_t fingerprint_ = 0;
 };
@@ -138,7 +152,7 @@ class FilterOf final : public AnyFilter {
   ParamMap params() const override { return values(params_); }
   std::shared_ptr<const Prepared> prepare(const Model& model, const Network& network) const override {
     require_same_size(model, network);
-    return std::make_shared<PreparedOf<Runs>>(copy(), F::design(params_, model, network), model, network);
+    return prepared(F::design(params_, model, network), model, network);
   }
   std::shared_ptr<const Prepared> restore(const Model& model, const Network& network,
                                           std::span<const std::byte> gains) const override {
@@ -146,7 +160,7 @@ class FilterOf final : public AnyFilter {
     typename F::Gains restored;
     require_read(wire::from_bytes(gains, model.agents(), restored));
     require_runs(restored);
-    return std::make_shared<PreparedOf<Runs>>(copy(), std::move(restored), model, network);
+    return prepared(std::move(restored), model, network);
   }
   std::unique_ptr<Agent> agent(std::span<const std::byte> bytes) const override {
     Part<Runs> part;
@@ -184,7 +198,12 @@ class FilterOf final : public AnyFilter {
 
  private:
   using Runs = RunsOf<F>;
-  std::shared_ptr<const AnyFilter> copy() const { return std::make_shared<FilterOf>(params_); }
+  std::shared_ptr<const Prepared> prepared(typename F::Gains gains, const Model& model,
+                                           const Network& network) const {
+    return std::make_shared<PreparedOf<Runs>>(std::make_shared<FilterOf>(params_),
+                                              std::make_shared<const typename F::Gains>(std::move(gains)),
+                                              model, network);
+  }
   static void require_read(Refusal refusal) {
     if (refusal != Refusal::none)
       refuse("design", "gains with a wrong " + std::string(word(refusal)),

@@ -13,16 +13,18 @@
 
 namespace garrison {
 
-/// An agent's part of a design: who it is and its gains.
+/// An agent's part of a design: who it is, its gains and its certificate.
 template <class F>
 struct Part {
   AgentPart who;
   typename F::Gains gains;
+  std::vector<std::uint8_t> certificate = {};  ///< certificate::Plan, as bytes; empty = none
 
   template <class V>
   void visit(V& v) {
     v("who", who);
     v("gains", gains);
+    v("certificate", certificate);
   }
 };
 
@@ -52,8 +54,9 @@ bool runs(const typename F::Gains& gains) noexcept {
 }
 
 /// The agent of a file that `write_part` (engine/design_file.hpp) wrote, or null. `why`: size, damaged,
-/// foreign (of another version, family or number of states, a whole design, or gains that need what this
-/// build has not). Allocates; where memory runs out the process ends if it was compiled without exceptions.
+/// foreign (of another version, family or number of states, a whole design, a certificate, which needs the
+/// whole library, or gains that need what this build has not). Allocates; where memory runs out the process
+/// ends if it was compiled without exceptions.
 template <class F, int n>
 std::unique_ptr<AgentOf<RunsOf<F>, n>> agent_of_part(std::span<const std::byte> file, Refusal& why) {
   wire::DesignHead head;
@@ -67,6 +70,7 @@ std::unique_ptr<AgentOf<RunsOf<F>, n>> agent_of_part(std::span<const std::byte> 
   reader("content", content);
   if (reader.end() != Refusal::none) return nullptr;
   if (wire::from_bytes(std::as_bytes(std::span(content)), INT32_MAX, part) != Refusal::none) return nullptr;
+  if (!part.certificate.empty()) return nullptr;
   if (part.who.A.rows() != head.states || part.who.C_transposed.rows() != head.states) return nullptr;
   if (!runs<RunsOf<F>>(part.gains)) return nullptr;
   why = Refusal::none;

@@ -13,12 +13,14 @@ namespace garrison {
 
 /// Where `Runner::read` writes; a null pointer skips that output. Agents are in order of public id.
 struct Frame {
-  double* estimate = nullptr;       ///< N x n, agent by agent
-  double* bound = nullptr;          ///< N
-  double* statistic = nullptr;      ///< N
-  double* threshold = nullptr;      ///< N
-  std::uint8_t* verdict = nullptr;  ///< N, values of Verdict
-  double* signals = nullptr;        ///< number of signals x N, signal by signal
+  double* estimate = nullptr;          ///< N x n, agent by agent
+  double* bound = nullptr;             ///< N
+  double* published = nullptr;         ///< N: the family's own bound alone
+  std::uint8_t* bound_kind = nullptr;  ///< N, values of CertificateKind
+  double* statistic = nullptr;         ///< N
+  double* threshold = nullptr;         ///< N
+  std::uint8_t* verdict = nullptr;     ///< N, values of Verdict
+  double* signals = nullptr;           ///< number of signals x N, signal by signal
 };
 
 /// All agents of one network, one filter, one trial.

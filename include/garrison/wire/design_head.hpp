@@ -48,7 +48,7 @@ struct DesignParam {
 
 /// What both kinds of files begin with.
 struct DesignHead {
-  std::uint32_t version = 1;
+  std::uint32_t version = 2;
   bool part = false;
   std::int32_t agent = -1;
   std::string garrison = GARRISON_VERSION;
@@ -59,7 +59,7 @@ struct DesignHead {
 
   template <class V>
   void visit(V& v) {
-    v.range("version", version, 1, 1);
+    v.range("version", version, 2, 2);
     v("part", part);
     v.range("agent", agent, -1, INT32_MAX);
     v("garrison", garrison);

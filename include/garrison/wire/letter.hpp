@@ -18,14 +18,14 @@ namespace garrison::wire {
 struct FieldInfo {
   std::string name;
   FieldKind kind = FieldKind::numbers;
-  int size = 0;  ///< numbers: how many; count: the largest; set: agents, 0 = the family keeps none; labels:
-                 ///< most listed
+  int size = 0;  ///< numbers, sparse: how many; count: the largest; set: agents, 0 = the family keeps none;
+                 ///< labels: most listed
 
   bool operator==(const FieldInfo&) const = default;
   template <class V>
   void visit(V& v) {
     v("name", name);
-    v.choice("kind", kind, 6);
+    v.choice("kind", kind, kFieldKinds);
     v.range("size", size, 0, 1 << 24);
   }
 };
@@ -35,7 +35,7 @@ struct Labels {
   bool complement = false;
   bool operator==(const Labels&) const = default;
 };
-/// numbers; optional (NaN = absent); flag; count; set and labels.
+/// numbers and sparse (NaN = absent); optional (NaN = absent); flag; count; set and labels.
 using FieldValue = std::variant<std::vector<double>, double, bool, int, Labels>;
 
 /// Value-typed; compares by value.

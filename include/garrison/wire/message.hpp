@@ -3,6 +3,7 @@
 // equal bytes, and total, so that any bytes are either a message or refused by name.
 //
 //   numbers, optional  binary64, little-endian; NaN only in an optional, and only 0x7ff8000000000000
+//   sparse             ceil(size/8) bytes, a bit for each number that is present, then these as binary64
 //   flag               one byte, 0 or 1
 //   count              u16, 0..most
 //   set                ceil(N/8) bytes, bits beyond N zero; nothing where the family keeps no such set
@@ -28,6 +29,13 @@ class Size : public NumbersOf<Size> {
   std::size_t most() const { return most_; }
 
   using NumbersOf<Size>::numbers;
+  using NumbersOf<Size>::sparse;
+  void sparse(std::string_view, std::span<double> values) {
+    const std::size_t bits = (values.size() + 7) / 8;
+    now_ += bits;
+    most_ += bits + 8 * values.size();
+    for (const double v : values) now_ += std::isnan(v) ? 0 : 8;
+  }
   void numbers(std::string_view, std::span<double> values) { add(8 * values.size()); }
   void optional(std::string_view, double&) { add(8); }
   void flag(std::string_view, bool&) { add(1); }
@@ -57,6 +65,17 @@ class Encoder : public NumbersOf<Encoder> {
   std::size_t written() const { return static_cast<std::size_t>(at_ - begin_); }
 
   using NumbersOf<Encoder>::numbers;
+  using NumbersOf<Encoder>::sparse;
+  void sparse(std::string_view, std::span<double> values) {
+    for (std::size_t first = 0; first < values.size(); first += 8) {
+      unsigned bits = 0;
+      for (std::size_t k = first; k < values.size() && k < first + 8; ++k)
+        bits |= std::isnan(values[k]) ? 0U : 1U << (k - first);
+      put(static_cast<std::uint8_t>(bits));
+    }
+    for (const double v : values)
+      if (!std::isnan(v)) put_double(v);
+  }
   void numbers(std::string_view, std::span<double> values) {
     for (const double v : values) put_double(v);
   }
@@ -105,6 +124,26 @@ class Decoder : public NumbersOf<Decoder> {
   }
 
   using NumbersOf<Decoder>::numbers;
+  using NumbersOf<Decoder>::sparse;
+  void sparse(std::string_view, std::span<double> values) {
+    const std::size_t bytes = (values.size() + 7) / 8;
+    if (!has(bytes)) return;
+    const std::byte* const bits = at_;
+    at_ += bytes;
+    for (std::size_t k = 0; k < 8 * bytes; ++k) {
+      const bool present = (std::to_integer<unsigned>(bits[k / 8]) >> (k % 8) & 1U) != 0;
+      if (k >= values.size()) {
+        if (present) return refuse_as(Refusal::set);
+        continue;
+      }
+      values[k] = kNaN;
+      if (!present) continue;
+      if (!has(8)) return;
+      values[k] = load_double(at_);
+      at_ += 8;
+      if (!(std::abs(values[k]) < kHuge)) return refuse_as(Refusal::number);
+    }
+  }
   void numbers(std::string_view, std::span<double> values) {
     if (!has(8 * values.size())) return;
     for (double& v : values) {

@@ -15,6 +15,7 @@ import numpy as np
 from garrison import _core
 from garrison._commands.output import output_folder
 from garrison._commands.terminal import OK, Commands, clean, console_for, print_json, print_table, print_warnings
+from garrison.bound_kind import BoundKind
 from garrison.compare import Row, run_scenario, signal_size
 from garrison.report import table_rows
 from garrison.report.table import error_note, warnings_of
@@ -132,6 +133,7 @@ def _write_estimates(path: Path, scenario: Scenario, row: Row, npz: bool) -> Non
     if run.bound is not None:
         numbers.append(run.bound.reshape(-1, 1))
         head.append("bound")
+    kinds = run.bound_kind
     names = [scenario.names[a] for a in agent]
     first: list[Any] = [trial.tolist(), time.tolist(), names]
     if scenario.dates:  # sample 1 is the first record
@@ -139,11 +141,13 @@ def _write_estimates(path: Path, scenario: Scenario, row: Row, npz: bool) -> Non
         dates = ["", *(str(d) for d in scenario.dates)]
         offset = len(dates) - times
         first.insert(2, [dates[t + offset] for t in time])
+    words = [] if kinds is None else [[BoundKind(int(k)).word] for k in kinds.ravel()]
+    head += ["bound_kind"] if words else []
     with path.with_name(f"{path.name}.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(head)
-        for *keys, values in zip(*first, np.column_stack(numbers), strict=True):
-            writer.writerow([*keys, *(f"{v:.9g}" for v in values)])
+        for k, (*keys, values) in enumerate(zip(*first, np.column_stack(numbers), strict=True)):
+            writer.writerow([*keys, *(f"{v:.9g}" for v in values), *(words[k] if words else [])])
 
 
 def _write_pictures(folder: Path, scenario: Scenario, rows: list[Row]) -> None:

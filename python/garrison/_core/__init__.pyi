@@ -472,6 +472,11 @@ class Agent:
     @property
     def bound(self) -> float: ...
     @property
+    def bound_kind(self) -> int:
+        """
+        Value of garrison.BoundKind: where the bound comes from, or why there is none.
+        """
+    @property
     def control(self) -> float:
         """
         Control input applied until the next sample; nan if the family has none.
@@ -528,13 +533,26 @@ class Design:
     """
     @staticmethod
     def from_bytes(data: typing.Any) -> Design: ...
-    def __init__(self, model: Model, network: Network, filter: Filter) -> None: ...
+    def __init__(
+        self,
+        model: Model,
+        network: Network,
+        filter: Filter,
+        certificate: str = "none",
+        failure: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
+        attacked: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> None: ...
     def agent(self, id: typing.SupportsInt | typing.SupportsIndex) -> Agent: ...
     def part(self, id: typing.SupportsInt | typing.SupportsIndex) -> bytes:
         """
         What agent `id` needs of the design, as bytes.
         """
     def to_bytes(self) -> bytes: ...
+    @property
+    def certificate(self) -> typing.Any:
+        """
+        What its runs certify (certificate, failure, attacked); None = nothing but the family's own bound.
+        """
     @property
     def filter_name(self) -> str: ...
     @property

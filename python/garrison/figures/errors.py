@@ -16,7 +16,7 @@ def smoothing_width(samples: int) -> int:
 
 
 def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figure: Any = None) -> Any:
-    """Mean error of every filter over time (moving mean), with the certified bound of the main one."""
+    """Mean error of every filter over time (moving mean), with the bounds of the main one."""
     figure = figure or Figure(figsize=(9.2, 4.6), layout="constrained")
     ax = axes(figure)
     shown = [row for row in rows if row.error is not None and (row.attacked or not scenario.attacks)]
@@ -26,7 +26,7 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figu
         smooth = np.convolve(error, np.ones(width) / width, mode="valid")
         at = np.arange(width, len(error) + 1)
         ax.plot(times(scenario, at), smooth, color=colour, linestyle=style, linewidth=1.6, label=plain(row.label))
-    _draw_bound(ax, scenario, shown)
+    _draw_bounds(ax, scenario, shown)
     if signal is not None:
         ax.axhline(signal, color="#999999", linewidth=1, label="size of the signal itself")
     for k, attack in enumerate(scenario.attacks):
@@ -41,15 +41,24 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figu
     return figure
 
 
-def _draw_bound(ax: Any, scenario: Scenario, shown: list[Row]) -> None:
-    """The certified bound of the first filter that has one."""
+def _draw_bounds(ax: Any, scenario: Scenario, shown: list[Row]) -> None:
+    """Bounds of the first filter that has one: what is certified, and beside it what its paper alone promises."""
     for row, (colour, _) in zip(shown, LINES, strict=False):
         if row.run is None or row.run.bound is None or not np.isfinite(row.run.bound[0, 1:]).any():
             continue
-        bound = row.run.bound[0, 1:].max(axis=1)
-        if not np.isfinite(bound).any():
-            continue
-        at = np.arange(1, len(bound) + 1)
-        label = f"certified bound of {plain(row.label)}"
-        ax.plot(times(scenario, at), bound, color=colour, linewidth=3, alpha=0.35, label=label)
+        _draw_bound(ax, scenario, row.run.bound, "certified bound", color=colour, linewidth=3, alpha=0.35)
+        if row.run.published is not None:
+            look = {"color": "#666666", "linewidth": 1.2, "linestyle": (0, (6, 2))}
+            _draw_bound(ax, scenario, row.run.published, "published bound", **look)
         return
+
+
+def _draw_bound(ax: Any, scenario: Scenario, bounds: Any, label: str, **look: Any) -> None:
+    """The largest bound of an agent in the first trial, smoothed as the errors are; a gap where some agent has none."""
+    bound = bounds[0, 1:].max(axis=1)
+    bound[~np.isfinite(bound)] = np.nan
+    if np.isnan(bound).all():
+        return
+    width = smoothing_width(len(bound))
+    smooth = np.convolve(bound, np.ones(width) / width, mode="valid")
+    ax.plot(times(scenario, np.arange(width, len(bound) + 1)), smooth, label=label, **look)

@@ -28,6 +28,12 @@ def _log(ax: Any, values: Any) -> None:
         ax.set_yscale("log")
 
 
+def _drawn(bounds: Any) -> Any:
+    """The largest bound of an agent; a gap where some agent has none."""
+    largest = bounds.max(axis=1)
+    return np.where(np.isfinite(largest), largest, np.nan)
+
+
 def _errors(run: Run, trial: int, ax: Any) -> bool:
     if run.error is None:
         return False
@@ -37,7 +43,9 @@ def _errors(run: Run, trial: int, ax: Any) -> bool:
     ax.plot(error.max(axis=1), color="#0072B2", label="largest error of an agent")
     ax.plot(error.mean(axis=1), color="#009E73", linestyle="--", label="mean error")
     if run.bound is not None and np.isfinite(run.bound[trial]).any():
-        ax.plot(run.bound[trial].max(axis=1), color="#D55E00", linestyle="-.", label="certified bound")
+        ax.plot(_drawn(run.bound[trial]), color="#D55E00", linestyle="-.", label="certified bound")
+        if run.published is not None and np.isfinite(run.published[trial]).any():
+            ax.plot(_drawn(run.published[trial]), color="#666666", linestyle=":", label="published bound")
     _log(ax, error)
     ax.set_ylabel("error")
     return True

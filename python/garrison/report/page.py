@@ -118,7 +118,7 @@ def _table_note(scenario: Scenario, rows: list[Row]) -> str:
     parts = [error_note(scenario)] if error_note(scenario) else []
     parts += [
         f"Means are over agents, {since}. Samples with a bound: share of agents and samples with a "
-        "certified error bound (an agent that has accused all attackers no longer tests, and reports none). Error "
+        "certified error bound; median bound: of those. Error "
         "within bound: how often the error was below it. Accused: who was accused, and when first (first trial)."
     ]
     if any("mean_error_robust" in row.summary for row in rows):
@@ -139,9 +139,21 @@ def _map_note(scenario: Scenario) -> str:
 def _error_note(scenario: Scenario) -> str:
     width = smoothing_width(scenario.steps)
     means = f"Means over {count(width, 'sample')}. " if width > 1 else ""
+    wanted = scenario.certificate
+    if not wanted or wanted["certificate"] == "none":
+        return (
+            f"{means}The certified bound holds at every sample for the worst noise that the model allows, whatever the "
+            "attackers send."
+        )
+    failure = wanted["failure"]
+    law = (
+        "for the worst noise that the model allows"
+        if failure == 0
+        else f"except with probability {failure:g} per agent and sample, for the model's noise"
+    )
     return (
-        f"{means}The certified bound holds at every sample for the worst noise that the model allows, whatever the "
-        "attackers send."
+        f"{means}The certified bound is the largest of any agent: it holds {law}, whatever the attackers send "
+        "and whatever messages are lost, for any filter. The published bound is what the filter's paper alone promises."
     )
 
 

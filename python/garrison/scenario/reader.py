@@ -26,7 +26,7 @@ from garrison.words import only, refusal, shown
 
 Array = NDArray[np.float64]
 
-_TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run"]
+_TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run", "certificate"]
 _RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error"]
 
 
@@ -43,6 +43,7 @@ class Scenario:
     link: dict[str, float]
     run: dict[str, Any]
     noise: str
+    certificate: dict[str, Any]  # arguments of garrison.prepare; empty = none
     names: list[str]  # of the agents
     positions: Array | None = None  # (agents, 2), kilometres east and north
     places: list[str] | None = None  # full names of the agents
@@ -114,6 +115,7 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
         link=_link(section("link")),
         run=run,
         noise=_noise(section("noise"), recording),
+        certificate=_certificate(section("certificate")),
         names=names,
         positions=ground.positions,
         places=ground.places,
@@ -178,6 +180,21 @@ def _link(section: Section) -> dict[str, float]:
                 raise refusal(section.place(key), shown(section.table[key]), "a probability in 0..1")
     if "delay_rounds" in section:
         out["delay_rounds"] = whole(section.place("delay_rounds"), section.table["delay_rounds"])
+    return out
+
+
+def _certificate(section: Section) -> dict[str, Any]:
+    """What to certify; the filters' own `attacked` where the section does not say."""
+    section.only(["spread", "failure", "attacked"])
+    if not section.table:
+        return {}
+    out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": section.number("failure", 1e-6)}
+    if out["certificate"] not in ("none", "local", "flooded"):
+        raise refusal(section.place("spread"), shown(out["certificate"]), '"none", "local" or "flooded"')
+    if not 0 <= out["failure"] < 1:
+        raise refusal(section.place("failure"), shown(out["failure"]), "a probability in [0, 1)", "0 = deterministic")
+    if "attacked" in section:
+        out["attacked"] = section.whole("attacked", 0, 0)
     return out
 
 

@@ -96,6 +96,42 @@ TEST_CASE("no step of any family allocates, at any dimension, on good and on bad
   }
 }
 
+TEST_CASE("no step with a certificate allocates, on good and on bad links") {
+  using certificate::Spread;
+  for (const int n : {1, 2, 9}) {
+    test::Rng rng(static_cast<std::uint64_t>(n));
+    const Model model = test::scalar_model(rng, n, 8, 0.98, 0.02, 0.01);
+    const Network network = test::connected_network(rng, 8);
+    for (const auto& filter : test::every_filter()) {
+      const auto plain = filter->prepare(model, network);
+      for (const certificate::Wanted& wanted : {certificate::Wanted{Spread::local, 1e-6, 1, 1000},
+                                                certificate::Wanted{Spread::flooded, 1e-6, 1, 1000},
+                                                certificate::Wanted{Spread::flooded, 1e-6, 1, 0},
+                                                certificate::Wanted{Spread::local, 0.0, 1, 1000}}) {
+        const auto runner = certified(*plain, wanted)->runner(1);
+        Link link(network, {0.2, 0.2, 3, {}, {}}, {}, 1, 0);
+        for (const bool faults : {false, true}) {
+          runner->reset(Matrix::Zero(n, 8), faults ? &link : nullptr);
+          std::vector<double> y(8);
+          for (int t = 1; t <= 20; ++t) {
+            for (double& v : y) v = test::uniform(rng, -0.1, 0.1);
+            if (t == 10) y[2] = 50.0;
+            if (t == 15) y[3] = kNaN;
+            count = 0;
+            armed = true;
+            runner->step(t, y.data());
+            armed = false;
+            CAPTURE(n);
+            CAPTURE(filter->name());
+            CAPTURE(faults);
+            CHECK(count == 0);
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("no step allocates where some outputs of a sensor are missing") {
   for (const int n : {2, 9}) {
     test::Rng rng(static_cast<std::uint64_t>(n));

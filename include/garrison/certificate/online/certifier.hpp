@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// One agent's certificate, beside its filter: the same for all families, engines and nodes.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "garrison/certificate/online/evidence.hpp"
+#include "garrison/core/certificate_kind.hpp"
+#include "garrison/core/error.hpp"
+
+namespace garrison::certificate {
+
+struct Plan;
+
+/// What lasts from sample to sample.
+struct Memory {
+  std::int64_t t = 0;
+  // The own witness (W) of sample t; radius infinity = too few rows, NaN = refuted.
+  std::vector<double> center, box;
+  double radius = kInfinity;
+  // The ball to relay (R): its centre moved to t, its radius when it was new; age -1 = none.
+  std::vector<double> ball;
+  double ball_radius = kNaN;
+  int age = -1;
+
+  template <class V>
+  void visit(V& v) {
+    v("t", t);
+    v("center", center);
+    v("box", box);
+    v("radius", radius);
+    v("ball", ball);
+    v("ball_radius", ball_radius);
+    v.range("age", age, -1, kMostAge);
+  }
+};
+
+/// A pure state machine, like a filter: `begin` with the measurement, then per round `say`, `hear` what
+/// arrived, `end_round`. Behind a table of functions, so that a node without certificates links none of it.
+/// Nothing is allocated after construction.
+class Certifier {
+ public:
+  virtual ~Certifier() = default;
+  /// Starts anew at the end of sample t: nothing is known.
+  virtual void reset(std::int64_t t) noexcept = 0;
+  /// Sample t, later than the last one by any number; y: own outputs, anything but finite numbers = missing.
+  virtual void begin(std::int64_t t, const double* y) noexcept = 0;
+  /// What to send in this round; shape_evidence sized `out`.
+  virtual void say(int round, Evidence& out) const noexcept = 0;
+  virtual void hear(int round, int sender, const Evidence& in) noexcept = 0;
+  virtual void end_round(int round) noexcept = 0;
+  /// After what was heard of a sample in which the agent took no part.
+  virtual void end_sample() noexcept = 0;
+  /// Bound on the error of any estimate (n numbers) of the present sample.
+  virtual Bound bound(std::span<const double> estimate) const noexcept = 0;
+  /// Sizes what `sender` sends; allocates the first time.
+  virtual void shape_evidence(int sender, Evidence& out) const = 0;
+  virtual Memory& memory() noexcept = 0;
+  const Memory& memory() const noexcept { return const_cast<Certifier*>(this)->memory(); }
+  /// Whether what a snapshot held can be worked with.
+  virtual bool usable() const noexcept = 0;
+};
+
+/// The better of a family's own bound and the certificate's. A refutation leaves neither.
+inline Bound least(double published, const Certifier* certifier, std::span<const double> estimate) noexcept {
+  const bool has = published < kInfinity;
+  const Bound own{published, has ? CertificateKind::published : CertificateKind::none};
+  if (certifier == nullptr) return own;
+  const Bound found = certifier->bound(estimate);
+  return has && found.kind != CertificateKind::refuted && !(found.value < published) ? own : found;
+}
+
+/// The certifier of agent `id`, whose messages take `rounds` rounds per sample. @throws InvalidInput when it
+/// would take more than 1e8 numbers
+GARRISON_EXPORT std::unique_ptr<Certifier> make_certifier(std::shared_ptr<const Plan> plan, int id,
+                                                          std::span<const int> neighbours, int rounds);
+
+}  // namespace garrison::certificate

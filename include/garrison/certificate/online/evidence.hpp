@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certificate's part of a message.
+#pragma once
+
+#include <vector>
+
+#include "garrison/core/types.hpp"
+
+namespace garrison::certificate {
+
+/// Regions older than this are forgotten.
+inline constexpr int kMostAge = 1000;
+
+/// Fields in the sense of core/fields.hpp; drivers put them behind those of the filter's message.
+struct Evidence {
+  /// The sender's own measurements (local; in the first round only), or those of the whole network that it
+  /// knows (flooded). NaN = absent.
+  std::vector<double> measurements;
+  /// A region that contains the state unless a named assumption is false: its centre, moved to this sample,
+  /// and its radius when it was new; all absent = none.
+  std::vector<double> ball;
+  int age = 0;  ///< samples since
+
+  bool has_ball() const { return ball.back() == ball.back(); }
+
+  template <class V>
+  void visit(V& v) {
+    v.sparse("certificate.measurements", measurements);
+    v.sparse("certificate.ball", ball);
+    v.count("certificate.age", age, kMostAge);
+  }
+};
+
+}  // namespace garrison::certificate

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certificate of a run: what is asked for, and what design leaves of it for the agents.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "garrison/core/error.hpp"
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+
+namespace garrison::certificate {
+
+/// Which measurements reach an agent.
+enum class Spread : std::uint8_t {
+  local,    ///< its own and its neighbours'
+  flooded,  ///< all that the rounds of a sample bring: messages carry every measurement known so far
+};
+
+/// What a run is asked to certify: with at most `attacked` sources lying (an agent with all its outputs is
+/// one, unless the model names the sources), each reported bound fails with probability at most `failure`.
+struct Wanted {
+  Spread spread = Spread::local;
+  /// Per agent and sample, for noise of the model's covariances; 0 = never, for noise within its bounds.
+  double failure = 1e-6;
+  int attacked = 0;    ///< s
+  int subsets = 1000;  ///< W3 is used where at most so many sets of honest sources are to be tried, else W2
+
+  bool operator==(const Wanted&) const = default;
+  template <class V>
+  void visit(V& v) {
+    v.choice("spread", spread, 2);
+    v("failure", failure);
+    v.range("attacked", attacked, 0, INT32_MAX);
+    v.range("subsets", subsets, 0, 1000000);
+  }
+};
+
+/// The rows of some agents, quantiles and how regions age. An agent holds those it can hear of.
+///
+/// The failure probability has four equal shares: every measurement within z1 (T1), the least-squares vector
+/// of the full set of rows (T2), those of the partial sets that losses or locality leave, one per agent (T2),
+/// and process noise since. Which region is used depends on losses only: the freshest, of those the smallest.
+struct GARRISON_EXPORT Plan {
+  Wanted wanted;
+  int agents = 0;
+  int sources = 0;           ///< of the whole network
+  std::vector<int> ids;      ///< agents whose rows are here, ascending
+  std::vector<int> first;    ///< rows of ids[k]: first[k] .. first[k+1]-1
+  Matrix rows;               ///< n x rows: each C_r as a column
+  Vector variance;           ///< of each row
+  Vector width;              ///< |v| <= width; deterministic only
+  std::vector<int> source;   ///< of each row
+  int all_rows = 0;          ///< of the whole network, those that are not zero
+  double z1 = kNaN;          ///< levels of W; not used when deterministic
+  double z2_full = kNaN;     ///< for all rows of the network
+  double z2_partial = kNaN;  ///< for any other set of rows
+  Matrix A;
+  std::vector<double> norm;  ///< ||A^k||, for the ages k = 0..ages()
+  std::vector<double>
+      added;  ///< what k steps of process noise add to a radius; empty = not known, nothing ages
+
+  bool deterministic() const { return wanted.failure == 0.0; }
+  int ages() const { return static_cast<int>(added.size()) - 1; }
+  int states() const { return static_cast<int>(A.rows()); }
+  /// Position of an agent in `ids`; -1 when its rows are not here.
+  int place(int agent) const;
+  int outputs(int agent) const;
+
+  template <class V>
+  void visit(V& v) {
+    v("wanted", wanted);
+    v.range("agents", agents, 1, INT32_MAX);
+    v.range("sources", sources, 0, INT32_MAX);
+    v("ids", ids);
+    v("first", first);
+    v("rows", rows);
+    v("variance", variance);
+    v("width", width);
+    v("source", source);
+    v("all_rows", all_rows);
+    v("z1", z1);
+    v("z2_full", z2_full);
+    v("z2_partial", z2_partial);
+    v("A", A);
+    v("norm", norm);
+    v("added", added);
+  }
+};
+
+/// @throws InvalidInput when the noise that `wanted` rests on is not known, or a number is out of range
+GARRISON_EXPORT Plan make_plan(const Wanted& wanted, const Model& model, const Network& network);
+/// What agent `id` needs of it.
+GARRISON_EXPORT Plan part_of(const Plan& plan, int id, std::span<const int> neighbours);
+/// Whether a plan that was read can be worked with: sizes and indices fit together.
+GARRISON_EXPORT bool consistent(const Plan& plan);
+
+}  // namespace garrison::certificate

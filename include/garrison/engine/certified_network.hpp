@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certificates of all agents of a network in one process, beside the engine of any family.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "garrison/certificate/online/certifier.hpp"
+#include "garrison/certificate/online/plan.hpp"
+#include "garrison/core/network.hpp"
+#include "garrison/engine/workers.hpp"
+
+namespace garrison {
+
+/// The engine says which messages arrived; what they carry for the certificate travels here. Agents are in
+/// order of public id. The same bits as agents that are driven by bytes; nothing is allocated after
+/// construction.
+class GARRISON_EXPORT CertifiedNetwork {
+ public:
+  CertifiedNetwork(std::shared_ptr<const certificate::Plan> plan, const Network& network, int rounds);
+  ~CertifiedNetwork();
+
+  void reset(std::int64_t t);
+  /// Sample t; y: all measurements, agent by agent.
+  void begin(std::int64_t t, const double* y);
+  /// One round in which heard(i, hear) calls hear(j) for every message from j that reached i.
+  template <class Heard>
+  void round(Workers& workers, const Heard& heard) {
+    if (rounds_ == 0) return;
+    say();
+    workers.split(agents(), [&](std::int64_t begin, std::int64_t end, int) {
+      for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
+        heard(i, [&](int sender) { hear(i, sender); });
+    });
+    end_round(workers);
+  }
+  /// The rounds of this sample that are left: all messages arrive.
+  void finish(Workers& workers) {
+    while (round_ < rounds_)
+      round(workers, [&](int i, const auto& hear) {
+        for (const int j : network_.neighbours(i)) hear(j);
+      });
+  }
+
+  const certificate::Certifier* of(int agent) const;
+  /// Bytes that the certificate adds to the messages of a sample when none is lost: mean over all samples.
+  std::int64_t bytes_per_step() const { return samples_ == 0 ? 0 : bytes_ / samples_; }
+
+ private:
+  struct Agents;
+  int agents() const { return network_.agents(); }
+  void say();
+  void hear(int agent, int sender);
+  void end_round(Workers& workers);
+
+  Network network_;
+  int rounds_;
+  int round_ = 0;
+  std::vector<int> listeners_;
+  std::vector<int> first_;  // output of each agent in y
+  std::unique_ptr<Agents> all_;
+  std::int64_t bytes_ = 0;
+  std::int64_t samples_ = 0;
+};
+
+}  // namespace garrison

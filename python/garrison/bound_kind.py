@@ -1,0 +1,47 @@
+"""Where a bound comes from, or why there is none."""
+
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class BoundKind(IntEnum):
+    """The values of `Run.bound_kind`. Proofs: docs/certificates.md."""
+
+    NONE = 0  #: no certificate was asked for, and the filter promises nothing here
+    PUBLISHED = 1  #: the filter family's own
+    WITNESS = 2  #: the measurements of this sample that reached the agent
+    RELAYED = 3  #: what another agent, or an earlier sample, has shown
+    TABLE = 4  #: data-free
+    INFORMED = 5  #: data-free, all attackers are proved
+    RECOVERED = 6  #: the table, and what lost messages may have added to it
+    TOO_FEW = 7  #: none (inf): too few measurements reached the agent, in this sample and all before
+    REFUTED = 8  #: none (nan): the data contradict "at most so many are attacked"
+    LIARS = 9  #: none (nan): agents lie in their messages, and bounds rest on what they say
+
+    @property
+    def word(self) -> str:
+        """For people: `too few`."""
+        return self.name.lower().replace("_", " ")
+
+    @property
+    def why(self) -> str:
+        """Why there is no bound, in a sentence; empty where there is one."""
+        return _WHY.get(self, "")
+
+
+_WHY = {
+    BoundKind.NONE: "no certificate was asked for, and the filter promises nothing at this sample",
+    BoundKind.TOO_FEW: "too few measurements have reached this agent, at this sample and all before: without those of "
+    "the attackers the rest does not determine the state",
+    BoundKind.REFUTED: "the measurements contradict the assumption that at most so many are attacked (or the rare "
+    "event happened that the failure probability allows)",
+    BoundKind.LIARS: "agents lie in their messages, and every bound rests on what they say",
+}
+
+
+def counts(kinds: NDArray[np.uint8]) -> dict[str, int]:
+    """Word -> how often, of those that occur."""
+    found = np.bincount(kinds.ravel(), minlength=len(BoundKind))
+    return {BoundKind(k).word: int(v) for k, v in enumerate(found) if v}

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agent_certifier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "garrison/certificate/interval.hpp"
+
+namespace garrison::certificate {
+namespace {
+
+/// Agents whose measurements may reach this one, ascending.
+std::vector<int> within_reach(const Plan& plan, int id, std::span<const int> neighbours) {
+  if (plan.wanted.spread == Spread::flooded) return plan.ids;
+  std::vector<int> all(neighbours.begin(), neighbours.end());
+  all.push_back(id);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+struct Sizes {
+  int rows = 0;
+  int sources = 0;
+};
+Sizes sizes(const Plan& plan, const std::vector<int>& agents) {
+  std::vector<int> sources;
+  for (const int agent : agents) {
+    const auto place = static_cast<std::size_t>(plan.place(agent));
+    for (int r = plan.first[place]; r < plan.first[place + 1]; ++r)
+      sources.push_back(plan.source[static_cast<std::size_t>(r)]);
+  }
+  Sizes found{static_cast<int>(sources.size()), 0};
+  std::sort(sources.begin(), sources.end());
+  found.sources = static_cast<int>(std::unique(sources.begin(), sources.end()) - sources.begin());
+  return found;
+}
+
+/// C(of, take), or `most` where it is more.
+int sets(int of, int take, int most) {
+  double count = 1.0;
+  for (int k = 1; k <= take; ++k) count *= static_cast<double>(of - take + k) / k;
+  return count >= most ? most : static_cast<int>(std::max(1.0, std::round(count)));
+}
+
+}  // namespace
+
+AgentCertifier::AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::span<const int> neighbours,
+                               int rounds)
+    : plan_(std::move(plan)),
+      id_(id),
+      rounds_(rounds),
+      flooded_(plan_->wanted.spread == Spread::flooded),
+      agents_(within_reach(*plan_, id, neighbours)),
+      rows_(plan_->states(), std::max(1, sizes(*plan_, agents_).sources),
+            std::max(1, sizes(*plan_, agents_).rows)),
+      leverage_(rows_.states(), rows_.sources(), rows_.capacity()),
+      subsets_(rows_.states(), rows_.sources(), rows_.capacity(),
+               sets(rows_.sources(), std::min(plan_->wanted.attacked, rows_.sources()),
+                    std::max(1, plan_->wanted.subsets))),
+      moved_(plan_->states()) {
+  std::map<int, int> number;
+  for (const int agent : agents_) {
+    const auto place = static_cast<std::size_t>(plan_->place(agent));
+    at_.push_back(row_.size());
+    for (int r = plan_->first[place]; r < plan_->first[place + 1]; ++r) {
+      row_.push_back(static_cast<std::size_t>(r));
+      number.emplace(plan_->source[static_cast<std::size_t>(r)], 0);
+    }
+  }
+  at_.push_back(row_.size());
+  int next = 0;
+  for (auto& [source, here] : number) here = next++;
+  for (const std::size_t r : row_) source_.push_back(number.at(plan_->source[r]));
+  one_row_each_ = number.size() == row_.size();
+  y_.resize(row_.size());
+  ends_.resize(2 * row_.size());
+  y1_.resize(row_.size());
+  width1_.resize(row_.size());
+  const auto n = static_cast<std::size_t>(plan_->states());
+  memory_.center.resize(n);
+  memory_.box.resize(n);
+  memory_.ball.resize(n);
+  AgentCertifier::reset(0);
+}
+
+void AgentCertifier::reset(std::int64_t t) noexcept {
+  std::fill(y_.begin(), y_.end(), kNaN);
+  known_ = 0;
+  judged_ = true;
+  memory_.t = t;
+  memory_.radius = kInfinity;
+  memory_.age = -1;
+  for (auto* part : {&memory_.center, &memory_.box, &memory_.ball})
+    std::fill(part->begin(), part->end(), 0.0);
+  memory_.ball_radius = 0.0;
+}
+
+double AgentCertifier::aged(double radius, int age) const {
+  const auto k = static_cast<std::size_t>(age);
+  return age == 0 ? radius : plan_->norm[k] * radius + plan_->added[k];
+}
+
+void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
+  const std::int64_t passed = t - memory_.t;
+  memory_.t = t;
+  memory_.radius = kInfinity;
+  if (memory_.age >= 0) {
+    Eigen::Map<Vector> center(memory_.ball.data(), moved_.size());
+    if (passed > plan_->ages() - memory_.age) {
+      memory_.age = -1;
+    } else {
+      memory_.age += static_cast<int>(passed);
+      for (std::int64_t k = 0; k < passed; ++k) {
+        moved_.noalias() = plan_->A * center;
+        center = moved_;
+      }
+    }
+    if (!(center.cwiseAbs().maxCoeff() < kHuge)) memory_.age = -1;
+  }
+  std::fill(y_.begin(), y_.end(), kNaN);
+  known_ = 0;
+  judged_ = false;
+  const auto me = std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin();
+  for (std::size_t k = at_[static_cast<std::size_t>(me)]; k < at_[static_cast<std::size_t>(me) + 1]; ++k)
+    learn(k, *y++);
+  if (rounds_ == 0) end_sample();
+}
+
+void AgentCertifier::learn(std::size_t at, double y) noexcept {
+  if (!std::isnan(y_[at]) || !(std::abs(y) < kHuge)) return;
+  y_[at] = y;
+  ++known_;
+}
+
+void AgentCertifier::say(int round, Evidence& out) const noexcept {
+  if (flooded_) {
+    std::copy(y_.begin(), y_.end(), out.measurements.begin());
+  } else {
+    const auto me =
+        static_cast<std::size_t>(std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin());
+    for (std::size_t k = 0; k < out.measurements.size(); ++k)
+      out.measurements[k] = round == 0 ? y_[at_[me] + k] : kNaN;
+  }
+  const bool has = memory_.age >= 0;
+  out.age = has ? memory_.age : 0;
+  std::copy(memory_.ball.begin(), memory_.ball.end(), out.ball.begin());
+  out.ball.back() = memory_.ball_radius;
+  if (!has) std::fill(out.ball.begin(), out.ball.end(), kNaN);
+}
+
+void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
+  if (flooded_) {
+    for (std::size_t k = 0; k < y_.size() && known_ < static_cast<int>(y_.size()); ++k)
+      learn(k, in.measurements[k]);
+  } else if (round == 0) {
+    const auto at = std::lower_bound(agents_.begin(), agents_.end(), sender) - agents_.begin();
+    for (std::size_t k = 0; k < in.measurements.size(); ++k)
+      learn(at_[static_cast<std::size_t>(at)] + k, in.measurements[k]);
+  }
+  bool whole = in.age <= std::max(plan_->ages(), 0);
+  for (const double v : in.ball) whole = whole && !std::isnan(v);
+  if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.age);
+}
+
+/// Takes over a ball that is better than the own one. Gaussian: which one is used must not depend on the
+/// noise through its age, so the freshest; of one age the smallest.
+void AgentCertifier::offer(const double* ball, int age) noexcept {
+  const double radius = ball[memory_.ball.size()];
+  if (memory_.age >= 0) {
+    const double mine = aged(memory_.ball_radius, memory_.age);
+    const double theirs = aged(radius, age);
+    const bool better = plan_->deterministic()
+                            ? theirs < mine
+                            : age < memory_.age || (age == memory_.age && radius < memory_.ball_radius);
+    if (!better) return;
+  }
+  std::copy_n(ball, memory_.ball.size(), memory_.ball.begin());
+  memory_.ball_radius = radius;
+  memory_.age = age;
+}
+
+void AgentCertifier::end_round(int round) noexcept {
+  if (!judged_ && judges_in(round)) witness();
+}
+void AgentCertifier::end_sample() noexcept {
+  if (!judged_) witness();
+}
+
+void AgentCertifier::witness() noexcept {
+  judged_ = true;
+  rows_.clear();
+  const std::size_t n = memory_.center.size();
+  for (std::size_t k = 0; k < y_.size(); ++k) {
+    if (std::isnan(y_[k])) continue;
+    const auto r = static_cast<Eigen::Index>(row_[k]);
+    rows_.add(source_[k], {plan_->rows.data() + row_[k] * n, n}, y_[k], plan_->variance(r),
+              plan_->deterministic() ? plan_->width(r) : 0.0);
+  }
+  if (rows_.size() == 0) return;
+  Assumption a;
+  a.s = plan_->wanted.attacked;
+  a.bounded = plan_->deterministic();
+  a.levels = {plan_->z1, rows_.size() == plan_->all_rows ? plan_->z2_full : plan_->z2_partial};
+  const bool few =
+      !a.bounded && plan_->wanted.subsets > 0 && subsets_to_try(rows_, a) <= plan_->wanted.subsets;
+  keep((few ? witness_subsets(rows_, a, kNaN, subsets_) : leverage_ball(rows_, a, leverage_)).region);
+  if (a.bounded && n == 1 && one_row_each_ && !std::isnan(memory_.radius)) interval_rule();
+  relay_own();
+}
+
+/// W0, one state: where it is sharper than what is kept.
+void AgentCertifier::interval_rule() noexcept {
+  const auto m = static_cast<std::size_t>(rows_.size());
+  for (std::size_t j = 0; j < m; ++j) {
+    const double c = rows_.c(static_cast<int>(j))(0);
+    y1_[j] = rows_.y(static_cast<int>(j)) / c;
+    width1_[j] = rows_.width(static_cast<int>(j)) / std::abs(c);
+    if (!(std::abs(y1_[j]) < kHuge) || !(width1_[j] < kHuge)) return;
+  }
+  const Interval found = interval(std::span(y1_).first(m), std::span(width1_).first(m),
+                                  plan_->wanted.attacked, std::span(ends_).first(2 * m));
+  if (std::isnan(found.lo)) {
+    memory_.radius = kNaN;
+    return;
+  }
+  const double middle = 0.5 * (found.hi + found.lo);
+  // The middle is rounded: the radius covers it.
+  const double half = std::max(found.hi - middle, middle - found.lo) * (1.0 + 1e-15);
+  if (!(half < memory_.radius)) return;
+  memory_.center[0] = middle;
+  memory_.radius = memory_.box[0] = half;
+}
+
+void AgentCertifier::keep(const Region& region) noexcept {
+  memory_.radius = region.radius;
+  if (!region.answered()) return;
+  std::copy_n(region.center.data(), memory_.center.size(), memory_.center.begin());
+  std::copy_n(region.box.data(), memory_.box.size(), memory_.box.begin());
+}
+
+void AgentCertifier::relay_own() noexcept {
+  if (!std::isfinite(memory_.radius)) return;
+  if (plan_->deterministic() && memory_.age >= 0 && aged(memory_.ball_radius, memory_.age) <= memory_.radius)
+    return;
+  memory_.ball = memory_.center;
+  memory_.ball_radius = memory_.radius;
+  memory_.age = 0;
+}
+
+Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
+  const Memory& m = memory_;
+  if (std::isnan(m.radius)) return {kNaN, CertificateKind::refuted};
+  Bound least{kInfinity, CertificateKind::too_few};
+  double ball = 0.0;
+  double box = 0.0;
+  double relayed = 0.0;
+  for (std::size_t k = 0; k < estimate.size(); ++k) {
+    const double d = estimate[k] - m.center[k];
+    ball += d * d;
+    box += (std::abs(d) + m.box[k]) * (std::abs(d) + m.box[k]);
+    const double e = estimate[k] - m.ball[k];
+    relayed += e * e;
+  }
+  if (std::isfinite(m.radius))
+    least = {std::fmin(std::sqrt(ball) + m.radius, std::sqrt(box)), CertificateKind::witness};
+  if (m.age < 0) return least;
+  const double other = std::sqrt(relayed) + aged(m.ball_radius, m.age);
+  return other < least.value ? Bound{other, CertificateKind::relayed} : least;
+}
+
+void AgentCertifier::shape_evidence(int sender, Evidence& out) const {
+  out.ball.resize(memory_.ball.size() + 1, kNaN);
+  out.measurements.resize(flooded_ ? y_.size() : static_cast<std::size_t>(plan_->outputs(sender)), kNaN);
+}
+
+bool AgentCertifier::usable() const noexcept {
+  const auto finite = [](const std::vector<double>& all) {
+    return std::all_of(all.begin(), all.end(), [](double v) { return std::abs(v) < kHuge; });
+  };
+  return finite(memory_.center) && finite(memory_.box) && finite(memory_.ball) && !(memory_.radius < 0.0) &&
+         memory_.ball_radius >= 0.0 && memory_.ball_radius < kHuge &&
+         memory_.age <= std::max(0, plan_->ages());
+}
+
+bool AgentCertifier::knows_the_same(const AgentCertifier& other) const {
+  return known_ == other.known_ && row_ == other.row_ &&
+         std::memcmp(y_.data(), other.y_.data(), y_.size() * sizeof(double)) == 0;
+}
+
+void AgentCertifier::adopt(const AgentCertifier& other) noexcept {
+  judged_ = true;
+  memory_.radius = other.memory_.radius;
+  memory_.center = other.memory_.center;
+  memory_.box = other.memory_.box;
+  relay_own();
+}
+
+std::unique_ptr<Certifier> make_certifier(std::shared_ptr<const Plan> plan, int id,
+                                          std::span<const int> neighbours, int rounds) {
+  return std::make_unique<AgentCertifier>(std::move(plan), id, neighbours, rounds);
+}
+
+}  // namespace garrison::certificate

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one kind of certifier: witness of the sample, relay over rounds and time. Internal.
+#pragma once
+
+#include "garrison/certificate/leverage_ball.hpp"
+#include "garrison/certificate/online/certifier.hpp"
+#include "garrison/certificate/online/plan.hpp"
+#include "garrison/certificate/subsets.hpp"
+
+namespace garrison::certificate {
+
+class AgentCertifier final : public Certifier {
+ public:
+  AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::span<const int> neighbours, int rounds);
+
+  void reset(std::int64_t t) noexcept override;
+  void begin(std::int64_t t, const double* y) noexcept override;
+  void say(int round, Evidence& out) const noexcept override;
+  void hear(int round, int sender, const Evidence& in) noexcept override;
+  void end_round(int round) noexcept override;
+  void end_sample() noexcept override;
+  Bound bound(std::span<const double> estimate) const noexcept override;
+  void shape_evidence(int sender, Evidence& out) const override;
+  Memory& memory() noexcept override { return memory_; }
+  bool usable() const noexcept override;
+
+  /// The last step of a sample in two, for drivers of whole networks: `witness`, or the one of an agent that
+  /// knows the same.
+  bool judges_in(int round) const { return flooded_ ? round == rounds_ - 1 : round == 0; }
+  int known_rows() const { return known_; }
+  bool knows_the_same(const AgentCertifier& other) const;
+  void witness() noexcept;
+  void adopt(const AgentCertifier& other) noexcept;
+
+ private:
+  void learn(std::size_t at, double y) noexcept;
+  void interval_rule() noexcept;
+  void keep(const Region& region) noexcept;
+  void relay_own() noexcept;
+  void offer(const double* ball, int age) noexcept;
+  double aged(double radius, int age) const;
+
+  std::shared_ptr<const Plan> plan_;
+  int id_;
+  int rounds_;
+  bool flooded_;
+  bool judged_ = true;            // the witness of this sample is there
+  std::vector<int> agents_;       // whose rows may become known, ascending
+  std::vector<std::size_t> at_;   // where each one's rows begin in y_, and their number
+  std::vector<std::size_t> row_;  // in the plan, of each entry of y_
+  std::vector<int> source_;       // numbered from 0 among the rows that may become known
+  std::vector<double> y_;         // NaN = not known (yet)
+  int known_ = 0;
+  bool one_row_each_ = true;  // no source has several rows
+  Rows rows_;
+  LeverageWorkspace leverage_;
+  SubsetsWorkspace subsets_;
+  std::vector<double> ends_, y1_, width1_;  // of the interval rule
+  Vector moved_;
+  Memory memory_;
+};
+
+}  // namespace garrison::certificate
