@@ -60,7 +60,8 @@ void bind_fit(py::module_& m) {
          double factor) {
         if (harmonics < 0) refuse("fit.harmonics", std::to_string(harmonics), "a number >= 0");
         if (const std::int64_t least = 2 * std::int64_t{harmonics} + 2; raw.rows() < least)
-          refuse("fit.harmonics", std::to_string(harmonics) + " with " + std::to_string(raw.rows()) + " records",
+          refuse("fit.harmonics",
+                 std::to_string(harmonics) + " with " + std::to_string(raw.rows()) + " records",
                  "at least " + std::to_string(least) + " records", "use more records, or fewer harmonics");
         require_range("fit.period", period, std::numeric_limits<double>::min());
         return identify(raw, first, {factors, harmonics, period, root, factor});

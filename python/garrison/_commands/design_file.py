@@ -2,6 +2,9 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from garrison import _core
 from garrison._commands.terminal import OK, Commands, print_json
@@ -35,8 +38,42 @@ def do(args: argparse.Namespace) -> int:
     print(f"filter  {summary['filter']}, {count(summary['agents'], 'agent')}, {count(summary['states'], 'state')}")
     for name, value in summary["params"].items():
         print(f"  {name} = {value}")
+    if args.show and whole:
+        _show_plant(Prepared.from_bytes(data))
     if args.show:
         print("gains" if whole else "the gains of one agent are listed by the design of the whole network")
     for line in gains:
         print(f"  {line}")
     return OK
+
+
+#: numbers in a matrix, and entries of a list, that are printed in full
+_FULL, _LISTED = 64, 40
+
+
+def _show_plant(prepared: Prepared) -> None:
+    """The model and the network that the gains are for."""
+    model, network = prepared.model, prepared.network
+    print("model")
+    print(f"  A = {_matrix(model.A)}")
+    for agent, C in enumerate(model.C[:_LISTED]):
+        print(f"  C[{agent}] = {_matrix(C)}")
+    _more(len(model.C), "observation matrices")
+    for what, names in (("states", model.state_names), ("outputs", model.output_names), ("agents", network.names)):
+        if names:
+            print(f"  {what}: {', '.join(names[:_LISTED])}")
+            _more(len(names), what)
+    kind = "directed, sender and receiver" if network.directed else "undirected"
+    print(f"network, {kind}, {count(len(network.edges), 'edge')}")
+    print(f"  {', '.join(f'{a}-{b}' for a, b in network.edges[:_LISTED])}")
+    _more(len(network.edges), "edges")
+
+
+def _matrix(values: Any) -> str:
+    found = np.asarray(values)
+    return str(found.tolist()) if found.size <= _FULL else f"{found.shape[0]} x {found.shape[1]} numbers"
+
+
+def _more(length: int, what: str) -> None:
+    if length > _LISTED:
+        print(f"  ... and {length - _LISTED} more {what}")

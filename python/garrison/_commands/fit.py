@@ -5,7 +5,7 @@ import argparse
 import numpy as np
 
 from garrison._commands.output import new_file, write_whole
-from garrison._commands.terminal import OK, Commands, console_for, print_table, print_warnings
+from garrison._commands.terminal import OK, Commands, console_for, number, print_table, print_warnings, whole_number
 from garrison.fitting import fit
 from garrison.scenario.section import moment
 from garrison.tables import read_records
@@ -22,15 +22,15 @@ def add(commands: Commands) -> None:
     command.add_argument("--from", dest="start", help="first record: YYYY-MM-DD, with a time, or seconds")
     command.add_argument("--to", dest="end", help="last record, included")
     command.add_argument(
-        "--factors", type=int, default=2, help="number of states: common factors of all stations (default 2)"
+        "--factors", type=whole_number, default=2, help="number of states: common factors of all stations (default 2)"
     )
     command.add_argument(
-        "--harmonics", type=int, default=2, help="number of harmonics of the seasonal cycle (default 2)"
+        "--harmonics", type=whole_number, default=2, help="number of harmonics of the seasonal cycle (default 2)"
     )
-    command.add_argument("--period", type=float, help="length of the cycle in samples (default: a year)")
+    command.add_argument("--period", type=number, help="length of the cycle in samples (default: a year)")
     command.add_argument("--root", action="store_true", help="work on the square root of the records")
     command.add_argument(
-        "--scale", type=float, default=1.0, help="multiply the records by this number, to convert units (default 1)"
+        "--scale", type=number, default=1.0, help="multiply the records by this number, to convert units (default 1)"
     )
     command.add_argument("-o", "--output", help="model file to write (JSON); default: standard output")
     command.add_argument("--force", action="store_true", help="replace an existing model file")

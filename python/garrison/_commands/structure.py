@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from garrison._commands.output import new_file, write_whole
-from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
+from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, whole_number
 from garrison.anatomy import Anatomy, read_anatomy, states_text, table_rows
 from garrison.words import refusal
 
@@ -18,7 +18,11 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("source", help="scenario file (TOML), or a CSV file with the matrix A")
     command.add_argument(
-        "--measured", type=int, nargs="*", metavar="STATE", help="with a CSV file: the state of each sensor, from 0"
+        "--measured",
+        type=whole_number,
+        nargs="*",
+        metavar="STATE",
+        help="with a CSV file: the state of each sensor, from 0",
     )
     command.add_argument("-o", "--output", help="picture to write (.png, .svg, .pdf)")
     command.add_argument("--force", action="store_true", help="replace an existing picture")

@@ -27,6 +27,25 @@ def console_for(stderr: bool = False) -> Console:
     return Console(stderr=stderr, width=None if stream.isatty() else _WIDTH, markup=False, emoji=False, highlight=False)
 
 
+def whole_number(text: str) -> int:
+    """A whole number on the command line; 3.0 is one."""
+    try:
+        value = float(text)
+        if value == int(value):
+            return int(value)
+    except (ValueError, OverflowError):
+        pass
+    raise argparse.ArgumentTypeError(f"got {text!r}, expected a whole number")
+
+
+def number(text: str) -> float:
+    """A number on the command line."""
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"got {text!r}, expected a number, without its unit") from None
+
+
 def clean(value: Any) -> Any:
     """Numbers that JSON does not have become null."""
     if isinstance(value, dict):

@@ -22,6 +22,7 @@ from garrison.scenario.overrides import overridden
 from garrison.scenario.section import Section, tables_of, whole
 from garrison.tables import Records
 from garrison.tables.clock import Moment
+from garrison.tables.text import decoded
 from garrison.words import only, refusal, shown
 
 Array = NDArray[np.float64]
@@ -130,10 +131,12 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
 def read_document(path: Path) -> dict[str, Any]:
     """The tables of a scenario file, unchecked. Raises IoError or InvalidInput."""
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return tomllib.loads(decoded(path, path.read_bytes(), "a TOML document"))
+    except _core.IoError:
+        raise
     except OSError as error:
         raise _core.IoError(f"{path}: got {error.strerror}, expected a scenario file (TOML)") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except tomllib.TOMLDecodeError as error:
         raise refusal(str(path), str(error), "a TOML document") from error
     except (ValueError, RecursionError) as error:  # a NUL in the path, a number or nesting without end
         raise refusal(str(path), f"{type(error).__name__}: {error}", "a TOML document") from error

@@ -56,17 +56,20 @@ def _text(path: Path) -> str:
         data = path.read_bytes()
     except OSError as error:
         raise _core.IoError(f"{path}: got {error.strerror}, expected a readable CSV file") from error
-    encoding = next((name for bom, name in _BOMS if data.startswith(bom)), "utf-8")
-    try:
-        text = data.decode(encoding)
-    except UnicodeDecodeError as error:
-        where = f"byte {error.start}"
-        raise _core.IoError(
-            f"{path}: got a file that is no text in UTF-8 ({where}), expected a readable CSV file"
-        ) from None
+    text = decoded(path, data, "a readable CSV file")
     if "\0" in text:
         raise _core.IoError(f"{path}: got a file with zero bytes, expected a readable CSV file")
     return text
+
+
+def decoded(path: Path, data: bytes, expected: str) -> str:
+    """UTF-8, or what the mark at the beginning says. Raises IoError for other bytes."""
+    encoding = next((name for bom, name in _BOMS if data.startswith(bom)), "utf-8")
+    try:
+        return data.decode(encoding)
+    except UnicodeDecodeError as error:
+        got = f"a file that is no text in {encoding.upper()} (byte {error.start})"
+        raise _core.IoError(f"{path}: got {got}, expected {expected}; save it as UTF-8") from None
 
 
 def _separator(lines: list[str]) -> str:
