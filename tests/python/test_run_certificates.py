@@ -1,6 +1,7 @@
 """Certificates of runs: options, arrays, words, files, scenarios."""
 
 import csv
+import json
 import pickle
 from pathlib import Path
 
@@ -144,3 +145,16 @@ def test_a_scenario_with_a_certificate_writes_its_kind(wind: Path, tmp_path: Pat
     assert "except with probability 1e-06 per agent and sample" in page and "certificate_expected" in page
     (tmp_path / "bad.toml").write_text(short.replace('spread = "flooded"', 'spread = "everywhere"'))
     assert main(["check", str(tmp_path / "bad.toml")]) == 2
+
+
+def test_fit_stores_levels_that_clean_records_keep(wind: Path, tmp_path: Path) -> None:
+    model = tmp_path / "model.json"
+    options = ["--factors", "1", "--root", "--scale", "0.514444", "--to", "1970-12-31", "--attacked", "3"]
+    assert main(["fit", str(wind / "irish_wind.csv"), *options, "-o", str(model)]) == 0
+    kept = json.loads(model.read_text())
+    levels = kept["levels"]
+    assert (levels["attacked"], levels["failure"]) == (3, 1e-3)
+    gaussian = gr.certificate.gaussian_levels(1e-3, 12, 1)
+    assert levels["z1"] > gaussian[0] and levels["z2"] > gaussian[1]  # tails of real records
+    assert np.allclose(kept["inflated"]["measurement_bound"], 1.1 * np.array(kept["measurement_bound"]))
+    assert kept["inflated"]["process_bound"] == pytest.approx(1.1 * kept["process_bound"])
