@@ -12,7 +12,7 @@ from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.objects import described_model, model_of
 from garrison.record import Run
-from garrison.words import count, refusal
+from garrison.words import count, refusal, require_order
 
 Array = NDArray[np.float64]
 
@@ -66,6 +66,7 @@ def calibrate(
     quantile of statistic / threshold over all sensors and samples is 1 (split conformal). Raises InvalidInput when the
     filter has no false_alarm, or for fewer than 1/false_alarm tests.
     """
+    require_order("calibrate", model, network, filter)
     y = numbers("measurements", measurements)
     attacked = arguments.whole("attacked", attacked, 0, model.agents - 1)
     asked = filter.params.get(_RATE)

@@ -46,7 +46,7 @@ EXCLUDED: dict[str, str] = (
         ),
         "written in Python, takes its arguments apart before the core sees them",
     )
-    | {"garrison.Verdict": "an enumeration of Python's own"}
+    | {"garrison.Verdict": "an enumeration of Python's own", "garrison.BoundKind": "the same"}
     | dict.fromkeys(("garrison._core.replay", "garrison._core.simulate"), "progress may be anything")
 )
 
