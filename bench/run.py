@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import certified
 import consensus
 import garrison as gr
 import garrison_bench as peers
@@ -28,7 +29,7 @@ from rich.table import Table
 
 HERE = Path(__file__).parent
 #: modules with tasks(repeats)
-TOPICS = (consensus, montecarlo, lambda0, rdkf, partial_sharing, structure, platoon)
+TOPICS = (certified, consensus, montecarlo, lambda0, rdkf, partial_sharing, structure, platoon)
 
 
 def limits() -> dict[str, float]:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, arguments
+from garrison.clean import clean_levels, clean_residuals
 from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.objects import described_model, model_of
@@ -109,7 +110,7 @@ def calibrate(
         thresholds,
         inflated,
         exceeds,
-        _levels(model, y, attacked, asked),
+        clean_levels(model, y, attacked, asked),
     )
 
 
@@ -133,16 +134,9 @@ def _matching(over: Callable[[float], float], asked: float) -> float:
     return float(np.exp(low))
 
 
-def _residuals(model: _core.Model, y: Array) -> tuple[Array, Array]:
-    """v (samples, outputs) and w (samples - 1, n) against the least-squares state of every complete sample."""
-    C = np.vstack(model.C)
-    x = y @ np.linalg.pinv(C).T
-    return y - x @ C.T, x[1:] - x[:-1] @ model.A.T
-
-
 def _inflated(model: _core.Model, y: Array) -> tuple[_core.Model, float]:
     """The model with bounds that these records keep too, and the chance that the next one breaks one of them."""
-    v, w = _residuals(model, y)
+    v, w = clean_residuals(model, y)
     v = v[np.isfinite(v).all(axis=1)]
     w = w[np.isfinite(w).all(axis=1)]
     plain = described_model(model)
@@ -154,16 +148,3 @@ def _inflated(model: _core.Model, y: Array) -> tuple[_core.Model, float]:
     plain["measurement_bound"] = np.maximum(bounds, seen).tolist()
     plain["process_bound"] = max(model.process_bound, float(np.linalg.norm(w, axis=1).max()))
     return model_of(plain), (model.agents + 1.0) / (len(v) + 1.0)
-
-
-def _levels(model: _core.Model, y: Array, attacked: int, delta: float) -> tuple[float, float] | None:
-    C = np.vstack(model.C)
-    v, _ = _residuals(model, y)
-    v = v[np.isfinite(v).all(axis=1)]
-    known = model.measurement_covariance
-    if C.shape != (model.agents, 1) or not np.allclose(np.abs(C), 1.0) or not len(known):
-        return None
-    if delta < 2.0 / (len(v) + 1.0):
-        return None
-    R = np.array([np.asarray(r).item() for r in known])
-    return _core.certificate.calibrated_levels(v * C.T, R, attacked, delta)

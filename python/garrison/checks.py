@@ -4,8 +4,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from garrison import _core
+from garrison import _core, arguments
 from garrison.arguments import number
+from garrison.expected import expected_certificate
 from garrison.words import hinted, require_order
 
 
@@ -65,14 +66,27 @@ def verdict(condition: dict[str, Any]) -> str:
 
 
 @hinted
-def check(model: _core.Model, network: _core.Network, filter: _core.Filter, *, seconds: float = math.inf) -> Check:
+def check(
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    *,
+    seconds: float = math.inf,
+    certificate: str = "none",
+    failure: float = 1e-6,
+    attacked: int | None = None,
+) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
 
     After `seconds` (> 0) searches end with a certified interval and say so; computations that have no partial result
     raise InvalidInput. Ctrl-C ends both. Without `seconds`, searches end after about a second of work, with the same
-    result on every machine.
+    result on every machine. certificate, failure, attacked: as in `prepare`; the bounds to expect are then among the
+    quantities.
 
     Raises InvalidInput when parameters, model and network do not fit together.
     """
     require_order("check", model, network, filter)
-    return Check(*_core.check(model, network, filter, number("seconds", seconds)))
+    conditions, quantities = _core.check(model, network, filter, number("seconds", seconds))
+    if wanted := arguments.certificate(filter, certificate, failure, attacked):
+        quantities += expected_certificate(_core.Design(model, network, filter, **wanted))
+    return Check(conditions, quantities)

@@ -124,11 +124,15 @@ def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], Non
     return report
 
 
+def certificate_of(scenario: Scenario, filter: _core.Filter) -> dict[str, Any]:
+    """What a filter of the scenario is to certify; agents with states of their own have bounds of their own."""
+    return {} if family_of(filter).own_plants else scenario.certificate
+
+
 def _options(scenario: Scenario, filter: _core.Filter, attacked: bool) -> dict[str, Any]:
     """Arguments that simulate and replay share."""
     options: dict[str, Any] = {k: scenario.run[k] for k in ("trials", "seed", "threads", "start") if k in scenario.run}
-    if not family_of(filter).own_plants:
-        options |= scenario.certificate
+    options |= certificate_of(scenario, filter)
     sets = filter.detail_names  # sets over time, for the pictures
     options["keep"] = (*KEEP, "signals", "details") if sets else KEEP
     return options | {"attack": scenario.attacks if attacked else [], "link": scenario.link}

@@ -43,7 +43,7 @@ class Prepared:
 
     def check(self) -> Check:
         """Conditions and bounds of the filter's theorems, as `garrison.check`."""
-        return check(self.model, self.network, self.filter)
+        return check(self.model, self.network, self.filter, **(self.certificate or {}))
 
     def simulate(self, **arguments: Any) -> Run:
         """`garrison.simulate` with this design: the same keyword arguments."""

@@ -38,6 +38,7 @@ MEMORY = 3 << 30  # bytes that a call may take
 EXCLUDED: dict[str, str] = {
     "garrison.Run": "made by simulate, replay and load; its arguments are theirs",
     "garrison.Verdict": "an enumeration of Python's own",
+    "garrison.BoundKind": "the same",
 } | dict.fromkeys(("garrison._core.replay", "garrison._core.simulate"), "progress may be anything")
 
 #: plain answers of functions, without arguments or methods that take any

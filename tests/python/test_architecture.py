@@ -11,9 +11,9 @@ PACKAGE = ROOT / "python" / "garrison"
 #: bottom first; a module imports modules of its own layer or below. Packages stand for all that is in them.
 LAYERS = (
     ("_core",),
-    ("words", "verdict"),
+    ("words", "verdict", "bound_kind"),
     ("numeric", "sizes", "storage", "objects", "filters"),
-    ("arguments", "parameters", "checks", "families", "tables", "longform"),
+    ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform"),
     ("attacks", "record", "doubts", "refuted"),
     ("drivers", "fitting", "calibration", "certificate"),
     ("prepared",),

@@ -56,7 +56,7 @@ def test_run_writes_summary_estimates_and_report(scenario: Path, tmp_path: Path)
     assert main(["run", str(scenario), "-o", str(out)]) == 0
     summary = json.loads((out / "summary.json").read_text())
     assert [row["attacked"] for row in summary["rows"]] == [True, False]
-    assert (out / "estimates.csv").read_text().startswith("trial,time,agent,x0,x1,bound\n")
+    assert (out / "estimates.csv").read_text().startswith("trial,time,agent,x0,x1,bound,bound_kind\n")
     page = (out / "report.html").read_text()
     assert "<svg" in page and "http" not in page.replace("http://www.w3.org", "").replace(
         "http://purl.org", ""

@@ -9,7 +9,7 @@ from conftest import ROOT
 
 def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (ROOT / "README.md").read_text()
-    ten_lines, one_agent = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    ten_lines, one_agent, certified = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
     save = re.search(r"`(gr\.prepare\(.*?\))`", text)
     assert save is not None
     monkeypatch.chdir(tmp_path)
@@ -17,6 +17,9 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     exec(ten_lines, names)
     run = names["run"]
     assert (run.error <= run.bound).all()  # type: ignore[attr-defined]
+    exec(certified, names)
+    run = names["run"]
+    assert (run.error <= run.bound)[:, 1:].all()  # type: ignore[attr-defined]
     exec(save.group(1), names)
     exec(one_agent, names)
     assert names["message"] is None  # it listens

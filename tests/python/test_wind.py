@@ -24,6 +24,8 @@ def test_hijacked_wind_is_as_the_readme_says(wind: Path) -> None:
     assert rows["structural, isolating", True]["mean_error"] < signal
     assert rows["central Kalman filter", True]["mean_error"] > 4 * signal
     assert rows["consensus, unprotected", True]["mean_error"] > 4 * signal
+    assert detector["share_with_bound"] >= 0.999
+    assert detector["median_bound"] <= 0.6
     for row in rows.values():
         assert row.get("inside_bound") in (None, 1.0)
 

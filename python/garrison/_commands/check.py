@@ -4,7 +4,7 @@ import argparse
 
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, print_warnings
 from garrison.checks import check, verdict
-from garrison.compare import rehearse
+from garrison.compare import certificate_of, rehearse
 from garrison.scenario import read_scenario
 
 
@@ -25,7 +25,7 @@ def do(args: argparse.Namespace) -> int:
     scenario = read_scenario(args.scenario)
     label, filter = scenario.filters[0]
     assert filter is not None  # the main filter is never the central one
-    found = check(scenario.model, scenario.network, filter)
+    found = check(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
     rehearse(scenario)
     code = OK if found.holds else NO
     if args.json:

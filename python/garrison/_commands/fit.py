@@ -32,6 +32,14 @@ def add(commands: Commands) -> None:
     command.add_argument(
         "--scale", type=number, default=1.0, help="multiply the records by this number, to convert units (default 1)"
     )
+    command.add_argument(
+        "--attacked",
+        type=int,
+        help="also store levels for certificates with so many stations attacked, and wider bounds",
+    )
+    command.add_argument(
+        "--failure", type=float, default=1e-3, help="rate at which clean records exceed these levels (default 1e-3)"
+    )
     command.add_argument("-o", "--output", help="model file to write (JSON); default: standard output")
     command.add_argument("--force", action="store_true", help="replace an existing model file")
     command.add_argument("--json", action="store_true", help="print JSON")
@@ -45,7 +53,7 @@ def do(args: argparse.Namespace) -> int:
     options = {"factors": args.factors, "harmonics": args.harmonics, "root": args.root, "factor": args.scale}
     found = fit(records, **options, **({"period": args.period} if args.period is not None else {}))
     print_warnings(records.notes, stderr=True)
-    text = found.to_json()
+    text = found.to_json(args.attacked, args.failure)
     if args.output:
         write_whole(new_file(args.output, args.force), lambda path: path.write_text(text + "\n", encoding="utf-8"))
     if args.json or not args.output:

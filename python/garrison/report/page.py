@@ -6,7 +6,7 @@ from pathlib import Path
 
 from garrison import _core
 from garrison.checks import check, verdict
-from garrison.compare import Row, signal_size
+from garrison.compare import Row, certificate_of, signal_size
 from garrison.families import family_of
 from garrison.figures import error_figure, innovation_figure, map_figure
 from garrison.figures.errors import smoothing_width
@@ -100,7 +100,7 @@ def _model_text(scenario: Scenario) -> str:
 
 
 def _check_table(scenario: Scenario, filter: _core.Filter) -> str:
-    found = check(scenario.model, scenario.network, filter)
+    found = check(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
     conditions = [[c["name"], c["meaning"], f"{c['value']:.4g}", c["needed"], verdict(c)] for c in found.conditions]
     quantities = [[q["name"], q["meaning"], f"{q['value']:.4g}"] for q in found.quantities]
     return table(["condition", "meaning", "value", "needed", "verdict"], conditions, 2) + table(

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <tuple>
 
 #include "garrison/certificate/interval.hpp"
 
@@ -92,6 +93,7 @@ void AgentCertifier::reset(std::int64_t t) noexcept {
   memory_.t = t;
   memory_.radius = kInfinity;
   memory_.age = -1;
+  memory_.firm = false;
   for (auto* part : {&memory_.center, &memory_.box, &memory_.ball})
     std::fill(part->begin(), part->end(), 0.0);
   memory_.ball_radius = 0.0;
@@ -145,6 +147,7 @@ void AgentCertifier::say(int round, Evidence& out) const noexcept {
   }
   const bool has = memory_.age >= 0;
   out.age = has ? memory_.age : 0;
+  out.firm = has && memory_.firm;
   std::copy(memory_.ball.begin(), memory_.ball.end(), out.ball.begin());
   out.ball.back() = memory_.ball_radius;
   if (!has) std::fill(out.ball.begin(), out.ball.end(), kNaN);
@@ -161,24 +164,23 @@ void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
   }
   bool whole = in.age <= std::max(plan_->ages(), 0);
   for (const double v : in.ball) whole = whole && !std::isnan(v);
-  if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.age);
+  if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.ball.back(), in.age, in.firm);
 }
 
 /// Takes over a ball that is better than the own one. Gaussian: which one is used must not depend on the
-/// noise through its age, so the freshest; of one age the smallest.
-void AgentCertifier::offer(const double* ball, int age) noexcept {
-  const double radius = ball[memory_.ball.size()];
+/// noise through its age, so first the firm ones, then the freshest; of one age the smallest.
+void AgentCertifier::offer(const double* center, double radius, int age, bool firm) noexcept {
   if (memory_.age >= 0) {
-    const double mine = aged(memory_.ball_radius, memory_.age);
-    const double theirs = aged(radius, age);
-    const bool better = plan_->deterministic()
-                            ? theirs < mine
-                            : age < memory_.age || (age == memory_.age && radius < memory_.ball_radius);
-    if (!better) return;
+    const auto rank = [&](double size, int old, bool is_firm) {
+      const int tier = is_firm && old <= plan_->firm_ages ? 0 : 1;
+      return plan_->deterministic() ? std::tuple(0, 0, aged(size, old)) : std::tuple(tier, old, size);
+    };
+    if (!(rank(radius, age, firm) < rank(memory_.ball_radius, memory_.age, memory_.firm))) return;
   }
-  std::copy_n(ball, memory_.ball.size(), memory_.ball.begin());
+  std::copy_n(center, memory_.ball.size(), memory_.ball.begin());
   memory_.ball_radius = radius;
   memory_.age = age;
+  memory_.firm = firm;
 }
 
 void AgentCertifier::end_round(int round) noexcept {
@@ -198,6 +200,10 @@ void AgentCertifier::witness() noexcept {
     rows_.add(source_[k], {plan_->rows.data() + row_[k] * n, n}, y_[k], plan_->variance(r),
               plan_->deterministic() ? plan_->width(r) : 0.0);
   }
+  // Without a row to spare a single liar passes for the only honest one, and the region reaches to wherever
+  // it says.
+  own_firm_ = rows_.present() > plan_->wanted.attacked + 1 &&
+              rows_.size() - plan_->wanted.attacked > static_cast<int>(n);
   if (rows_.size() == 0) return;
   Assumption a;
   a.s = plan_->wanted.attacked;
@@ -241,12 +247,7 @@ void AgentCertifier::keep(const Region& region) noexcept {
 }
 
 void AgentCertifier::relay_own() noexcept {
-  if (!std::isfinite(memory_.radius)) return;
-  if (plan_->deterministic() && memory_.age >= 0 && aged(memory_.ball_radius, memory_.age) <= memory_.radius)
-    return;
-  memory_.ball = memory_.center;
-  memory_.ball_radius = memory_.radius;
-  memory_.age = 0;
+  if (std::isfinite(memory_.radius)) offer(memory_.center.data(), memory_.radius, 0, own_firm_);
 }
 
 Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
@@ -294,6 +295,7 @@ void AgentCertifier::adopt(const AgentCertifier& other) noexcept {
   memory_.radius = other.memory_.radius;
   memory_.center = other.memory_.center;
   memory_.box = other.memory_.box;
+  own_firm_ = other.own_firm_;
   relay_own();
 }
 

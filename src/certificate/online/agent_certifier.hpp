@@ -37,13 +37,14 @@ class AgentCertifier final : public Certifier {
   void interval_rule() noexcept;
   void keep(const Region& region) noexcept;
   void relay_own() noexcept;
-  void offer(const double* ball, int age) noexcept;
+  void offer(const double* center, double radius, int age, bool firm) noexcept;
   double aged(double radius, int age) const;
 
   std::shared_ptr<const Plan> plan_;
   int id_;
   int rounds_;
   bool flooded_;
+  bool own_firm_ = false;         // see Evidence
   bool judged_ = true;            // the witness of this sample is there
   std::vector<int> agents_;       // whose rows may become known, ascending
   std::vector<std::size_t> at_;   // where each one's rows begin in y_, and their number

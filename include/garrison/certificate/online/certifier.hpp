@@ -24,6 +24,7 @@ struct Memory {
   std::vector<double> ball;
   double ball_radius = kNaN;
   int age = -1;
+  bool firm = false;
 
   template <class V>
   void visit(V& v) {
@@ -34,6 +35,7 @@ struct Memory {
     v("ball", ball);
     v("ball_radius", ball_radius);
     v.range("age", age, -1, kMostAge);
+    v("firm", firm);
   }
 };
 

@@ -19,7 +19,8 @@ struct Evidence {
   /// A region that contains the state unless a named assumption is false: its centre, moved to this sample,
   /// and its radius when it was new; all absent = none.
   std::vector<double> ball;
-  int age = 0;  ///< samples since
+  int age = 0;        ///< samples since
+  bool firm = false;  ///< every set of rows that may be the honest one had a row to spare
 
   bool has_ball() const { return ball.back() == ball.back(); }
 
@@ -28,6 +29,7 @@ struct Evidence {
     v.sparse("certificate.measurements", measurements);
     v.sparse("certificate.ball", ball);
     v.count("certificate.age", age, kMostAge);
+    v.flag("certificate.firm", firm);
   }
 };
 

@@ -38,9 +38,11 @@ struct Wanted {
 
 /// The rows of some agents, quantiles and how regions age. An agent holds those it can hear of.
 ///
-/// The failure probability has four equal shares: every measurement within z1 (T1), the least-squares vector
-/// of the full set of rows (T2), those of the partial sets that losses or locality leave, one per agent (T2),
-/// and process noise since. Which region is used depends on losses only: the freshest, of those the smallest.
+/// Failure probability, Gaussian. In a sample fail with 3/8 of it: some measurement is beyond z1 (T1), or the
+/// least-squares vector of the full set of rows beyond z2_full, or that of one of the partial sets that
+/// losses and locality leave, one per agent, beyond z2_partial (T2). An agent uses two regions, its own of
+/// this sample and one that was relayed; which one that is depends on losses only: the freshest firm one, of
+/// those the smallest. Process noise since then has the other quarter.
 struct GARRISON_EXPORT Plan {
   Wanted wanted;
   int agents = 0;
@@ -59,6 +61,8 @@ struct GARRISON_EXPORT Plan {
   std::vector<double> norm;  ///< ||A^k||, for the ages k = 0..ages()
   std::vector<double>
       added;  ///< what k steps of process noise add to a radius; empty = not known, nothing ages
+
+  int firm_ages = 0;  ///< a firm region goes before fresher ones up to this age
 
   bool deterministic() const { return wanted.failure == 0.0; }
   int ages() const { return static_cast<int>(added.size()) - 1; }
@@ -85,6 +89,7 @@ struct GARRISON_EXPORT Plan {
     v("A", A);
     v("norm", norm);
     v("added", added);
+    v.range("firm_ages", firm_ages, 0, 1000000);
   }
 };
 

@@ -1,0 +1,160 @@
+"""Certificates of runs: options, arrays, words, files, scenarios."""
+
+import csv
+import json
+import pickle
+from pathlib import Path
+
+import garrison as gr
+import numpy as np
+import pytest
+from garrison.cli import main
+
+NAMES = ("truth", "bound", "bound_kind", "published")
+
+
+def parts(agents: int = 8) -> tuple[gr.Model, gr.Network, gr.Filter]:
+    model = gr.Model(
+        [[0.98, 0.1], [0.0, 0.95]],
+        [[1, 0], [0, 1]] * (agents // 2),
+        process_bound=0.03,
+        measurement_bound=0.05,
+        process_covariance=1e-4 * np.eye(2),
+        measurement_covariance=[[[4e-4]]] * agents,
+    )
+    network = gr.Network([(i, (i + k) % agents) for i in range(agents) for k in (1, 2)], agents=agents)
+    return model, network, gr.filters.ScalarGain(rounds=4)
+
+
+@pytest.mark.parametrize("certificate", ["local", "flooded"])
+@pytest.mark.parametrize("failure", [0.0, 1e-6])
+def test_a_bound_that_holds_although_sensors_lie_and_messages_are_lost(certificate: str, failure: float) -> None:
+    attack = gr.attacks.Bias(agents=[2], value=7.0, start=5)
+    plain = gr.simulate(*parts(), steps=60, attack=attack, trials=5, link={"drop": 0.2}, conditions=False)
+    run = gr.simulate(
+        *parts(),
+        steps=60,
+        attack=attack,
+        trials=5,
+        link={"drop": 0.2},
+        conditions=False,
+        certificate=certificate,
+        failure=failure,
+        attacked=1,
+    )
+    assert np.array_equal(run.estimate, plain.estimate)
+    assert np.isnan(plain.bound).all() and (plain.bound_kind == gr.BoundKind.NONE).all() and plain.published is None
+    assert np.isnan(run.published).all()
+    late = run.bound[:, 10:]
+    assert np.isfinite(late).all()
+    assert (run.error <= run.bound)[:, 10:].all()
+    assert set(np.unique(run.bound_kind[:, 10:])) <= {gr.BoundKind.WITNESS, gr.BoundKind.RELAYED}
+    assert run.bytes_per_step > plain.bytes_per_step
+
+
+def test_every_absent_bound_says_why() -> None:
+    model, network, scalar = parts()
+    y = np.zeros((3, 8))
+    y[0, 1:] = np.nan
+    y[2, :4] = 9.0
+    run = gr.replay(model, network, scalar, measurements=y, certificate="flooded", failure=0.0, attacked=1)
+    assert np.isinf(run.bound[0, 0, 0]) and "too few measurements" in run.why_no_bound(0, 1)
+    assert run.why_no_bound(0, 2) == ""
+    assert np.isnan(run.bound[0, 3, 0]) and "contradict" in run.why_no_bound(agent=0, time=3)
+    assert "no certificate was asked for" in gr.replay(model, network, scalar, measurements=y).why_no_bound(0, 1)
+    lying = gr.attacks.Forge(agents=[0], offset=1.0, start=1)
+    lied = gr.replay(model, network, scalar, measurements=y, certificate="local", failure=0.0, attacked=1, attack=lying)
+    assert "lie in their messages" in lied.why_no_bound(3, 2)
+    with pytest.raises(gr.InvalidInput, match=r"time: got 4, expected a whole number in 0\.\.3"):
+        run.why_no_bound(0, 4)
+
+
+def test_the_published_bound_is_kept_beside_the_better_one() -> None:
+    model, network, _ = parts()
+    filt = gr.filters.Saturation(threshold=1.0, rounds=12, attacked=1, initial_error=2.0, chebyshev=True)
+    plain = gr.simulate(model, network, filt, steps=10, conditions=False)
+    run = gr.simulate(model, network, filt, steps=10, conditions=False, certificate="flooded")  # attacked: the filter's
+    assert np.array_equal(run.published, plain.bound, equal_nan=True)
+    assert (run.bound[0, 1:] <= plain.bound[0, 1:]).all()
+    assert run.bound_kind[0, 0, 0] == gr.BoundKind.PUBLISHED  # no sample yet
+    assert run.bound_kind[0, 5, 0] == gr.BoundKind.WITNESS
+
+
+def test_designs_agents_and_runs_keep_it(tmp_path: Path) -> None:
+    net = gr.prepare(*parts(), certificate="flooded", failure=1e-3, attacked=1)
+    assert net.certificate == {"certificate": "flooded", "failure": 1e-3, "attacked": 1}
+    assert gr.prepare(*parts()).certificate is None
+    assert eval(repr(net), {"garrison": gr}) == net
+    net.save(tmp_path / "net.gdesign")
+    again = gr.Prepared.load(tmp_path / "net.gdesign")
+    assert again == net and again.certificate == net.certificate and again != gr.prepare(*parts())
+    run = again.simulate(steps=6, seed=2, conditions=False)
+    agents = [gr.Agent.from_part(again.part(i)) for i in range(8)]
+    for t in range(1, 7):
+        messages = [a.sense(t, [run.measurements[0, t - 1, a.id]]) for a in agents]
+        for _ in range(agents[0].rounds):
+            messages = [a.fuse([messages[j] for j in a.neighbours]) for a in agents]
+        assert [a.bound for a in agents] == list(run.bound[0, t])
+        assert [a.bound_kind for a in agents] == list(run.bound_kind[0, t])
+    said = messages[0].fields
+    assert {"certificate.measurements", "certificate.ball", "certificate.age", "certificate.firm"} <= set(said)
+    run.save(tmp_path / "run.npz")
+    assert gr.Run.load(tmp_path / "run.npz") == run == pickle.loads(pickle.dumps(run))
+    with pytest.raises(gr.InvalidInput, match="certificate: got 'local' with a design"):
+        net.simulate(steps=3, certificate="local", attacked=1)
+
+
+def test_slips_are_refused_by_name() -> None:
+    with pytest.raises(gr.InvalidInput, match="attacked: got nothing, with certificate 'local'"):
+        gr.prepare(*parts(), certificate="local")
+    with pytest.raises(gr.InvalidInput, match=r"certificate.*floded.*flooded"):
+        gr.prepare(*parts(), certificate="floded", attacked=1)
+    with pytest.raises(gr.InvalidInput, match="failure: got 2, expected a probability"):
+        gr.prepare(*parts(), certificate="local", failure=2, attacked=1)
+    with pytest.raises(gr.InvalidInput, match="attacked: got 8, expected less than the number of sources, 8"):
+        gr.prepare(*parts(), certificate="local", attacked=8)
+    bare = gr.Model([[1.0]], [[1]] * 3)
+    with pytest.raises(gr.InvalidInput, match="measurement_covariance"):
+        gr.prepare(bare, gr.Network.ring(3), gr.filters.ScalarGain(), certificate="local", attacked=1)
+
+
+def test_check_says_what_to_expect() -> None:
+    plain = gr.check(*parts())
+    found = gr.check(*parts(), certificate="flooded", attacked=1)
+    assert len(found.quantities) == len(plain.quantities) + 2
+    assert 0 < found["certificate_expected"] < 0.2 and found["certificate_agents"] == 1
+    wider = gr.check(*parts(), certificate="flooded", attacked=2)
+    assert wider["certificate_expected"] > found["certificate_expected"]
+    assert (
+        gr.prepare(*parts(), certificate="flooded", attacked=1).check()["certificate_expected"]
+        == (found["certificate_expected"])
+    )
+
+
+def test_a_scenario_with_a_certificate_writes_its_kind(wind: Path, tmp_path: Path) -> None:
+    text = (wind / "hijacked.toml").read_text()
+    short = text.replace('from = "1971-01-01"', 'from = "1971-12-20"\nto = "1972-01-20"')
+    for name in ("irish_wind.csv", "stations.csv"):
+        (tmp_path / name).write_bytes((wind / name).read_bytes())
+    (tmp_path / "short.toml").write_text(short)
+    assert main(["run", str(tmp_path / "short.toml"), "-o", str(tmp_path / "out"), "--no-conditions"]) == 0
+    rows = list(csv.DictReader((tmp_path / "out" / "estimates.csv").read_text().splitlines()))
+    words = {row["bound_kind"] for row in rows if row["time"] != "0"}
+    assert words <= {"witness", "relayed", "published"} and "witness" in words
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "except with probability 1e-06 per agent and sample" in page and "certificate_expected" in page
+    (tmp_path / "bad.toml").write_text(short.replace('spread = "flooded"', 'spread = "everywhere"'))
+    assert main(["check", str(tmp_path / "bad.toml")]) == 2
+
+
+def test_fit_stores_levels_that_clean_records_keep(wind: Path, tmp_path: Path) -> None:
+    model = tmp_path / "model.json"
+    options = ["--factors", "1", "--root", "--scale", "0.514444", "--to", "1970-12-31", "--attacked", "3"]
+    assert main(["fit", str(wind / "irish_wind.csv"), *options, "-o", str(model)]) == 0
+    kept = json.loads(model.read_text())
+    levels = kept["levels"]
+    assert (levels["attacked"], levels["failure"]) == (3, 1e-3)
+    gaussian = gr.certificate.gaussian_levels(1e-3, 12, 1)
+    assert levels["z1"] > gaussian[0] and levels["z2"] > gaussian[1]  # tails of real records
+    assert np.allclose(kept["inflated"]["measurement_bound"], 1.1 * np.array(kept["measurement_bound"]))
+    assert kept["inflated"]["process_bound"] == pytest.approx(1.1 * kept["process_bound"])
