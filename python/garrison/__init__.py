@@ -42,6 +42,7 @@ from garrison.verdict import Verdict
 if TYPE_CHECKING:
     from garrison.answers import Analysis, analyze
     from garrison.calibration import Calibration, calibrate
+    from garrison.comparison import Comparison, compare
     from garrison.fitting import Fit, fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
@@ -61,6 +62,8 @@ _LATER = {
     "Resilience": "resilience",
     "resilience_per_byte": "resilience",
     "lmi_gains": "lmi",
+    "Comparison": "comparison",
+    "compare": "comparison",
     "Sweep": "sweeps",
     "sweep": "sweeps",
 }
@@ -71,6 +74,7 @@ __all__ = [
     "Attack",
     "Calibration",
     "Check",
+    "Comparison",
     "DesignInfeasible",
     "Error",
     "Filter",
@@ -95,6 +99,7 @@ __all__ = [
     "central_kalman",
     "certificate",
     "check",
+    "compare",
     "filters",
     "fit",
     "lambda0",
