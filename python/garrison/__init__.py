@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from garrison.answers import Analysis, analyze
     from garrison.calibration import Calibration, calibrate
     from garrison.comparison import Comparison, compare
+    from garrison.designing import Designed, design
     from garrison.fitting import Fit, fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
@@ -63,6 +64,8 @@ _LATER = {
     "resilience_per_byte": "resilience",
     "lmi_gains": "lmi",
     "Comparison": "comparison",
+    "Designed": "designing",
+    "design": "designing",
     "compare": "comparison",
     "Sweep": "sweeps",
     "sweep": "sweeps",
@@ -76,6 +79,7 @@ __all__ = [
     "Check",
     "Comparison",
     "DesignInfeasible",
+    "Designed",
     "Error",
     "Filter",
     "Fit",
@@ -100,6 +104,7 @@ __all__ = [
     "certificate",
     "check",
     "compare",
+    "design",
     "filters",
     "fit",
     "lambda0",
