@@ -44,6 +44,8 @@ from garrison.words import refuse_attribute
 if TYPE_CHECKING:
     from garrison.answers import Analysis, analyze
     from garrison.calibration import Calibration, calibrate
+    from garrison.comparison import Comparison, compare
+    from garrison.designing import Designed, design
     from garrison.fitting import Fit, fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
@@ -63,6 +65,10 @@ _LATER = {
     "Resilience": "resilience",
     "resilience_per_byte": "resilience",
     "lmi_gains": "lmi",
+    "Comparison": "comparison",
+    "Designed": "designing",
+    "design": "designing",
+    "compare": "comparison",
     "Sweep": "sweeps",
     "sweep": "sweeps",
 }
@@ -74,7 +80,9 @@ __all__ = [
     "BoundKind",
     "Calibration",
     "Check",
+    "Comparison",
     "DesignInfeasible",
+    "Designed",
     "Error",
     "Filter",
     "Fit",
@@ -98,6 +106,8 @@ __all__ = [
     "central_kalman",
     "certificate",
     "check",
+    "compare",
+    "design",
     "filters",
     "fit",
     "lambda0",

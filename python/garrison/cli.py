@@ -11,11 +11,23 @@ import traceback
 from pathlib import Path
 
 from garrison import _core
-from garrison._commands import analyze, calibrate, check, design_file, fit, run, structure, sweep, verify
+from garrison._commands import (
+    analyze,
+    calibrate,
+    check,
+    compare,
+    design,
+    design_file,
+    fit,
+    run,
+    structure,
+    sweep,
+    verify,
+)
 from garrison._commands import list as list_
 from garrison._commands.terminal import BUG, INTERRUPTED, OK, REFUSED
 
-COMMANDS = (run, sweep, check, analyze, list_, verify, fit, calibrate, structure, design_file)
+COMMANDS = (run, sweep, compare, check, analyze, design, list_, verify, fit, calibrate, structure, design_file)
 #: environment variable that shows where a bug was met
 _DEBUG = "GARRISON_DEBUG"
 

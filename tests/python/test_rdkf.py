@@ -6,7 +6,7 @@ import garrison as gr
 import numpy as np
 import pytest
 from garrison._core import rdkf as theory
-from garrison.compare import run_scenario, signal_size
+from garrison.jobs import run_scenario, signal_size
 from garrison.scenario import read_scenario
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -9,7 +9,7 @@ import garrison as gr
 import numpy as np
 import pytest
 from garrison.cli import main
-from garrison.compare import Row, run_scenario
+from garrison.jobs import Row, run_scenario
 from garrison.report import table_rows
 from garrison.report.table import at_time, detections, warnings_of
 from garrison.scenario import Scenario, read_scenario

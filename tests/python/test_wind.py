@@ -6,7 +6,7 @@ from pathlib import Path
 import garrison as gr
 import numpy as np
 import pytest
-from garrison.compare import run_scenario, signal_size
+from garrison.jobs import run_scenario, signal_size
 from garrison.scenario import read_scenario
 from garrison.tables import read_records
 

@@ -4,7 +4,7 @@ import argparse
 
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, print_warnings
 from garrison.checks import check, verdict
-from garrison.compare import certificate_of, rehearse
+from garrison.jobs import certificate_of, rehearse
 from garrison.scenario import read_scenario
 
 

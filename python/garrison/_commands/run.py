@@ -16,7 +16,7 @@ from garrison import _core
 from garrison._commands.output import output_folder
 from garrison._commands.terminal import OK, Commands, clean, console_for, print_json, print_table, print_warnings
 from garrison.bound_kind import BoundKind
-from garrison.compare import Row, run_scenario, signal_size
+from garrison.jobs import Row, run_scenario, signal_size
 from garrison.report import table_rows
 from garrison.report.table import error_note, warnings_of
 from garrison.scenario import Scenario, read_scenario

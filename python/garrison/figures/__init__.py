@@ -12,6 +12,8 @@ except ImportError:
 
 from garrison.figures.analysis import analysis_figure
 from garrison.figures.anatomy import anatomy_figure
+from garrison.figures.comparison import comparison_figure
+from garrison.figures.design import design_figure
 from garrison.figures.errors import error_figure
 from garrison.figures.innovations import innovation_figure
 from garrison.figures.map import map_figure, overview_figure
@@ -24,6 +26,8 @@ __all__ = [
     "analysis_figure",
     "anatomy_figure",
     "animate",
+    "comparison_figure",
+    "design_figure",
     "error_figure",
     "innovation_figure",
     "map_figure",

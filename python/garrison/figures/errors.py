@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.compare import Row
 from garrison.figures.style import LINES, axes, plain, time_label, times
+from garrison.jobs import Row
 from garrison.scenario import Scenario
 
 

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.compare import Row
 from garrison.figures.errors import error_figure
 from garrison.figures.style import LOOKS, plain
+from garrison.jobs import Row
 from garrison.record import Run
 from garrison.scenario import Scenario
 from garrison.verdict import Verdict

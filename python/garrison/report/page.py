@@ -6,10 +6,10 @@ from pathlib import Path
 
 from garrison import _core
 from garrison.checks import check, verdict
-from garrison.compare import Row, certificate_of, signal_size
 from garrison.families import family_of
 from garrison.figures import error_figure, innovation_figure, map_figure
 from garrison.figures.errors import smoothing_width
+from garrison.jobs import Row, certificate_of, signal_size
 from garrison.record import Run
 from garrison.report.html import figure, image, page, table
 from garrison.report.table import accusation_note, at_time, error_note, table_rows, warnings_of

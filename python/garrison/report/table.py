@@ -2,8 +2,8 @@
 
 import datetime as dt
 
-from garrison.compare import Row
 from garrison.families import family_of
+from garrison.jobs import Row
 from garrison.scenario import Scenario
 from garrison.words import count
 

@@ -1,0 +1,132 @@
+"""`garrison compare`: all families and baselines against all attacks on a scenario's plant."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from garrison._commands.output import new_file, write_whole
+from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table
+from garrison.comparison import Comparison, compare
+from garrison.comparison.run import COLUMNS
+from garrison.scenario import read_scenario
+from garrison.words import refusal
+
+
+def add(commands: Commands) -> None:
+    """Declare the command."""
+    command = commands.add_parser(
+        "compare",
+        help="run all filters and baselines against all attacks on a scenario's plant; one table, one picture",
+        allow_abbrev=False,
+    )
+    command.add_argument("scenario", help="scenario file (TOML); the agents of its attacks lie")
+    command.add_argument("--agents", help="agents that lie, by number or name, e.g. 2,5 (default: the scenario's)")
+    command.add_argument("--steps", type=int, default=100, help="samples of a trial (default 100)")
+    command.add_argument("--start", type=int, default=20, help="first sample under attack (default 20)")
+    command.add_argument("--trials", type=int, default=20, help="trials (default 20)")
+    command.add_argument(
+        "--size", type=float, help="of the lies, unit of the measurement (default ten times the noise)"
+    )
+    command.add_argument("-o", "--output", help="picture to write (.png, .svg, .pdf)")
+    command.add_argument("--full", action="store_true", help="print a row per filter and attack, not one per filter")
+    command.add_argument("--force", action="store_true", help="replace an existing picture")
+    command.add_argument("--json", action="store_true", help="print JSON")
+    command.set_defaults(do=do)
+
+
+def do(args: argparse.Namespace) -> int:
+    """Run the command."""
+    target = new_file(args.output, args.force) if args.output else None
+    scenario = read_scenario(args.scenario)
+    own = {label: filter for label, filter in scenario.filters if filter is not None}
+    attacked = _agents(args.agents, scenario.names) if args.agents else scenario.hit
+    if not attacked:
+        raise refusal("compare", "a scenario without attacks", "agents that lie", "name them with --agents")
+    found = compare(
+        scenario.model,
+        scenario.network,
+        attacked,
+        steps=args.steps,
+        start=args.start,
+        trials=args.trials,
+        size=args.size,
+        title=scenario.title,
+        progress=_tell if sys.stderr.isatty() else None,
+    )
+    mine = compare(
+        scenario.model,
+        scenario.network,
+        attacked,
+        filters={f"{label} (scenario)": filter for label, filter in own.items()},
+        baselines=False,
+        steps=args.steps,
+        start=args.start,
+        trials=args.trials,
+        size=args.size,
+    )
+    found.rows[:0] = mine.rows
+    if target is not None:
+        _write(target, found)
+    if args.json:
+        print_json({"title": found.title, "attacked": found.attacked, "rows": found.rows})
+        return OK
+    _print(found, args.full)
+    if args.output:
+        print(f"written to {args.output}")
+    return OK
+
+
+def _print(found: Comparison, full: bool) -> None:
+    tail = ["bound share", "inside", "bytes", "us"]
+    if full:
+        rows = [[row["filter"], row["attack"], *(_cell(row[key]) for key in COLUMNS)] for row in found.rows]
+        head = ["filter", "attack", "error 50 %", "95 %", "99 %", "delay", "false alarms", *tail, ""]
+    else:
+        keys = ("detection_delay", "false_alarms", "bound_share", "inside_bound", "bytes_per_sample", "microseconds")
+        rows = [
+            [row["filter"], _cell(row["none"]), *_worst(row, "measurements"), *_worst(row, "messages")]
+            + [_cell(row[key]) for key in keys]
+            + [_cell(row["status"])]
+            for row in found.summary()
+        ]
+        head = ["filter", "error 95 %, no attack", "worst lie in measurements", "", "worst lie in messages", ""]
+        head += ["delay", "false alarms", *tail, ""]
+    print_table(found.title, head, rows, console_for())
+
+
+def _worst(row: dict[str, Any], kind: str) -> list[str]:
+    return [_cell(row[kind]), _cell(row[f"{kind}_by"])]
+
+
+def _agents(text: str, names: list[str]) -> list[int]:
+    found = []
+    for word in (w.strip() for w in text.split(",")):
+        if word in names:
+            found.append(names.index(word))
+        elif word.isdigit() and int(word) < len(names):
+            found.append(int(word))
+        else:
+            raise refusal("--agents", repr(word), f"a number in 0..{len(names) - 1} or a name")
+    return found
+
+
+def _tell(words: str, done: int, total: int) -> None:
+    line = "" if done >= total else f"{done} of {total}: {words}"
+    print(f"\r\033[K{line[:100]}", end="", file=sys.stderr, flush=True)
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, str):
+        return "" if value == "ok" else value if len(value) <= 48 else f"{value[:45]}..."
+    return f"{value:.3g}"
+
+
+def _write(target: Path, found: Comparison) -> None:
+    figure = found.plot()
+    kind = target.suffix.lower().removeprefix(".")
+    if kind not in figure.canvas.get_supported_filetypes():
+        raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
+    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))

@@ -1,0 +1,74 @@
+"""Filters and attacks of a comparison when none are given: every family and every attack that can be set up alone."""
+
+from typing import Any
+
+import numpy as np
+
+from garrison import _core
+from garrison.drivers import simulate
+from garrison.filters import make_filter
+
+#: families whose agents drive plants of their own
+_OWN_PLANTS = ("platoon", "platoon_baseline")
+#: attacks that need something only the user can give: a field of a family's message, the width of a message
+_SPECIAL = ("falsify", "perturb")
+
+
+def filters_for(model: _core.Model, network: _core.Network, liars: int, size: float) -> dict[str, _core.Filter]:
+    """Label -> filter. The saturation filter's threshold covers what a clean run's innovations are."""
+    threshold = _threshold(model, network, size)
+    params: dict[str, dict[str, Any]] = {
+        "saturation": {"threshold": threshold, "rounds": 6, "attacked": liars},
+        "scalar_gain": {"rounds": 6},
+        "lfre": {"faulty": liars},
+        "partial_sharing": {"gain": 0.1},
+        "structural": {"isolate": True},
+    }
+    names = [info["name"] for info in _core.filter_infos() if info["name"] not in _OWN_PLANTS]
+    return {name: make_filter(name, params.get(name, {})) for name in names}
+
+
+def _threshold(model: _core.Model, network: _core.Network, size: float) -> float:
+    try:
+        filter = make_filter("scalar_gain", {"rounds": 6})
+        clean = simulate(model, network, filter, steps=50, conditions=False, keep=("estimate",))
+    except _core.Error:
+        return size
+    assert clean.error is not None
+    length = max(float(np.linalg.norm(c, 2)) for c in model.C if len(c))
+    typical = float(np.nanquantile(clean.error[:, 1:], 0.99))
+    return min(max(2.0 * length * typical, 1e-9), size) if np.isfinite(typical) else size
+
+
+def attacks_for(agents: list[int], states: int, start: int, size: float) -> dict[str, _core.Attack]:
+    """Label -> attack of these agents from `start` on; size: of a lie, unit of the measurement."""
+    params: dict[str, dict[str, Any]] = {
+        "bias": {"value": size},
+        "constant": {"value": size},
+        "random": {"size": size},
+        "ramp": {"slope": size / 10},
+        "sinusoid": {"amplitude": size},
+        "autoregressive": {"size": size},
+        "forge": {"offset": size},
+        "equivocate": {"size": size},
+        "outdated": {"age": 5},
+        "false_trajectory": {"offset": np.full(states, size)},
+        "coordinated": {"covariance": (size**2 * np.eye(len(agents) * states)).ravel()},
+    }
+    out = {}
+    for info in _core.attack_infos():
+        if info["name"] not in _SPECIAL:
+            schedule = [(start, agents)]
+            out[info["name"]] = _core.make_attack(info["name"], schedule, params=params.get(info["name"], {}))
+    return out
+
+
+def typical_size(model: _core.Model, steps: int) -> float:
+    """Ten times the spread of clean measurements' noise, or 1 where that is not known."""
+    bounds = np.asarray(model.measurement_bound).ravel()
+    if bounds.size and np.isfinite(bounds).all() and bounds.max() > 0:
+        return 10.0 * float(bounds.max())
+    R = model.measurement_covariance
+    if R is not None:
+        return 10.0 * float(np.sqrt(max(np.diag(np.asarray(r)).max(initial=0.0) for r in R))) or 1.0
+    return 1.0

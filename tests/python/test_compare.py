@@ -1,0 +1,136 @@
+"""gr.compare: baselines against what they should be, and the table as a user meets it."""
+
+import json
+
+import garrison as gr
+import numpy as np
+import pytest
+from conftest import ROOT
+from garrison.comparison import baselines
+
+
+def plant(agents=7, attacked=(2,)):
+    rng = np.random.default_rng(1)
+    rows = rng.normal(size=(agents, 1, 2))
+    rows /= np.linalg.norm(rows, axis=2, keepdims=True)
+    A = np.array([[1.0, 0.1], [0.0, 0.9]])
+    model = gr.Model(A, list(rows), process_covariance=1e-3, measurement_covariance=1e-2)
+    return model, gr.Network.complete(agents), list(attacked)
+
+
+def measured(model, network, attack=(), steps=40):
+    filter = gr.filters.ScalarGain(rounds=3)
+    return gr.simulate(model, network, filter, steps=steps, attack=attack, trials=1, seed=3, conditions=False)
+
+
+def kalman(model, y):
+    """Central Kalman filter in its textbook form, from a unit covariance."""
+    A, C, Q = model.A, np.vstack(model.C), model.process_covariance
+    R = np.diag([r[0, 0] for r in model.measurement_covariance])
+    x, P, out = np.zeros(len(A)), np.eye(len(A)), [np.zeros(len(A))]
+    for z in y:
+        x, P = A @ x, A @ P @ A.T + Q
+        K = P @ C.T @ np.linalg.inv(C @ P @ C.T + R)
+        x, P = x + K @ (z - C @ x), (np.eye(len(A)) - K @ C) @ P
+        out.append(x)
+    return np.array(out)
+
+
+def test_without_liars_subset_search_is_the_central_kalman_filter():
+    model, network, _ = plant()
+    y = measured(model, network).measurements[0]
+    found = baselines.subset_search(baselines.plant_of(model, network, 0), y)
+    assert np.allclose(found[:, 0], kalman(model, y), atol=1e-7)
+    assert np.allclose(found, found[:, :1])
+
+
+def test_a_lone_agent_fuses_nothing():
+    model = gr.Model([[0.9]], [[[1.0]]], process_covariance=0.1, measurement_covariance=0.2)
+    network = gr.Network([], agents=1)
+    y = np.random.default_rng(2).normal(size=(30, 1))
+    y[4] = np.nan
+    alone = baselines.plant_of(model, network, 1)
+    expected = baselines.covariance_intersection(alone, y)[:, 0]
+    for name in baselines.DISTRIBUTED:
+        assert np.allclose(baselines.BASELINES[name](alone, y)[:, 0], expected)
+    y[4] = 0.9 * expected[4]  # a missing measurement moves nothing; one as predicted moves the covariance alone
+    assert expected[5] == pytest.approx(0.9 * expected[4])
+
+
+def test_robust_baselines_stand_a_liar_that_breaks_the_others():
+    model, network, attacked = plant()
+    run = measured(model, network, gr.attacks.Bias(attacked, value=50.0, start=10))
+    setting = baselines.plant_of(model, network, 1)
+    honest = [i for i in range(7) if i not in attacked]
+
+    def worst(name):
+        found = baselines.BASELINES[name](setting, run.measurements[0])
+        return np.linalg.norm(found - run.truth[0][:, None], axis=2)[20:, honest].max()
+
+    broken = worst("covariance intersection")
+    for name in ("median of estimates", "trimmed mean of estimates", "L1 decoder (central)", "subset search (central)"):
+        assert worst(name) < 0.2 * broken
+
+
+def test_every_family_and_baseline_has_a_row_for_every_attack():
+    model, network, attacked = plant()
+    seen = []
+    found = gr.compare(model, network, attacked, steps=30, start=10, trials=3, progress=lambda *what: seen.append(what))
+    filters, attacks, numbers = found.table()
+    assert attacks[0] == "none"
+    assert set(baselines.BASELINES) | {"central Kalman filter", "saturation", "rdkf", "dkf"} <= set(filters)
+    assert len(found.rows) == len(filters) * len(attacks)
+    assert seen[-1][1] == seen[-1][2]
+    for row in found.rows:
+        assert (row["q95"] is None) == (row["status"] != "ok")
+    assert np.isfinite(numbers[:, 0]).sum() >= len(filters) - 2
+    assert [row["filter"] for row in found.summary()] == filters
+
+
+def test_numbers_are_those_of_the_run():
+    model, network, attacked = plant()
+    attack = gr.attacks.Bias(attacked, value=3.0, start=10)
+    filter = gr.filters.Structural(isolate=True, false_alarm=0.05)
+    found = gr.compare(
+        model, network, attacked, filters={"mine": filter}, attacks={"bias": attack}, baselines=False, steps=30,
+        start=10, trials=4, seed=5,
+    )  # fmt: skip
+    run = gr.simulate(model, network, filter, steps=30, attack=attack, trials=4, seed=5)
+    row = found.rows[1]
+    honest = [i for i in range(7) if i not in attacked]
+    assert row["q95"] == np.quantile(run.error[:, 10:, honest], 0.95)
+    right, false = [], set()
+    for trial, t, sets in run.accusations:
+        for agent in {a for some in sets for a in some}:
+            if agent in attacked and t >= 10:
+                right.append((trial, t))
+            else:
+                false.add((trial, agent))
+    firsts = [min(t for k, t in right if k == trial) for trial in {k for k, _ in right}]
+    assert row["detection_delay"] == np.median(firsts) - 10
+    assert row["false_alarms"] == len(false) / 4
+    assert row["bytes_per_sample"] == run.bytes_per_step
+
+
+def test_bad_input_is_refused_by_name():
+    model, network, _ = plant()
+    with pytest.raises(gr.InvalidInput, match="attacked: got nobody"):
+        gr.compare(model, network, [])
+    with pytest.raises(gr.InvalidInput, match="attacked"):
+        gr.compare(model, network, [7])
+    with pytest.raises(gr.InvalidInput, match="start"):
+        gr.compare(model, network, [1], steps=10, start=10)
+
+
+def test_the_command(tmp_path, capsys):
+    from garrison.cli import main
+
+    scenario, picture = str(ROOT / "examples/wind/rdkf.toml"), tmp_path / "all.png"
+    options = ["--agents", "1,DUB", "--trials", "1", "--steps", "12", "--start", "4"]
+    assert main(["compare", scenario, *options, "-o", str(picture)]) == 0
+    out = capsys.readouterr().out
+    assert "W-MSR" in out
+    assert picture.stat().st_size > 10_000
+    assert main(["compare", scenario, *options, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["attacked"] == [1, 6]
+    assert main(["compare", scenario, "--agents", "nobody"]) == 2
