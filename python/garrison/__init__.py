@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from garrison import attacks, filters
 from garrison._core import (
     Agent,
+    AgentInfo,
     Attack,
     DesignInfeasible,
     Error,
@@ -60,6 +61,7 @@ _LATER = {
 
 __all__ = [
     "Agent",
+    "AgentInfo",
     "Attack",
     "Calibration",
     "Check",

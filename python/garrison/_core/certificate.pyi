@@ -60,8 +60,8 @@ __all__: list[str] = [
     "subsets_window",
     "subsets_window_width",
     "table",
-    "whiteness",
     "two_sided",
+    "whiteness",
     "window_levels",
     "witness_subsets",
 ]
@@ -796,14 +796,15 @@ def ellipsoid(
 ) -> Region:
     """
     The Region (x - center)' shape^-1 (x - center) <= stretch^2, with its box and ball. Raises InvalidInput.
+    """
+
 def empirical_quantile(
     measured: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     delta: typing.SupportsFloat | typing.SupportsIndex,
     confidence: typing.SupportsFloat | typing.SupportsIndex = 0.95,
 ) -> typing.Annotated[list[float], "FixedSize(3)"]:
     """
-    (value, lower, upper): a level that a share `delta` of clean numbers `measured` (T,) exceeds, and where the true one is with
-    that confidence if they are independent; nan where T is too small. nan = missing.
+    (value, lower, upper): a level that a share `delta` of clean numbers `measured` (T,) exceeds, and where the true one is with that confidence if they are independent; nan where T is too small. nan = missing.
     """
 
 def error_system(
@@ -1099,6 +1100,18 @@ def two_sided(delta: typing.SupportsFloat | typing.SupportsIndex) -> float:
     z with P(|N(0,1)| > z) = delta; delta in (0, 1).
     """
 
+def whiteness(
+    residuals: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    lags: typing.SupportsInt | typing.SupportsIndex = 10,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    float,
+]:
+    """
+    (statistic (N,), lag-1 correlation (N,), p-value) of the Ljung-Box test of residuals (T, N), nan = missing; the p-value is that of the worst sensor times N: small = a residual depends on its past.
+    """
+
 def window_levels(
     delta: typing.SupportsFloat | typing.SupportsIndex,
     rows: typing.SupportsInt | typing.SupportsIndex,
@@ -1125,17 +1138,4 @@ def witness_subsets(
     W3: the same by all sets of sources that may be the honest ones, C(sources, s) of them; sharper.
     z3: chi(delta3, m - s - n), only where the law of the noise is known. Raises InvalidInput, also when there
     are more than `limit` sets.
-    """
-
-def whiteness(
-    residuals: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    lags: typing.SupportsInt | typing.SupportsIndex = 10,
-) -> tuple[
-    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
-    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
-    float,
-]:
-    """
-    (statistic (N,), lag-1 correlation (N,), p-value) of the Ljung-Box test of residuals (T, N), nan = missing; the
-    p-value is that of the worst sensor times N: small = a residual depends on its past.
     """
