@@ -35,9 +35,14 @@ from garrison._core import (
 )
 from garrison.checks import Check, check
 from garrison.drivers import central_kalman, replay, simulate
+from garrison.notebook import of_model, of_network
 from garrison.prepared import Prepared, prepare
 from garrison.record import Run
 from garrison.verdict import Verdict
+
+# Compiled classes know nothing of notebooks.
+setattr(Model, "_repr_html_", of_model)  # noqa: B010
+setattr(Network, "_repr_html_", of_network)  # noqa: B010
 
 if TYPE_CHECKING:
     from garrison.calibration import Calibration, calibrate

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.notebook import of_model, titled
 from garrison.sizes import require_memory
 from garrison.tables import Records
 from garrison.words import only, refusal, shown
@@ -54,6 +55,10 @@ class Fit:
     model: _core.Model
     identified: _core.Identified
     records: Records
+
+    def _repr_html_(self) -> str:
+        about = f"Fit: {len(self.records.stations)} stations, {self.records.dates[0]} to {self.records.dates[-1]}"
+        return titled(about, of_model(self.model))
 
     def measurements(self, records: Records) -> Array:
         """Measurements (samples, stations) of other records of the same stations and period, matched by name."""

@@ -60,7 +60,7 @@ def samples() -> dict[str, list[Any]]:
     found: dict[str, list[Any]] = {
         "Model": [model, other],
         "Network": [network, cut],
-        "Filter": [*filters, Listener()],
+        "Filter": filters,
         "AgentInfo": [_agent_info(model, network)],
         "Attack": [gr.attacks.Bias([0], value=1.0), gr.attacks.Silence([1])],
         "WorstAttack": [gr.partial_sharing.worst_covariance(analysis, [0], 1.0, "steady", 1, None)],

@@ -12,8 +12,8 @@ PACKAGE = ROOT / "python" / "garrison"
 LAYERS = (
     ("_core",),
     ("words", "verdict"),
-    ("numeric", "sizes", "storage", "objects", "filters"),
-    ("arguments", "parameters", "checks", "families", "tables", "longform"),
+    ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms"),
+    ("arguments", "parameters", "checks", "families", "tables", "longform", "labelled"),
     ("attacks", "record", "doubts"),
     ("drivers", "fitting", "calibration", "certificate"),
     ("prepared",),
