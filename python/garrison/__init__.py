@@ -40,9 +40,18 @@ from garrison.prepared import Prepared, prepare
 from garrison.record import Run
 from garrison.verdict import Verdict
 
-# Compiled classes know nothing of notebooks.
-setattr(Model, "_repr_html_", of_model)  # noqa: B010
-setattr(Network, "_repr_html_", of_network)  # noqa: B010
+
+def _model_html(self: Any) -> str:
+    return of_model(self)
+
+
+def _network_html(self: Any) -> str:
+    return of_network(self)
+
+
+# Compiled classes know nothing of notebooks; the stubs could not name them in annotations.
+setattr(Model, "_repr_html_", _model_html)  # noqa: B010
+setattr(Network, "_repr_html_", _network_html)  # noqa: B010
 
 if TYPE_CHECKING:
     from garrison.calibration import Calibration, calibrate

@@ -93,6 +93,28 @@ class Model:
     many of its first outputs an attacker can reach (default: all).
     Raises InvalidInput when shapes or names do not fit or a number is not finite.
     """
+    @staticmethod
+    def from_continuous(
+        A: typing.Any,
+        C: typing.Any,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        *,
+        process_intensity: typing.Any = None,
+        process_bound: typing.Any = None,
+        measurement_bound: typing.Any = None,
+        measurement_covariance: typing.Any = None,
+        states: typing.Any = None,
+        outputs: typing.Any = None,
+        sources: typing.Any = None,
+        units: typing.Any = None,
+        exposed: typing.Any = None,
+    ) -> Model:
+        """
+        The model of dx/dt = A x + white noise, sampled every `period` (> 0, in the unit of time of A), exactly
+        (C. F. Van Loan, IEEE TAC 23 (3), 1978). process_intensity: spectral density of the noise, (n, n) or a
+        number (times the identity), in state^2 per time; the model then has its process_covariance. process_bound:
+        of the noise from sample to sample, as in Model; the rest, too. Raises InvalidInput.
+        """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
     def __eq__(self, other: typing.Any) -> typing.Any: ...
@@ -116,6 +138,7 @@ class Model:
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
     def __str__(self) -> str: ...
+    def _repr_html_(self) -> str: ...
     @property
     def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
@@ -239,6 +262,7 @@ class Network:
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
     def __str__(self) -> str: ...
+    def _repr_html_(self) -> str: ...
     def index(self, agent: typing.Any) -> int:
         """
         The number of the agent with this name (or number).
