@@ -443,9 +443,7 @@ void bind_agents(py::module_& m) {
           "bound.")
       .def_property_readonly("model", &Prepared::model)
       .def_property_readonly("network", &Prepared::network)
-      .def_property_readonly("filter_name", [](const Prepared& p) { return p.filter().name(); })
-      .def_property_readonly("filter_params",
-                             [](const Prepared& p) { return from_params(p.filter().params()); })
+      .def_property_readonly("filter", [](const Prepared& p) { return filter_object(p.filter()); })
       .def_property_readonly("outline", &Prepared::gains_outline, "What the gains consist of, a line each.")
       .def(
           "agent", [](const std::shared_ptr<Prepared>& p, int id) { return agent_from(p, id); },

@@ -3,6 +3,7 @@
 #include "bindings.hpp"
 #include "convert.hpp"
 #include "kept.hpp"
+#include "own_attack.hpp"
 
 using namespace garrison;
 
@@ -10,12 +11,19 @@ namespace {
 
 using Phases = std::vector<std::pair<std::int64_t, std::vector<int>>>;
 
+Schedule schedule_of(const Phases& given, std::optional<std::int64_t> stop, double probability) {
+  std::vector<Schedule::Phase> phases;
+  for (const auto& [start, agents] : given) phases.push_back({start, agents});
+  return Schedule(std::move(phases), stop.value_or(Schedule::kForever), probability);
+}
+
 AnyAttack make(const std::string& name, const Phases& schedule, std::optional<std::int64_t> stop,
                double probability, const py::dict& params) {
-  std::vector<Schedule::Phase> phases;
-  for (const auto& [start, agents] : schedule) phases.push_back({start, agents});
-  return make_attack(name, Schedule(std::move(phases), stop.value_or(Schedule::kForever), probability),
-                     to_params(name, params));
+  return make_attack(name, schedule_of(schedule, stop, probability), to_params(name, params));
+}
+
+py::dict params_shown(const AnyAttack& a) {
+  return own::is_own(a) ? py::dict(py::arg("function") = own::function_of(a)) : from_params(a.params);
 }
 
 /// The arguments of `make`.
@@ -26,10 +34,16 @@ py::dict arguments(const AnyAttack& a) {
   return py::dict(
       py::arg("name") = a.name, py::arg("schedule") = phases,
       py::arg("stop") = stop == Schedule::kForever ? py::object(py::none()) : py::object(py::int_(stop)),
-      py::arg("probability") = a.schedule().probability(), py::arg("params") = from_params(a.params));
+      py::arg("probability") = a.schedule().probability(), py::arg("params") = params_shown(a));
 }
 
 AnyAttack attack_from(const py::dict& given) {
+  if (const auto params = given["params"].cast<py::dict>(); params.contains("function"))
+    return own::attack(
+        given["name"].cast<std::string>(),
+        schedule_of(given["schedule"].cast<Phases>(), given["stop"].cast<std::optional<std::int64_t>>(),
+                    given["probability"].cast<double>()),
+        params["function"]);
   return make(given["name"].cast<std::string>(), given["schedule"].cast<Phases>(),
               given["stop"].cast<std::optional<std::int64_t>>(), given["probability"].cast<double>(),
               given["params"].cast<py::dict>());
@@ -48,12 +62,14 @@ std::string code(const AnyAttack& a) {
   py::dict all;
   const auto& phases = a.schedule().phases();
   if (phases.size() == 1) all["agents"] = phases.front().agents;
-  for (const auto& [name, value] : changed_params(a.params, info_of(a.name).params)) all[name] = value;
+  for (const auto& [name, value] :
+       own::is_own(a) ? params_shown(a) : changed_params(a.params, info_of(a.name).params))
+    all[name] = value;
   if (phases.size() > 1) all["schedule"] = arguments(a)["schedule"];
   if (phases.size() == 1 && phases.front().start != 1) all["start"] = phases.front().start;
   if (a.schedule().stop() != Schedule::kForever) all["stop"] = a.schedule().stop();
   if (a.schedule().probability() != 1.0) all["probability"] = a.schedule().probability();
-  return as_code("garrison.attacks." + class_name(a.name), all);
+  return as_code("garrison.attacks." + (own::is_own(a) ? a.name : class_name(a.name)), all);
 }
 
 /// A call of garrison.attacks.<Name>: agents or schedule, and the attack's own parameters.
@@ -134,7 +150,9 @@ void bind_attacks(py::module_& m) {
   attack.def_readonly("name", &AnyAttack::name)
       .def_property_readonly("target",
                              [](const AnyAttack& a) { return a.message ? "message" : "measurement"; })
-      .def_property_readonly("params", [](const AnyAttack& a) { return from_params(a.params); })
+      .def_property_readonly("params", &params_shown)
+      .def_property_readonly(
+          "own", [](const AnyAttack& a) { return own::is_own(a); }, "Its lies come from a Python function.")
       .def_property_readonly(
           "agents", [](const AnyAttack& a) { return a.schedule().everyone(); },
           "Every agent that is attacked at some time.")
@@ -154,6 +172,14 @@ void bind_attacks(py::module_& m) {
       attack, [](const AnyAttack& a, const AnyAttack& b) { return code(a) == code(b); },
       [](const AnyAttack& a) { return py::str(code(a)); });
   bind_functions(m);
+  m.def(
+      "custom_attack",
+      [](const std::string& name, const py::object& function, const Phases& schedule,
+         std::optional<std::int64_t> stop, double probability) {
+        return own::attack(name, schedule_of(schedule, stop, probability), function);
+      },
+      py::arg("name"), py::arg("function"), py::arg("schedule"), py::arg("stop") = py::none(),
+      py::arg("probability") = 1.0, "An attack by a Python function; use garrison.attacks.custom.");
   m.def("make_attack", &make, py::arg("name"), py::arg("schedule"), py::arg("stop") = py::none(),
         py::arg("probability") = 1.0, py::arg("params") = py::dict(),
         "The attack `name`. schedule: (start, agents) phases in order of time.");

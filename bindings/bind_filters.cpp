@@ -6,6 +6,8 @@
 #include "budget.hpp"
 #include "garrison/filters/families.hpp"
 #include "kept.hpp"
+#include "own_family.hpp"
+#include "own_filter.hpp"
 
 using namespace garrison;
 
@@ -76,8 +78,13 @@ std::unique_ptr<FilterHandle> named_filter(const std::string& name, const py::di
   return made;
 }
 
+py::dict params_shown(const FilterHandle& f) {
+  return own::is_own(*f.filter) ? own::attributes_of(*f.filter) : from_params(f.filter->params());
+}
+
 std::string code(const FilterHandle& f) {
   const std::string name = f.filter->name();
+  if (own::is_own(*f.filter)) return as_code(name, own::attributes_of(*f.filter));
   for (const FamilyInfo& family : families())
     if (family.name == name)
       return as_code("garrison.filters." + class_name(name),
@@ -87,10 +94,69 @@ std::string code(const FilterHandle& f) {
 
 }  // namespace
 
+py::object filter_object(const AnyFilter& filter) {
+  if (own::is_own(filter)) return own::object_of(filter);
+  return py::cast(named_filter(filter.name(), from_params(filter.params())));
+}
+
+namespace {
+
+constexpr const char* kFilterDoc =
+    R"(A filter: a family of garrison.filters with its parameters, or a class of your own derived from this one.
+
+A filter of your own has these methods, called in every sample for every agent; it runs in simulate and replay with
+the same links, attacks, records and reports as every family. It is single-threaded, and slow: Python runs
+at every agent, sample and round. `agent` is a garrison.AgentInfo, `state` is the agent's own object and may be
+changed in place, a message is a dict of named arrays, inbox a dict: sender -> message (lost ones are not in it).
+
+  sense(agent, state, y, t) -> message     once per sample; y (outputs,), nan = missing
+  fuse(agent, state, inbox, round) -> message   `rounds` times per sample; what the last one returns is not sent
+
+and optionally:
+
+  rounds = 1                               rounds per sample (attribute, or set in __init__)
+  signals = ("name", ...)                  numbers of `report` that a run can keep
+  layout(model) -> {"estimate": n}         fields of a message and how many numbers each has (the default)
+  design(model, network) -> gains          once; agents find it as agent.gains
+  start(agent, x0) -> state                an object or dict with "estimate", (n,); default: just that
+  report(agent, state) -> dict             bound, statistic, threshold, verdict (garrison.Verdict or its name), accused
+                                           (list of agents), and the signals; what is left out does not exist
+  rejoin(agent, state, inbox, t)           for an estimate that is not finite; default: median of "estimate" of the inbox
+  expected(agent, state) -> (outputs,)     what it predicts to measure next; default C A estimate
+  alarm_level(agent, state) -> number      deviation from that which it tolerates; default inf
+
+A message of None sends nothing. Attributes set in __init__ (after super().__init__()) are the parameters: they stand
+in the repr, in pickles and in saved runs. What a method raises comes back with its traceback and a note that names
+the agent and the sample.)";
+
+}  // namespace
+
 void bind_filters(py::module_& m) {
-  py::class_<FilterHandle> filter(m, "Filter", "A filter family with its parameters. Immutable.");
-  filter.def_property_readonly("name", [](const FilterHandle& f) { return f.filter->name(); })
-      .def_property_readonly("params", [](const FilterHandle& f) { return from_params(f.filter->params()); })
+  py::class_<own::AgentInfo>(m, "AgentInfo", "What one agent of a filter of your own knows of itself.")
+      .def_readonly("id", &own::AgentInfo::id, "Its number, 0..agents-1.")
+      .def_readonly("agents", &own::AgentInfo::agents, "Agents of the whole network.")
+      .def_readonly("name", &own::AgentInfo::name, "Its name in the network, or nothing.")
+      .def_readonly("A", &own::AgentInfo::A, "Of the plant, (n, n).")
+      .def_readonly("C", &own::AgentInfo::C, "Its own rows, (outputs, n).")
+      .def_readonly("neighbours", &own::AgentInfo::neighbours, "Agents that it hears.")
+      .def_readonly("gains", &own::AgentInfo::gains, "What design() returned.")
+      .def("__repr__", [](const own::AgentInfo& a) { return "<AgentInfo " + std::to_string(a.id) + ">"; });
+
+  py::class_<FilterHandle> filter(m, "Filter", kFilterDoc);
+  const auto make_own = [] {
+    auto made = std::make_unique<FilterHandle>();
+    made->filter = own::filter_of(made.get());
+    return made;
+  };
+  filter.def(py::init(make_own))
+      .def(py::pickle(
+          [](const FilterHandle& f) { return params_shown(f); },
+          [make_own](const py::dict& attributes) { return std::make_pair(make_own(), attributes); }))
+      .def_property_readonly("name", [](const FilterHandle& f) { return f.filter->name(); })
+      .def_property_readonly("params", &params_shown)
+      .def_property_readonly(
+          "own", [](const FilterHandle& f) { return own::is_own(*f.filter); },
+          "Written in Python: a class derived from garrison.Filter.")
       .def_property_readonly(
           "signal_names", [](const FilterHandle& f) { return f.filter->signal_names(); },
           "Names of the signals that a run can keep.")

@@ -2,6 +2,7 @@
 // The plant.
 #include "bindings.hpp"
 #include "convert.hpp"
+#include "garrison/core/discretise.hpp"
 #include "garrison/core/model.hpp"
 #include "kept.hpp"
 
@@ -142,6 +143,26 @@ Model make_model(const py::object& A, const py::object& C, const py::object& pro
   return {plant, std::move(rows), std::move(noise), std::move(reach), std::move(labels)};
 }
 
+/// The spectral density of continuous noise; a number times the identity, None = no noise.
+Matrix intensity_of(const py::object& given, Eigen::Index n) {
+  if (given.is_none()) return Matrix::Zero(n, n);
+  if (convert::scalar(given)) return convert::number("process_intensity", given) * Matrix::Identity(n, n);
+  return convert::eigen(convert::matrix("process_intensity", given));
+}
+
+Model make_from_continuous(const py::object& A, const py::object& C, double period,
+                           const py::object& process_intensity, const py::object& process_bound,
+                           const py::object& measurement_bound, const py::object& measurement_covariance,
+                           const py::object& states, const py::object& outputs, const py::object& sources,
+                           const py::object& units, const py::object& exposed) {
+  const Matrix F = convert::eigen(convert::matrix("A", A));
+  const Discretised found = discretise(F, intensity_of(process_intensity, F.rows()), period);
+  const py::object covariance =
+      process_intensity.is_none() ? py::object(py::none()) : py::cast(found.covariance);
+  return make_model(py::cast(found.A), C, process_bound, measurement_bound, covariance,
+                    measurement_covariance, states, outputs, sources, units, exposed);
+}
+
 std::vector<Matrix> matrices(const Model& model) {
   std::vector<Matrix> all;
   for (int i = 0; i < model.agents(); ++i) all.push_back(model.C(i));
@@ -207,6 +228,20 @@ void bind_model(py::module_& m) {
            py::arg("process_covariance") = py::none(), py::arg("measurement_covariance") = py::none(),
            py::arg("states") = py::none(), py::arg("outputs") = py::none(), py::arg("sources") = py::none(),
            py::arg("units") = py::none(), py::arg("exposed") = py::none())
+      .def_static(
+          "from_continuous", &make_from_continuous, py::arg("A"), py::arg("C"), py::arg("period"),
+          py::kw_only(), py::arg("process_intensity") = py::none(), py::arg("process_bound") = py::none(),
+          py::arg("measurement_bound") = py::none(), py::arg("measurement_covariance") = py::none(),
+          py::arg("states") = py::none(), py::arg("outputs") = py::none(), py::arg("sources") = py::none(),
+          py::arg("units") = py::none(), py::arg("exposed") = py::none(),
+          "The model of dx/dt = A x + white noise, sampled every `period` (> 0, in the unit of time of A), "
+          "exactly\n"
+          "(C. F. Van Loan, IEEE TAC 23 (3), 1978). process_intensity: spectral density of the noise, (n, n) "
+          "or "
+          "a\n"
+          "number (times the identity), in state^2 per time; the model then has its process_covariance. "
+          "process_bound:\n"
+          "of the noise from sample to sample, as in Model; the rest, too. Raises InvalidInput.")
       .def_property_readonly("A", &Model::A, "(n, n)")
       .def_property_readonly("C", &matrices, "One (m_i, n) array per agent.")
       .def_property_readonly("states", &Model::states, "n")

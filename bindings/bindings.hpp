@@ -37,6 +37,9 @@ struct FilterHandle {
   std::shared_ptr<const garrison::AnyFilter> filter;
 };
 
+/// A filter as Python sees it.
+py::object filter_object(const garrison::AnyFilter& filter);
+
 /// Parameters between Python and C++; `owner` names the filter or attack in a refusal.
 garrison::ParamMap to_params(const std::string& owner, const py::dict& given);
 py::dict from_params(const garrison::ParamMap& params);

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from garrison import attacks, filters
 from garrison._core import (
     Agent,
+    AgentInfo,
     Attack,
     DesignInfeasible,
     Error,
@@ -36,10 +37,24 @@ from garrison._core import (
 from garrison.bound_kind import BoundKind
 from garrison.checks import Check, check
 from garrison.drivers import central_kalman, replay, simulate
+from garrison.notebook import of_model, of_network
 from garrison.prepared import Prepared, prepare
 from garrison.record import Run
 from garrison.verdict import Verdict
 from garrison.words import refuse_attribute
+
+
+def _model_html(self: Any) -> str:
+    return of_model(self)
+
+
+def _network_html(self: Any) -> str:
+    return of_network(self)
+
+
+# Compiled classes know nothing of notebooks; the stubs could not name them in annotations.
+setattr(Model, "_repr_html_", _model_html)  # noqa: B010
+setattr(Network, "_repr_html_", _network_html)  # noqa: B010
 
 if TYPE_CHECKING:
     from garrison.answers import Analysis, analyze
@@ -75,6 +90,7 @@ _LATER = {
 
 __all__ = [
     "Agent",
+    "AgentInfo",
     "Analysis",
     "Attack",
     "BoundKind",

@@ -10,18 +10,18 @@ stop: first sample that is not attacked any more; probability: chance that an ag
 The other parameters are those of the attack. Raises InvalidInput when something does not fit.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, NoReturn
 
 from garrison import _core
 from garrison._core import Attack
 from garrison._core.attacks import *  # noqa: F403  (what the core registers)
-from garrison.words import hinted, refusal, refuse_attribute, require_order
+from garrison.words import hinted, refusal, refuse_attribute, require_order, shown
 
 #: the name of every attack's function
 ATTACKS = tuple(name for name in vars(_core.attacks) if not name.startswith("_"))
 
-__all__ = ["ATTACKS", "Attack", "make", "worst_covariance", *ATTACKS]
+__all__ = ["ATTACKS", "Attack", "custom", "custom_message", "make", "worst_covariance", *ATTACKS]
 
 
 @hinted
@@ -32,6 +32,70 @@ def make(name: str, agents: Iterable[int] | int | None = None, **arguments: Any)
         return _core.make_attack(name, [(1, [0])])  # refuses, with the nearest name
     attack: Attack = getattr(_core.attacks, ATTACKS[names.index(name)])(agents, **arguments)
     return attack
+
+
+def _custom(
+    name: str,
+    function: Callable[..., Any],
+    agents: Iterable[int] | int | None,
+    start: int | None,
+    stop: int | None,
+    schedule: Iterable[tuple[int, Iterable[int]]] | None,
+    probability: float,
+) -> Attack:
+    if not callable(function):
+        raise refusal(name, shown(function), "a function")
+    if (agents is None) == (schedule is None):
+        got = "neither agents nor schedule" if agents is None else "both agents and schedule"
+        raise refusal(name, got, "exactly one of them")
+    if schedule is None:
+        one = agents if isinstance(agents, Iterable) else [agents]
+        phases = [(1 if start is None else start, list(one))]
+    elif start is not None:
+        raise refusal(name, "start and schedule", "one of them", "every phase of a schedule has its start")
+    else:
+        phases = [(time, list(these)) for time, these in schedule]
+    return _core.custom_attack(name, function, phases, stop, probability)  # type: ignore[arg-type]
+
+
+@hinted
+def custom(
+    function: Callable[..., Any],
+    agents: Iterable[int] | int | None = None,
+    *,
+    start: int | None = None,
+    stop: int | None = None,
+    schedule: Iterable[tuple[int, Iterable[int]]] | None = None,
+    probability: float = 1.0,
+) -> Attack:
+    """An attack on measurements by a function of your own: function(t, agent, y, rng) -> what the sensor says instead.
+
+    y: (outputs,) of this agent that can be attacked, nan = missing; return as many numbers (nan and inf are allowed).
+    rng: a numpy.random.Generator that depends on seed, trial, t and agent only. An object with __call__ is copied for
+    every trial, so it may remember. Runs are single-threaded with it. The rest as for every attack. What the function
+    raises comes back with its traceback and a note that names the agent and the sample.
+    """
+    return _custom("custom", function, agents, start, stop, schedule, probability)
+
+
+@hinted
+def custom_message(
+    function: Callable[..., Any],
+    agents: Iterable[int] | int | None = None,
+    *,
+    start: int | None = None,
+    stop: int | None = None,
+    schedule: Iterable[tuple[int, Iterable[int]]] | None = None,
+    probability: float = 1.0,
+) -> Attack:
+    """Lies in messages by a function of your own: function(t, round, sender, receiver, message, rng) -> message.
+
+    message: dict of the fields that the filter sends (arrays, numbers, flags, lists of agents); return the fields that
+    change, or None to send nothing to this receiver. rng: a numpy.random.Generator that depends on seed, trial, t,
+    round, sender and receiver only. It is called once per neighbour and round, and must not remember anything. The
+    rest as in `custom`.
+    """
+    return _custom("custom_message", function, agents, start, stop, schedule, probability)
 
 
 @hinted

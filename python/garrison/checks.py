@@ -7,6 +7,7 @@ from typing import Any
 from garrison import _core, arguments
 from garrison.arguments import number
 from garrison.expected import expected_certificate
+from garrison.notebook import of_check
 from garrison.words import hinted, require_order
 
 
@@ -47,6 +48,9 @@ class Check:
             if entry["name"] == name:
                 return float(entry["value"])
         raise KeyError(f"{name!r}; there are {[e['name'] for e in entries]}")
+
+    def _repr_html_(self) -> str:
+        return of_check(self, [verdict(c) for c in self.conditions])
 
     def __str__(self) -> str:
         entries = [*self.conditions, *self.quantities]

@@ -21,7 +21,9 @@ def _cheap(model: _core.Model, filter: _core.Filter) -> bool:
 
 
 def of_conditions(model: _core.Model, network: _core.Network, filter: _core.Filter) -> list[str]:
-    """One line per required condition that is not met; one line when they were not evaluated."""
+    """One line per required condition that is not met (filters of one's own state none), or that was not evaluated."""
+    if filter.own:
+        return []
     if not _cheap(model, filter):
         return ["conditions were not checked, which takes long for a network of this size: garrison.check does"]
     try:

@@ -70,6 +70,12 @@ def _run(
     return run
 
 
+def _threads(filter: _core.Filter, attacks: list[_core.Attack], threads: int) -> int:
+    """Python code runs in one thread: a filter or an attack of one's own need not be thread-safe."""
+    found = arguments.whole("threads", threads, 0)
+    return 1 if filter.own or any(attack.own for attack in attacks) else found
+
+
 @hinted
 def simulate(
     model: _core.Model,
@@ -107,7 +113,8 @@ def simulate(
     link: drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says), cuts: a
     list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of (sample,
     round, sender, receiver). keep: of "estimate", "report", "signals", "measurements",
-    "details" (lists such as sets). threads: 0 = all cores it may use; the result does not depend on it.
+    "details" (lists such as sets). threads: 0 = all cores it may use; the result does not depend on it; filters and
+    attacks of your own (garrison.Filter, garrison.attacks.custom) always run in one.
     progress(done, total) is called at most once per percent. conditions: evaluate the filter's conditions first, and
     put the required ones that are not met into the run's `warnings`. certificate, failure, attacked: what to certify at
     run time (see garrison.prepare). design: made before of these very three (garrison.prepare does that).
@@ -128,7 +135,7 @@ def simulate(
         trials=trials,
         first_trial=arguments.whole("first_trial", first_trial, 0, _MOST_TRIALS - trials),
         seed=arguments.whole("seed", seed, 0, 2**64 - 1),
-        threads=arguments.whole("threads", threads, 0),
+        threads=_threads(filter, attacks, threads),
         start=None if start is None else arguments.table("start", start),
         attacks=attacks,
         link=arguments.link(link),
@@ -189,7 +196,7 @@ def replay(
         trials=trials,
         first_trial=arguments.whole("first_trial", first_trial, 0, _MOST_TRIALS - trials),
         seed=arguments.whole("seed", seed, 0, 2**64 - 1),
-        threads=arguments.whole("threads", threads, 0),
+        threads=_threads(filter, attacks, threads),
         start=None if start is None else arguments.table("start", start),
         attacks=attacks,
         link=arguments.link(link),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison.arguments import whole
 from garrison.clean import clean_levels
+from garrison.notebook import of_model, titled
 from garrison.numeric import real
 from garrison.sizes import require_memory
 from garrison.tables import Records
@@ -59,6 +60,10 @@ class Fit:
     model: _core.Model
     identified: _core.Identified
     records: Records
+
+    def _repr_html_(self) -> str:
+        about = f"Fit: {len(self.records.stations)} stations, {self.records.dates[0]} to {self.records.dates[-1]}"
+        return titled(about, of_model(self.model))
 
     def measurements(self, records: Records) -> Array:
         """Measurements (samples, stations) of other records of the same stations and period, matched by name."""

@@ -70,9 +70,25 @@ def named(network: _core.Network, names: list[str] | None) -> _core.Network:
 
 
 def _filter(filter: _core.Filter) -> Plain:
-    return {"name": filter.name, "params": filter.params}
+    kind = type(filter)
+    own = {"class": f"{kind.__module__}.{kind.__qualname__}"} if filter.own else {}
+    return {"name": filter.name, "params": _lists(filter.params)} | own
 
 
 def filter_of(plain: Plain) -> _core.Filter:
-    """The filter that was described."""
-    return _core.make_filter(plain["name"], plain["params"])
+    """The filter that was described; one of the user's own needs its class defined, and nothing is imported for it.
+
+    Its attributes come back as plain data: arrays as lists.
+    """
+    if "class" not in plain:
+        return _core.make_filter(plain["name"], plain["params"])
+    pending: list[type[_core.Filter]] = _core.Filter.__subclasses__()
+    while pending:
+        kind = pending.pop()
+        if f"{kind.__module__}.{kind.__qualname__}" == plain["class"]:
+            made = kind.__new__(kind)
+            made.__setstate__(plain["params"])
+            return made
+        pending += kind.__subclasses__()
+    missing = f"the filter {plain['class']}, which is not defined here"
+    raise _core.IoError(f"filter: got {missing}, expected its class; define or import it first")

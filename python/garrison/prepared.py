@@ -39,7 +39,8 @@ class Prepared:
     @property
     def filter(self) -> _core.Filter:
         """The filter with its parameters."""
-        return _core.make_filter(self._design.filter_name, self._design.filter_params)
+        filter: _core.Filter = self._design.filter
+        return filter
 
     def check(self) -> Check:
         """Conditions and bounds of the filter's theorems, as `garrison.check`."""

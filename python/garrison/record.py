@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,13 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.alarms import Alarm, intervals
 from garrison.arguments import path as path_of
 from garrison.arguments import read, whole, write
 from garrison.bound_kind import BoundKind
 from garrison.families import family_of
+from garrison.notebook import of_run
 from garrison.objects import described, filter_of, model_of, network_of
 from garrison.verdict import Verdict
-from garrison.words import count, refusal
+from garrison.words import count, near, refusal
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -117,6 +120,17 @@ class Run:
                     first.setdefault(agent, time)
         return first
 
+    def alarms(self, trial: int | None = None) -> list[Alarm]:
+        """When each agent's measurement was suspected (clipped) or taken for attacked: intervals of equal verdicts.
+
+        trial: this one alone; None: all. In order of trial, start and agent. Needs keep "report".
+        """
+        if self.verdict is None:
+            raise refusal("alarms", "a run without verdicts", 'keep to contain "report"')
+        wanted = None if trial is None else self._trial(trial)
+        found = intervals(self.verdict, list(self.network.names))
+        return [alarm for alarm in found if wanted is None or alarm.trial == wanted]
+
     def _trial(self, trial: int) -> int:
         return whole("trial", trial, 0, max(self.shape[0] - 1, 0))
 
@@ -156,14 +170,38 @@ class Run:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def plot(self, trial: int = 0) -> Figure:
-        """Errors with their bounds, and statistics against thresholds, of one trial, as a figure (extra: plot)."""
+    def plot(self, trial: int = 0, *, agents: Iterable[int | str] | None = None, compare: Iterable[Run] = ()) -> Figure:
+        """Errors with their bounds, and statistics against thresholds, of one trial, as a figure (extra: plot).
+
+        agents: numbers or names of those that are shown; None: all. compare: other runs, whose errors are drawn into
+        the same figure. The process's matplotlib backend stays as it is.
+        """
         from garrison.figures import run_figure, string_figure
 
-        trial = self._trial(trial)
-        if family_of(self.filter).picture == "string" and self.truth is not None and self.bound is not None:
+        trial, chosen, others = self._trial(trial), self._agents(agents), list(compare)
+        for other in others:
+            if not isinstance(other, Run):
+                raise refusal("plot: compare", f"a {type(other).__name__}", "other runs")
+            other._trial(trial)
+        string = family_of(self.filter).picture == "string"
+        if string and chosen is None and not others and self.truth is not None and self.bound is not None:
             return string_figure(self, trial)
-        return run_figure(self, trial)
+        return run_figure(self, trial, chosen, others)
+
+    def _agents(self, given: Iterable[int | str] | None) -> list[int] | None:
+        """Numbers of agents that were given by number or name."""
+        if given is None:
+            return None
+        names, last = list(self.network.names), self.network.agents - 1
+        found = []
+        for one in [given] if isinstance(given, (int, str)) else given:
+            if isinstance(one, str):
+                if one not in names:
+                    raise refusal("agents", repr(one), "names of the network", near(one, names))
+                found.append(names.index(one))
+            else:
+                found.append(whole("agents", one, 0, last))
+        return found
 
     def animate(self, path: str | Path, trial: int = 0) -> None:
         """Write a GIF of vehicles in a string (extra: plot); keep "details" and "measurements" for it."""
@@ -175,17 +213,14 @@ class Run:
         animate(self, path_of("path", path), trial)
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset of all arrays, with named dimensions (extra: xarray)."""
-        import xarray as xr
+        """An xarray.Dataset of all arrays and signals (extra: xarray).
 
-        own = family_of(self.filter).own_plants
-        dims: dict[str, tuple[str, ...]] = {
-            "truth": ("trial", "time", "agent", "state") if own else ("trial", "time", "state"),
-            "estimate": ("trial", "time", "agent", "state"),
-            "measurements": ("trial", "sample", "output"),
-        }
-        found = {name: getattr(self, name) for name in ARRAYS if getattr(self, name) is not None}
-        return xr.Dataset({k: (dims.get(k, ("trial", "time", "agent")), v) for k, v in found.items()})
+        Coordinates: trial, time, agent, state and output by name where they have names, state_unit and output_unit,
+        sample (the time of a measurement). Attributes: model, network and filter as JSON, counters and warnings.
+        """
+        from garrison.labelled import dataset
+
+        return dataset(self, {n: getattr(self, n) for n in ARRAYS if getattr(self, n) is not None} | self.signals)
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame in long form (extra: pandas): one row per trial, time and agent.
@@ -197,6 +232,9 @@ class Run:
         from garrison.longform import frame
 
         return frame(self)
+
+    def _repr_html_(self) -> str:
+        return of_run(self)
 
     def __repr__(self) -> str:
         trials, times, agents = self.shape

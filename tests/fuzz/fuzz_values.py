@@ -28,6 +28,24 @@ def _model(agents: int = 3) -> gr.Model:
 
 
 @functools.cache
+class Listener(gr.Filter):
+    """A filter of one's own that does nothing, and keeps what an agent knows of itself."""
+
+    seen: Any = None
+
+    def sense(self, agent: gr.AgentInfo, state: Any, y: Any, t: int) -> Any:
+        Listener.seen = agent
+
+    def fuse(self, agent: gr.AgentInfo, state: Any, inbox: Any, round: int) -> Any:
+        return None
+
+
+def _agent_info(model: gr.Model, network: gr.Network) -> gr.AgentInfo:
+    gr.simulate(model, network, Listener(), steps=1)
+    found: gr.AgentInfo = Listener.seen
+    return found
+
+
 def samples() -> dict[str, list[Any]]:
     """Good objects by the name of their class, and one of another size of each where there is."""
     model, network = _model(), gr.Network.ring(3)
@@ -43,6 +61,7 @@ def samples() -> dict[str, list[Any]]:
         "Model": [model, other],
         "Network": [network, cut],
         "Filter": filters,
+        "AgentInfo": [_agent_info(model, network)],
         "Attack": [gr.attacks.Bias([0], value=1.0), gr.attacks.Silence([1])],
         "WorstAttack": [gr.partial_sharing.worst_covariance(analysis, [0], 1.0, "steady", 1, None)],
         "SubsetBound": [gr.lambda0(np.eye(2), 0)],

@@ -12,8 +12,8 @@ PACKAGE = ROOT / "python" / "garrison"
 LAYERS = (
     ("_core",),
     ("words", "verdict", "bound_kind"),
-    ("numeric", "sizes", "storage", "objects", "filters"),
-    ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform"),
+    ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms"),
+    ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform", "labelled"),
     ("attacks", "record", "doubts", "refuted"),
     ("drivers", "fitting", "calibration", "certificate"),
     ("prepared", "designing"),

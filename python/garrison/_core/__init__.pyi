@@ -19,6 +19,7 @@ from . import certificate
 
 __all__: list[str] = [
     "Agent",
+    "AgentInfo",
     "Attack",
     "Design",
     "DesignInfeasible",
@@ -39,6 +40,7 @@ __all__: list[str] = [
     "certificate",
     "chebyshev_contraction",
     "check",
+    "custom_attack",
     "design_summary",
     "filter_infos",
     "filters",
@@ -106,6 +108,28 @@ class Model:
     many of its first outputs an attacker can reach (default: all).
     Raises InvalidInput when shapes or names do not fit or a number is not finite.
     """
+    @staticmethod
+    def from_continuous(
+        A: typing.Any,
+        C: typing.Any,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        *,
+        process_intensity: typing.Any = None,
+        process_bound: typing.Any = None,
+        measurement_bound: typing.Any = None,
+        measurement_covariance: typing.Any = None,
+        states: typing.Any = None,
+        outputs: typing.Any = None,
+        sources: typing.Any = None,
+        units: typing.Any = None,
+        exposed: typing.Any = None,
+    ) -> Model:
+        """
+        The model of dx/dt = A x + white noise, sampled every `period` (> 0, in the unit of time of A), exactly
+        (C. F. Van Loan, IEEE TAC 23 (3), 1978). process_intensity: spectral density of the noise, (n, n) or a
+        number (times the identity), in state^2 per time; the model then has its process_covariance. process_bound:
+        of the noise from sample to sample, as in Model; the rest, too. Raises InvalidInput.
+        """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
     def __eq__(self, other: typing.Any) -> typing.Any: ...
@@ -129,6 +153,7 @@ class Model:
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
     def __str__(self) -> str: ...
+    def _repr_html_(self) -> str: ...
     @property
     def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
@@ -252,6 +277,7 @@ class Network:
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
     def __str__(self) -> str: ...
+    def _repr_html_(self) -> str: ...
     def index(self, agent: typing.Any) -> int:
         """
         The number of the agent with this name (or number).
@@ -293,13 +319,82 @@ class Network:
         One per agent; empty where none were given.
         """
 
+class AgentInfo:
+    """
+    What one agent of a filter of your own knows of itself.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Of the plant, (n, n).
+        """
+    @property
+    def C(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Its own rows, (outputs, n).
+        """
+    @property
+    def agents(self) -> int:
+        """
+        Agents of the whole network.
+        """
+    @property
+    def gains(self) -> typing.Any:
+        """
+        What design() returned.
+        """
+    @property
+    def id(self) -> int:
+        """
+        Its number, 0..agents-1.
+        """
+    @property
+    def name(self) -> str:
+        """
+        Its name in the network, or nothing.
+        """
+    @property
+    def neighbours(self) -> list[int]:
+        """
+        Agents that it hears.
+        """
+
 class Filter:
     """
-    A filter family with its parameters. Immutable.
+    A filter: a family of garrison.filters with its parameters, or a class of your own derived from this one.
+
+    A filter of your own has these methods, called in every sample for every agent; it runs in simulate and replay with
+    the same links, attacks, records and reports as every family. It is single-threaded, and slow: Python runs
+    at every agent, sample and round. `agent` is a garrison.AgentInfo, `state` is the agent's own object and may be
+    changed in place, a message is a dict of named arrays, inbox a dict: sender -> message (lost ones are not in it).
+
+      sense(agent, state, y, t) -> message     once per sample; y (outputs,), nan = missing
+      fuse(agent, state, inbox, round) -> message   `rounds` times per sample; what the last one returns is not sent
+
+    and optionally:
+
+      rounds = 1                               rounds per sample (attribute, or set in __init__)
+      signals = ("name", ...)                  numbers of `report` that a run can keep
+      layout(model) -> {"estimate": n}         fields of a message and how many numbers each has (the default)
+      design(model, network) -> gains          once; agents find it as agent.gains
+      start(agent, x0) -> state                an object or dict with "estimate", (n,); default: just that
+      report(agent, state) -> dict             bound, statistic, threshold, verdict (garrison.Verdict or its name), accused
+                                               (list of agents), and the signals; what is left out does not exist
+      rejoin(agent, state, inbox, t)           for an estimate that is not finite; default: median of "estimate" of the inbox
+      expected(agent, state) -> (outputs,)     what it predicts to measure next; default C A estimate
+      alarm_level(agent, state) -> number      deviation from that which it tolerates; default inf
+
+    A message of None sends nothing. Attributes set in __init__ (after super().__init__()) are the parameters: they stand
+    in the repr, in pickles and in saved runs. What a method raises comes back with its traceback and a note that names
+    the agent and the sample.
     """
     def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
     def __hash__(self) -> int: ...
+    def __init__(self) -> None: ...
     def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict) -> None: ...
     @property
     def detail_names(self) -> list[str]:
         """
@@ -307,6 +402,11 @@ class Filter:
         """
     @property
     def name(self) -> str: ...
+    @property
+    def own(self) -> bool:
+        """
+        Written in Python: a class derived from garrison.Filter.
+        """
     @property
     def params(self) -> dict: ...
     @property
@@ -333,6 +433,11 @@ class Attack:
         """
     @property
     def name(self) -> str: ...
+    @property
+    def own(self) -> bool:
+        """
+        Its lies come from a Python function.
+        """
     @property
     def params(self) -> dict: ...
     @property
@@ -557,6 +662,7 @@ class Design:
     def filter_name(self) -> str: ...
     @property
     def filter_params(self) -> dict: ...
+    def filter(self) -> typing.Any: ...
     @property
     def model(self) -> Model: ...
     @property
@@ -721,6 +827,22 @@ def check(
     """
     Conditions and quantities of the family's theorems, as two lists of dicts. Searches end after `seconds` with a
     certified interval; a computation without partial results raises InvalidInput then. Ctrl-C ends it, too.
+    """
+
+def custom_attack(
+    name: str,
+    function: typing.Any,
+    schedule: collections.abc.Sequence[
+        tuple[
+            typing.SupportsInt | typing.SupportsIndex,
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        ]
+    ],
+    stop: typing.SupportsInt | typing.SupportsIndex | None = None,
+    probability: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+) -> Attack:
+    """
+    An attack by a Python function; use garrison.attacks.custom.
     """
 
 def design_summary(data: typing.Any) -> dict:

@@ -1,26 +1,43 @@
 """Any run, without a scenario."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.figures.style import axes, trial_words
+from garrison.figures.style import LINES, axes, plain, trial_words
 from garrison.record import Run
 
 
-def run_figure(run: Run, trial: int = 0) -> Figure:
-    """Errors with their bounds, and statistics against thresholds, of one trial; its title says which."""
+def run_figure(run: Run, trial: int = 0, agents: list[int] | None = None, compare: Sequence[Run] = ()) -> Figure:
+    """Errors with their bounds, and statistics against thresholds, of one trial; its title says which.
+
+    agents: those that are shown; None: all. compare: other runs, whose errors are drawn beside.
+    """
     figure = Figure(figsize=(8, 6), layout="constrained")
-    panels = [draw for draw in (_errors, _statistics) if draw(run, trial, None)]
+    shown = slice(None) if agents is None else agents
+    panels = [draw for draw in (_errors, _statistics) if draw(run, trial, None, shown)]
     for k, draw in enumerate(panels, start=1):
         ax = axes(figure, len(panels), 1, k)
-        draw(run, trial, ax)
+        draw(run, trial, ax, shown)
+        if draw is _errors:
+            _others(compare, trial, ax, shown)
         ax.set_xlabel("sample")
         ax.legend(frameon=False, fontsize=9)
-    words = ": ".join(w for w in (run.filter.name, trial_words(trial, run.shape[0])) if w)
+    names = list(run.network.names) or [str(i) for i in range(run.network.agents)]
+    who = "" if agents is None else f"agents {', '.join(names[i] for i in agents)}"
+    words = ": ".join(w for w in (run.filter.name, trial_words(trial, run.shape[0]), who) if w)
     figure.suptitle(words, fontsize=11)
     return figure
+
+
+def _others(runs: Sequence[Run], trial: int, ax: Any, agents: Any) -> None:
+    """Mean errors of other runs."""
+    for run, (colour, style) in zip(runs, LINES[1:], strict=False):
+        if run.error is not None:
+            mean = run.error[trial][:, agents].mean(axis=1)
+            ax.plot(mean, color=colour, linestyle=style, label=f"mean error of {plain(run.filter.name)}")
 
 
 def _log(ax: Any, values: Any) -> None:
@@ -34,31 +51,31 @@ def _drawn(bounds: Any) -> Any:
     return np.where(np.isfinite(largest), largest, np.nan)
 
 
-def _errors(run: Run, trial: int, ax: Any) -> bool:
+def _errors(run: Run, trial: int, ax: Any, agents: Any) -> bool:
     if run.error is None:
         return False
     if ax is None:
         return True
-    error = run.error[trial]
+    error = run.error[trial][:, agents]
     ax.plot(error.max(axis=1), color="#0072B2", label="largest error of an agent")
     ax.plot(error.mean(axis=1), color="#009E73", linestyle="--", label="mean error")
     if run.bound is not None and np.isfinite(run.bound[trial]).any():
-        ax.plot(_drawn(run.bound[trial]), color="#D55E00", linestyle="-.", label="certified bound")
+        ax.plot(_drawn(run.bound[trial][:, agents]), color="#D55E00", linestyle="-.", label="certified bound")
         if run.published is not None and np.isfinite(run.published[trial]).any():
-            ax.plot(_drawn(run.published[trial]), color="#666666", linestyle=":", label="published bound")
+            ax.plot(_drawn(run.published[trial][:, agents]), color="#666666", linestyle=":", label="published bound")
     _log(ax, error)
     ax.set_ylabel("error")
     return True
 
 
-def _statistics(run: Run, trial: int, ax: Any) -> bool:
+def _statistics(run: Run, trial: int, ax: Any, agents: Any) -> bool:
     if run.statistic is None or run.threshold is None or not np.isfinite(run.statistic[trial]).any():
         return False
     if ax is None:
         return True
-    lines = ax.plot(run.statistic[trial], color="#0072B2", linewidth=0.6, alpha=0.6)
+    lines = ax.plot(run.statistic[trial][:, agents], color="#0072B2", linewidth=0.6, alpha=0.6)
     lines[0].set_label("statistic, one line per agent")
-    ax.plot(run.threshold[trial].max(axis=1), color="#D55E00", linestyle="--", label="largest threshold")
+    ax.plot(run.threshold[trial][:, agents].max(axis=1), color="#D55E00", linestyle="--", label="largest threshold")
     _log(ax, run.statistic[trial])
     ax.set_ylabel("test statistic")
     return True
