@@ -174,7 +174,9 @@ class FilterOf final : public AnyFilter {
   }
   std::vector<std::string> signal_names() const override { return F::signal_names(); }
   std::vector<std::string> warnings(const Model& model, const VerdictLog& log) const override {
-    if constexpr (requires { F::warnings(model, log); })
+    if constexpr (requires { F::warnings(params_, model, log); })
+      return F::warnings(params_, model, log);
+    else if constexpr (requires { F::warnings(model, log); })
       return F::warnings(model, log);
     else
       return {};

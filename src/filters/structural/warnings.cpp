@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person must know of the verdicts of a run.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "garrison/analysis/modes.hpp"
@@ -10,7 +11,8 @@ namespace garrison {
 namespace {
 
 constexpr int kMostNamed = 5;  // sensors named one by one
-constexpr int kLong = 10;      // samples in a row after which a majority of alarms is worth a warning
+constexpr int kLong = 10;      // least samples in a row after which a majority of alarms is worth a warning
+constexpr double kByChance = 1e-3;  // probability that it is none, of a whole run
 
 struct Counts {
   std::vector<std::int64_t> measured, tested, accused;  // samples of each agent
@@ -44,9 +46,19 @@ std::string percent(std::int64_t part, std::int64_t whole) {
   return word;
 }
 
+/// Samples in a row that honest sensors are hardly ever accused for: an alarm that is false lasts
+/// `clear_after` samples, so many samples see one with probability q, and errors that sensors share may make
+/// all of them alarm together.
+double long_row(const Structural::Params& p, const VerdictLog& log) {
+  const double q = 1.0 - std::pow(1.0 - p.false_alarm, p.clear_after);
+  const double samples = static_cast<double>(log.trials) * static_cast<double>(log.times);
+  return std::max<double>(kLong, p.clear_after * std::ceil(std::log(kByChance / samples) / std::log(q)));
+}
+
 }  // namespace
 
-std::vector<std::string> Structural::warnings(const Model& model, const VerdictLog& log) {
+std::vector<std::string> Structural::warnings(const Params& params, const Model& model,
+                                              const VerdictLog& log) {
   if (log.verdict.empty()) return {};
   int sensors = 0;
   for (int i = 0; i < model.agents(); ++i) sensors += model.outputs(i) > 0 ? 1 : 0;
@@ -63,7 +75,7 @@ std::vector<std::string> Structural::warnings(const Model& model, const VerdictL
   }
   if (more > 0)
     all.push_back(std::to_string(more) + " more sensors were tested in less than half of the samples");
-  if (c.longest >= kLong)
+  if (c.longest >= long_row(params, log))
     all.push_back("more than half of the sensors were accused for " + std::to_string(c.longest) +
                   " samples in a row: more than can be told from a wrong model or a wrong estimate");
   for (const int i : undetectable_agents(model))

@@ -222,7 +222,7 @@ struct GARRISON_EXPORT Structural {
   /// The gain matrices in params.gain.
   static structural::GainMatrices gains_of(const Params& params, const structural::Setting& setting);
   /// Sensors that were hardly tested, or accused more often than can be right.
-  static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
+  static std::vector<std::string> warnings(const Params& params, const Model& model, const VerdictLog& log);
   static int rounds(const Gains&) { return 1; }
   /// What agent `id` needs of the gains: its own row, and the sensors of those it hears.
   static Gains part(const Gains& all, int id, std::span<const int> neighbours);

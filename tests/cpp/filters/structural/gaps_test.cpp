@@ -143,6 +143,11 @@ TEST_CASE("a run says which sensors were hardly tested, and that too many were a
         .warnings;
   };
   CHECK(warnings({}, y).empty());
+  for (int seed = 0; seed < 20; ++seed) {  // many alarms, as asked for: no reason to doubt anything
+    test::Rng honest(75 + static_cast<std::uint64_t>(seed));
+    CAPTURE(seed);
+    CHECK(warnings({{"false_alarm", 0.05}}, record_of(honest, model, 2000, 0.0, -1)).empty());
+  }
   const auto hardly = warnings({{"settle", std::int64_t{194}}}, y);
   REQUIRE(hardly.size() == 3);
   CHECK(hardly[2].find("sensor 2 was tested in 3 % of the samples") == 0);
