@@ -176,9 +176,10 @@ def test_secured_sensors_do_not_lie():
     assert found.limits[0].holds == 2
 
 
-def test_little_time_leaves_intervals_that_hold_and_says_so():
+@pytest.mark.parametrize("seconds", [1e-6, 0.02, 0.2])
+def test_little_time_leaves_intervals_that_hold_and_says_so(seconds):
     model, network = grid14()
-    hasty = gr.analyze(model, network, seconds=1e-6)
+    hasty = gr.analyze(model, network, seconds=seconds)
     assert hasty.unfinished
     calm = gr.analyze(model, network, seconds=15)
     for one, two in zip(hasty.limits, calm.limits, strict=True):
