@@ -7,7 +7,7 @@ import garrison as gr
 import numpy as np
 import pytest
 from conftest import ROOT
-from garrison.answers.additions import Candidate, cheapest_for_removal
+from garrison.answers.additions import Candidate, cheapest_for, cheapest_for_removal
 from garrison.answers.graph import cuts
 from garrison.answers.removals import smallest_removal
 
@@ -169,6 +169,14 @@ def test_a_critical_sensor_and_an_agent_that_drifts_unseen_are_named():
     assert found.additions[0].sensors == ["a sensor of x1", "a sensor of x1", "a sensor of x2"]
 
 
+def test_a_search_that_stops_at_so_many_sensors_does_not_say_that_more_would_not_help():
+    with gr.budget(60) as budget:
+        found = cheapest_for("goal", [Candidate("x", np.ones(1))], lambda added: len(added) > 5, budget, most=3)
+        more = cheapest_for("goal", [Candidate("x", np.ones(1))], lambda added: len(added) > 5, budget)
+    assert (found.sensors, found.cheapest) == (None, False)
+    assert (more.sensors, more.cheapest) == (["x"] * 6, True)
+
+
 def test_secured_sensors_do_not_lie():
     model = gr.Model([[1.0]], [[[1.0], [1.0]], [[1.0]]], exposed=[1, 1])
     found = gr.analyze(model, gr.Network.complete(2))
@@ -176,9 +184,10 @@ def test_secured_sensors_do_not_lie():
     assert found.limits[0].holds == 2
 
 
-def test_little_time_leaves_intervals_that_hold_and_says_so():
+@pytest.mark.parametrize("seconds", [1e-6, 0.02, 0.2])
+def test_little_time_leaves_intervals_that_hold_and_says_so(seconds):
     model, network = grid14()
-    hasty = gr.analyze(model, network, seconds=1e-6)
+    hasty = gr.analyze(model, network, seconds=seconds)
     assert hasty.unfinished
     calm = gr.analyze(model, network, seconds=15)
     for one, two in zip(hasty.limits, calm.limits, strict=True):

@@ -2,7 +2,7 @@
 
 import heapq
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -76,7 +76,8 @@ def cheapest_for(
         return None if reached(added) else []
 
     everybody = list(range(len(candidates)))
-    return _search(goal, candidates, obstacle, lambda added, _: everybody if len(added) < most else [], budget)
+    found = _search(goal, candidates, obstacle, lambda added, _: everybody if len(added) < most else [], budget)
+    return found if found.sensors is not None else replace(found, cheapest=False)  # more than `most` might do
 
 
 def _search(

@@ -229,14 +229,14 @@ class _Answers:
         words = "the saturation filter's conditions"
         gamma, holds, fails, why = 1.0, 0, None, LATE
         self.rounds: dict[int, int] = {}
-        self.lambda0: dict[int, float] = {}
+        self.settings: dict[int, saturation.Setting] = {}
         with self.watch.question(words, 0.3) as budget:
             gamma = contraction(self.sensors)
             for s in range(most + 1):
                 if budget.over:
                     break
                 facts = saturation_facts(self.sensors, self.identity[:0], s, gamma, self.watch.left)
-                self.lambda0[s] = facts.lambda0
+                self.settings[s] = facts.setting
                 if not facts.holds:
                     fails, why = s, self._why_not(facts, gamma)
                     break
@@ -298,6 +298,8 @@ class _Answers:
         found: list[float] | None = None
         with self.watch.question("what each sensor holds alone", 0.4):
             found = [float(v) for v in certificate.meters(self._whitened()).leverage]
+        if found is None:
+            self.unfinished.append("what each sensor holds alone")
         return found
 
     def _whitened(self) -> Array:
@@ -318,20 +320,25 @@ class _Answers:
         sources = [(row[None], np.asarray(R[i]).ravel()) for row, i in zip(rows, self.sensors.agent, strict=True)]
         out: list[dict[str, Any]] = []
         words = "certified errors of a bank of filters"
+        finished = False
         with self.watch.question(words, 0.4) as budget:
             for s in range(len(rows) // 2 + 1):
                 members = comb(len(rows), s)
                 pairs = members * comb(len(rows) - s, s)
                 if pairs * n**3 > _MOST_BANK or budget.over:
-                    self.unfinished.append(f"{words} for {s} liars or more")
                     break
                 z1, _ = certificate.gaussian_levels(DELTA / 2, len(rows), n)
                 _, z2 = certificate.gaussian_levels(DELTA / 2 / members, len(rows), n)
                 zc = certificate.chi(DELTA / 2 / members / n, 1)
                 error = certificate.bank_steady(self.A, Q, sources, s, z1, z2, zc, pairs)
                 if not np.all(np.isfinite(error)):
+                    finished = True
                     break
                 out.append({"liars": s, "error": float(error[-1]), "per_state": [float(v) for v in error[:-1]]})
+            else:
+                finished = True
+        if not finished:
+            self.unfinished.append(f"{words} for {count(len(out), 'liar')} or more")
         return out
 
     def _substitutes(self) -> list[list[str]]:
@@ -379,6 +386,8 @@ class _Answers:
         if rounds == 1:
             return [f"{words}; more links would not lower that."]
         best = self._best_link(limit.holds)
+        if best is None and "the link that helps most" in self.unfinished:
+            return [f"{words}."]
         if best is None:
             return [f"{words}; no single link more would lower that."]
         (i, j), fewer = best
@@ -390,18 +399,21 @@ class _Answers:
         N = self.network.agents
         rounds = self.rounds[attacked]
         best: tuple[tuple[int, int], int] | None = None
-        base = saturation_facts(self.sensors, self.identity[:0], attacked, 0.0, self.watch.left).setting
-        with self.watch.question("the link that helps most", 0.9) as budget:
-            for i in range(N):
-                for j in range(i + 1, N):
-                    if budget.over:
-                        return best
-                    if (i, j) in there:
-                        continue
-                    more = _core.Network([*self.network.edges, (i, j)], agents=N)
-                    _, net, _ = _core.split_outputs(self.model, more)
-                    gamma = contraction(Sensors(self.sensors.model, net, self.sensors.rows, [], [], []))
-                    fewer = saturation.minimal_rounds(base, gamma)
-                    if fewer is not None and fewer < (best[1] if best else rounds):
-                        best = (i, j), fewer
+        base = self.settings[attacked]
+        words, finished = "the link that helps most", False
+        with self.watch.question(words, 0.9) as budget:
+            pairs = ((i, j) for i in range(N) for j in range(i + 1, N) if (i, j) not in there)
+            for i, j in pairs:
+                if budget.over:
+                    break
+                more = _core.Network([*self.network.edges, (i, j)], agents=N)
+                _, net, _ = _core.split_outputs(self.model, more)
+                gamma = contraction(Sensors(self.sensors.model, net, self.sensors.rows, [], [], []))
+                fewer = saturation.minimal_rounds(base, gamma)
+                if fewer is not None and fewer < (best[1] if best else rounds):
+                    best = (i, j), fewer
+            else:
+                finished = True
+        if not finished:
+            self.unfinished.append(words)
         return best

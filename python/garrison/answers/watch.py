@@ -30,12 +30,15 @@ class Watch:
         if self._progress is not None:
             self._progress(words, self._asked, self._questions)
         self._asked += 1
-        budget = _core.budget(self.left * share)
+        seconds = self.left * share
+        end = time.monotonic() + seconds
+        budget = _core.budget(seconds)
         with suppress(Unfinished), budget:
             try:
                 yield budget
             except _core.InvalidInput as refused:
-                if not budget.over:
+                # A check inside has a budget of its own, which ends no sooner than this one.
+                if not budget.over and time.monotonic() < end:
                     raise
                 raise Unfinished from refused
 
