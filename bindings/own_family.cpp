@@ -109,8 +109,7 @@ std::ptrdiff_t place_of_estimate(const Layout& layout, std::size_t states) {
 
 /// A verdict by its word, or as a garrison.Verdict.
 Verdict verdict_of(const std::string& which, py::handle given) {
-  const std::vector<std::string> words{"cleared", "suspected", "attacked", "silent",
-                                                           "not_tested"};
+  const std::vector<std::string> words{"cleared", "suspected", "attacked", "silent", "not_tested"};
   if (py::isinstance<py::str>(given)) {
     const auto word = given.cast<std::string>();
     for (std::size_t k = 0; k < words.size(); ++k)

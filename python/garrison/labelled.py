@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -84,10 +85,42 @@ def dataset(run: Run, arrays: dict[str, Any]) -> Any:
         "title": f"garrison run: {run.filter.name}",
         "garrison": _core.__version__,
         **{name: json.dumps(part) for name, part in made_of.items()},
-        "warnings": list(run.warnings),
+        "warnings": "\n".join(run.warnings),
         "bytes_per_step": run.bytes_per_step,
         **{f"count_{name}": value for name, value in run.counters.items()},
     }
     used = {d for v in variables.values() for d in v[0]}
     coordinates = {name: c for name, c in _coordinates(run).items() if c[0] in used}
     return xr.Dataset(variables, coordinates, about)
+
+
+#: attribute of a netCDF file that holds everything but the arrays
+_DOCUMENT = "run"
+
+
+def to_netcdf(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, Any]) -> None:
+    """Write the dataset of a run, with everything that makes the run again, as netCDF."""
+    data = dataset(run, arrays).assign_attrs({_DOCUMENT: json.dumps(document | {"arrays": list(arrays)})})
+    # What older netCDF cannot hold: unsigned bytes, and attributes of 64 bits.
+    if "verdict" in data:
+        data["verdict"] = data.verdict.astype(np.int8)
+        data.verdict.attrs["flag_values"] = np.array(data.verdict.attrs["flag_values"], dtype=np.int8)
+    data.attrs = {k: str(v) for k, v in data.attrs.items()}
+    data.to_netcdf(path)
+
+
+def from_netcdf(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Document and arrays of a run that `to_netcdf` wrote. Raises IoError for any other file."""
+    try:
+        import xarray as xr
+    except ImportError:
+        raise refusal("load", "a netCDF file and no xarray", 'it installed: pip install "garrison[xarray]"') from None
+    try:
+        with xr.open_dataset(path) as data:
+            document = json.loads(data.attrs[_DOCUMENT])
+            arrays = {name: np.array(data[name].values) for name in document.pop("arrays")}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise _core.IoError(f"{path}: got {error}, expected a run written by Run.save") from None
+    if "verdict" in arrays:
+        arrays["verdict"] = arrays["verdict"].astype(np.uint8)
+    return document, arrays

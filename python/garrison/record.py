@@ -135,12 +135,29 @@ class Run:
         return whole("trial", trial, 0, max(self.shape[0] - 1, 0))
 
     def save(self, path: str | Path) -> None:
-        """Write everything to a NumPy .npz file (created, or replaced), without pickles; read it with `Run.load`."""
-        write("path", path, self._packed())
+        """Write everything to a file (created, or replaced), without pickles; read it with `Run.load`.
+
+        A NumPy .npz archive, or netCDF where the name ends in .nc (extra: xarray, with a netCDF backend of it: scipy,
+        h5netcdf or netCDF4): the dataset of `to_xarray`, which other programs read.
+        """
+        to = path_of("path", path)
+        if to.suffix == ".nc":
+            from garrison.labelled import to_netcdf
+
+            arrays = {n: getattr(self, n) for n in ARRAYS if getattr(self, n) is not None}
+            to_netcdf(self, to, self._document(), arrays | self.signals)
+        else:
+            write("path", to, self._packed())
 
     @staticmethod
     def load(path: str | Path) -> Run:
         """The run that `save` wrote. Raises IoError when the file cannot be read or holds no run."""
+        if path_of("path", path).suffix == ".nc":
+            from garrison.labelled import from_netcdf
+
+            document, found = from_netcdf(path_of("path", path))
+            signals = {f"{_SIGNAL}{n}": v for n, v in found.items() if n not in ARRAYS}
+            return _assembled(document, {n: v for n, v in found.items() if n in ARRAYS} | signals, str(path))
         return _restored(read("path", path, "a run written by Run.save"), str(path))
 
     def _document(self) -> dict[str, Any]:
@@ -246,7 +263,11 @@ def _restored(data: bytes, name: str) -> Run:
     """The run of an archive that `save` wrote."""
     from garrison.storage import unpack
 
-    document, found = unpack(data, name)
+    return _assembled(*unpack(data, name), name)
+
+
+def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: str) -> Run:
+    """The run of a document and arrays, signals marked by their prefix."""
     try:
         objects = document["objects"]
         content: dict[str, Any] = {key: document[key] for key in _LISTS}

@@ -41,7 +41,8 @@ class Listener(gr.Filter):
 
 
 def _agent_info(model: gr.Model, network: gr.Network) -> gr.AgentInfo:
-    gr.simulate(model, network, Listener(), steps=1)
+    if Listener.seen is None:
+        gr.simulate(model, network, Listener(), steps=1)
     found: gr.AgentInfo = Listener.seen
     return found
 
@@ -61,7 +62,6 @@ def samples() -> dict[str, list[Any]]:
         "Model": [model, other],
         "Network": [network, cut],
         "Filter": filters,
-        "AgentInfo": [_agent_info(model, network)],
         "Attack": [gr.attacks.Bias([0], value=1.0), gr.attacks.Silence([1])],
         "WorstAttack": [gr.partial_sharing.worst_covariance(analysis, [0], 1.0, "steady", 1, None)],
         "SubsetBound": [gr.lambda0(np.eye(2), 0)],
@@ -86,6 +86,7 @@ def samples() -> dict[str, list[Any]]:
             gr.platoon.Setting(vehicles=6, range=2, period=0.1, attacked=1, eps=0.1, mu=0.1, q=1.0, beta=2.0)
         ],
         "weights": [weights],
+        "AgentInfo": [_agent_info(model, network)],
     }
     found["FitOptions"] = [found["Identified"][0].options]
     driven = [f for f in filters if f.name in ("saturation", "rdkf", "structural", "partial_sharing")]

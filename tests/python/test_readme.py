@@ -9,7 +9,7 @@ from conftest import ROOT
 
 def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (ROOT / "README.md").read_text()
-    ten_lines, one_agent, certified = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    ten_lines, one_agent, certified, own = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
     save = re.search(r"`(gr\.prepare\(.*?\))`", text)
     assert save is not None
     monkeypatch.chdir(tmp_path)
@@ -24,3 +24,6 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     exec(one_agent, names)
     assert names["message"] is None  # it listens
     assert names["agent"].sample == 101  # type: ignore[attr-defined]
+    exec(own, names)
+    before, after = names["run"].error[:, 19].mean(), names["run"].error[:, -1, 3].mean()  # type: ignore[attr-defined]
+    assert before < 0.1 < after  # it tracks until the attack, and does not resist

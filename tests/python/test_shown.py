@@ -1,6 +1,7 @@
 """Names, units and alarms in what a run shows: xarray, notebooks, pictures."""
 
 import json
+from pathlib import Path
 from typing import Any
 
 import garrison as gr
@@ -18,13 +19,13 @@ MODEL = gr.Model(
 )
 NETWORK = gr.Network([(0, 1), (1, 2), (0, 2)], names=["A<1>", "B", "C"])
 SATURATION = gr.filters.Saturation(threshold=0.5, rounds=2)
+ATTACK = gr.attacks.Bias(agents=[1], value=9.0, start=4, stop=7)
+KEEP = ["estimate", "report", "measurements", "signals"]
 
 
 @pytest.fixture(scope="module")
 def run() -> gr.Run:
-    attack = gr.attacks.Bias(agents=[1], value=9.0, start=4, stop=7)
-    keep = ["estimate", "report", "measurements", "signals"]
-    return gr.simulate(MODEL, NETWORK, SATURATION, steps=10, trials=2, seed=1, attack=attack, keep=keep)
+    return gr.simulate(MODEL, NETWORK, SATURATION, steps=10, trials=2, seed=1, attack=ATTACK, keep=KEEP)
 
 
 def test_xarray_has_coordinates_units_and_what_made_it(run: gr.Run) -> None:
@@ -44,6 +45,26 @@ def test_xarray_has_coordinates_units_and_what_made_it(run: gr.Run) -> None:
     assert gr.simulate(alike, NETWORK, SATURATION, steps=3).to_xarray().error.attrs["units"] == "m"
     positions = gr.simulate(MODEL, NETWORK, SATURATION, steps=3, keep=["report"]).to_xarray()
     assert "output" not in positions.coords and "estimate" not in positions
+
+
+def test_netcdf_keeps_the_whole_run(run: gr.Run, tmp_path: Path) -> None:
+    xr = pytest.importorskip("xarray")
+    path = tmp_path / "run.nc"
+    run.save(path)
+    loaded = gr.Run.load(path)
+    assert loaded == run and loaded.verdict.dtype == np.uint8  # type: ignore[union-attr]
+    again = gr.simulate(
+        loaded.model, loaded.network, loaded.filter, steps=10, trials=2, seed=1, attack=ATTACK, keep=KEEP
+    )
+    assert again == loaded
+    with xr.open_dataset(path) as data:  # what others read
+        assert data.agent.values.tolist() == ["A<1>", "B", "C"]
+        assert data.state_unit.values.tolist() == ["m", "m/s"]
+    (tmp_path / "no.nc").write_text("nothing")
+    xr.Dataset({"x": ("t", [1.0])}).to_netcdf(tmp_path / "other.nc")
+    for wrong in ("no.nc", "other.nc", "missing.nc"):
+        with pytest.raises(gr.IoError, match=wrong):
+            gr.Run.load(tmp_path / wrong)
 
 
 def test_alarms_are_the_verdicts_as_intervals(run: gr.Run) -> None:
