@@ -10,6 +10,7 @@
 
 #include "core/solvers.hpp"
 #include "garrison/core/types.hpp"
+#include "garrison/kernel/hypotenuse.hpp"
 
 namespace garrison::detail {
 
@@ -47,7 +48,7 @@ double pair_size(const M& A, const M& C) {
                                C.rows() > 0 ? C.rowwise().template lpNorm<1>().maxCoeff() : 0.0);
   const Vector column_sums =
       A.cwiseAbs().colwise().sum().transpose() + C.cwiseAbs().colwise().sum().transpose();
-  const double size = std::min(std::hypot(A.norm(), C.norm()), std::sqrt(rows * column_sums.maxCoeff()));
+  const double size = std::min(hypotenuse(A.norm(), C.norm()), std::sqrt(rows * column_sums.maxCoeff()));
   return size > 0.0 ? size : 1.0;
 }
 

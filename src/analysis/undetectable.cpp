@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "garrison/kernel/hypotenuse.hpp"
 #include "splitting.hpp"
 
 namespace garrison {
@@ -59,7 +60,7 @@ std::vector<int> necessary(const Matrix& A, const Matrix& C, const detail::Pair&
       v.normalize();
       VectorOf<S> shown = seen.C() * v;
       shown.segment(rows.first, rows.count).setZero();
-      const double residual = std::hypot((seen.A() * v - z * v).norm(), shown.norm());
+      const double residual = hypotenuse((seen.A() * v - z * v).norm(), shown.norm());
       listed[k] = residual <= level;
       if (listed[k]) continue;
       const auto unseen = [&](const Matrix& rows_of_C) {

@@ -9,7 +9,7 @@ from conftest import ROOT
 
 def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (ROOT / "README.md").read_text()
-    ten_lines, one_agent, certified, own = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    ten_lines, one_agent, own, certified = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
     save = re.search(r"`(gr\.prepare\(.*?\))`", text)
     assert save is not None
     monkeypatch.chdir(tmp_path)

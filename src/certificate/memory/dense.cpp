@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "garrison/kernel/hypotenuse.hpp"
+
 namespace garrison::certificate::detail {
 namespace {
 
@@ -110,8 +112,8 @@ void diagonalise(Eigen::Ref<Matrix> S, Eigen::Ref<Matrix> U) noexcept {
         if (!(std::abs(a) > 1e-17 * std::sqrt(std::abs(S(i, i) * S(j, j))) && std::abs(a) > 1e-300)) continue;
         rotated = true;
         const double h = 0.5 * (S(j, j) - S(i, i)) / a;
-        const double t = (h < 0.0 ? -1.0 : 1.0) / (std::abs(h) + std::hypot(1.0, h));
-        const double c = 1.0 / std::hypot(1.0, t);
+        const double t = (h < 0.0 ? -1.0 : 1.0) / (std::abs(h) + hypotenuse(1.0, h));
+        const double c = 1.0 / hypotenuse(1.0, t);
         const double s = t * c;
         for (Eigen::Index k = 0; k < n; ++k) {
           const double x = S(k, i);

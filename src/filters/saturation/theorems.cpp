@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "garrison/kernel/hypotenuse.hpp"
+
 namespace garrison::saturation {
 namespace {
 
@@ -87,7 +89,7 @@ InformedBound informed_bound(const Setting& s, double tau0, double varpi, int sp
   const double honest = s.agents - s.attacked;
   const double g11 = s.a * s.contraction;
   const double g12 = g11 * std::sqrt(honest);
-  InformedBound b{kNaN, kNaN, 0.5 * (g11 + varpi + std::hypot(g11 - varpi, 2.0 * std::sqrt(g12 * tau0)))};
+  InformedBound b{kNaN, kNaN, 0.5 * (g11 + varpi + hypotenuse(g11 - varpi, 2.0 * std::sqrt(g12 * tau0)))};
   const auto before = theorem_bounds(s, varpi, 1);
   if (!before.cond9 || !(b.spectral_radius < 1.0)) return b;
   const double to_p = s.contraction * std::sqrt(honest) * (s.b_w + s.b_v);
@@ -123,7 +125,7 @@ MatrixG theorem5(const Setting& s, double tau0, double varpi) {
   const double ag = s.a * s.contraction;
   MatrixG G{2.0 * ag, ag * std::sqrt(static_cast<double>(s.agents - s.attacked)), tau0, varpi, kNaN};
   // A nonnegative 2x2 matrix has real eigenvalues and the larger one is the spectral radius.
-  G.spectral_radius = 0.5 * (G.g11 + G.g22 + std::hypot(G.g11 - G.g22, 2.0 * std::sqrt(G.g12 * G.g21)));
+  G.spectral_radius = 0.5 * (G.g11 + G.g22 + hypotenuse(G.g11 - G.g22, 2.0 * std::sqrt(G.g12 * G.g21)));
   return G;
 }
 

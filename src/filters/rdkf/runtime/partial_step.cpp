@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "garrison/kernel/hypotenuse.hpp"
+
 namespace garrison::rdkf {
 namespace {
 
@@ -32,8 +34,8 @@ void orthogonalise(double* a, int rows, int width, int inner) {
         // A row that is rounding of zero has no direction.
         if (std::abs(pq) <= 1e-15 * std::sqrt(pp * qq) || std::min(pp, qq) <= 1e-31 * largest) continue;
         const double zeta = (qq - pp) / (2.0 * pq);
-        const double tangent = (zeta < 0.0 ? -1.0 : 1.0) / (std::abs(zeta) + std::hypot(1.0, zeta));
-        const double cosine = 1.0 / std::hypot(1.0, tangent);
+        const double tangent = (zeta < 0.0 ? -1.0 : 1.0) / (std::abs(zeta) + hypotenuse(1.0, zeta));
+        const double cosine = 1.0 / hypotenuse(1.0, tangent);
         const double sine = cosine * tangent;
         for (int k = 0; k < width; ++k) {
           const double before = p[k];
