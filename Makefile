@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev test test-fast lint format bench clean
+.PHONY: help setup run dev test test-fast lint format bench docs clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
 cpp = $(shell find include src bindings tests bench -name '*.hpp' -o -name '*.cpp')
@@ -45,6 +45,10 @@ bench: ## measure against the peers; results in bench/results
 	@tools/setup.sh bench
 	@bench/build.sh
 	@.venv/bin/python bench/run.py
+
+docs: ## build the site into build/docs; warnings are errors
+	@tools/setup.sh docs
+	@tools/docs.sh
 
 clean: ## remove everything that was built or installed here
 	@rm -rf build out dist .venv
