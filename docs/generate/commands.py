@@ -2,9 +2,9 @@
 
 import argparse
 
-from generate.markdown import cell, code, table
-
 from garrison import cli
+
+from generate.markdown import cell, code, table
 
 
 def page() -> str:

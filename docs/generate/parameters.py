@@ -3,9 +3,9 @@
 import math
 from typing import Any
 
-from generate.markdown import cell, code, table
-
 from garrison import _core
+
+from generate.markdown import cell, code, table
 
 _HEAD = ["parameter", "symbol", "unit", "range", "default", "meaning"]
 

@@ -1,4 +1,4 @@
-"""Docstrings of this project are plain text; marks of reStructuredText in them (|x|, x', A_t, *) are meant literally."""
+"""Docstrings are plain text here; marks of reStructuredText in them (|x|, x', A_t, *) are meant literally."""
 
 import re
 

@@ -1,13 +1,13 @@
-"""The reference of scenario files: the keys that the reader takes, each with its meaning; a key without one stops the build."""
+"""The reference of scenario files: every key that the reader takes; one without a meaning stops the build."""
 
 import ast
 from pathlib import Path
 
-from generate.markdown import code, table
-from generate.scenario_keys import MEANINGS, TABLES
-
 from garrison.scenario import network
 from garrison.scenario import reader as _reader
+
+from generate.markdown import code, table
+from generate.scenario_keys import MEANINGS, TABLES
 
 _READER = Path(_reader.__file__).parent
 

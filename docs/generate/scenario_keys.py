@@ -60,8 +60,9 @@ MEANINGS = {
         "delay_rounds": "how many rounds a late message is late",
     },
     "certificate": {
-        "spread": '"none"; "local": from an agent\'s own and its neighbours\' measurements; "flooded": from all that the rounds bring',
-        "failure": "probability per agent and sample that a certificate is wrong, for Gaussian noise; 0: never, with bounded noise",
+        "spread": '"none"; "local": from the measurements of an agent and its neighbours; '
+        '"flooded": from all that the rounds bring',
+        "failure": "probability per agent and sample that it is wrong, for Gaussian noise; 0: never, with bounded noise",
         "attacked": "most attacked sensors at a time; left out: that of the filter",
     },
     "noise": {"law": '"auto", or a law that the model has the bounds or covariances for'},

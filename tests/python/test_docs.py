@@ -6,7 +6,6 @@ from pathlib import Path
 import documents
 import pytest
 from conftest import ROOT
-
 from garrison import _core
 
 _RUN = [  # test_readme.py runs the README
@@ -36,7 +35,7 @@ def test_every_block_says_what_it_is(page: Path) -> None:
 def test_a_failing_block_is_seen(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text("```shell\ngarrison check absent.toml\n```\n")
-    with pytest.raises(AssertionError, match="page.md:1: exit code 2"):
+    with pytest.raises(AssertionError, match=r"page\.md:1: exit code 2"):
         documents.run(page, tmp_path)
 
 
