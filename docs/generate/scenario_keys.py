@@ -62,7 +62,7 @@ MEANINGS = {
     "certificate": {
         "spread": '"none"; "local": from the measurements of an agent and its neighbours; '
         '"flooded": from all that the rounds bring',
-        "failure": "probability per agent and sample that it is wrong, for Gaussian noise; 0: never, with bounded noise",
+        "failure": "probability per agent and sample that it is wrong, for Gaussian noise; 0: for bounded noise",
         "attacked": "most attacked sensors at a time; left out: that of the filter",
     },
     "noise": {"law": '"auto", or a law that the model has the bounds or covariances for'},
