@@ -7,11 +7,14 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+import garrison
 from conftest import ROOT
 
 #: languages of blocks -> whether they are run or written; others are refused, so that no block escapes by its name
 LANGUAGES = {"python", "shell", "toml", "text", "cpp", "cmake"}
 _BLOCK = re.compile(r"^(?P<indent> *)```(?P<language>[^\n`]*)\n(?P<text>.*?)^ *```\s*$", re.DOTALL | re.MULTILINE)
+#: first line of a block that shows what a build may lack: `# needs: garrison.sweep`
+_NEEDS = re.compile(r"# needs: (garrison(?:\.\w+)+)\n")
 _FILE = re.compile(r"# file: (\S+)( \(append\))?\n")
 
 
@@ -48,6 +51,8 @@ def run(page: Path, folder: Path) -> None:
     (folder / "examples").symlink_to(ROOT / "examples")
     names: dict[str, object] = {}
     for block in blocks(page):
+        if (needed := _NEEDS.match(block.text)) is not None and not _exists(needed[1]):
+            continue
         if block.language == "python":
             source = "\n" * block.line + block.text  # tracebacks name the line of the page
             exec(compile(source, str(page), "exec"), names)
@@ -58,17 +63,27 @@ def run(page: Path, folder: Path) -> None:
                 file.write(block.text[head.end() :])
 
 
+def _exists(name: str) -> bool:
+    """Whether garrison has this attribute of an attribute."""
+    thing: object = garrison
+    for part in name.split(".")[1:]:
+        if not hasattr(thing, part):
+            return False
+        thing = getattr(thing, part)
+    return True
+
+
 def _shell(block: Block, page: Path, folder: Path) -> None:
     command = folder / "bin" / "garrison"
     command.parent.mkdir(exist_ok=True)
     command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m garrison "$@"\n')
     command.chmod(0o755)
-    paths = [str(ROOT / "python"), os.environ.get("PYTHONPATH", "")]
-    if "PYTHONPATH" not in os.environ:  # the installed package is tested
-        paths = []
-    environment = {**os.environ, "PATH": f"{command.parent}:{os.environ['PATH']}"}
-    if paths:
-        environment["PYTHONPATH"] = os.pathsep.join(p for p in paths if p)
+    package = Path(garrison.__file__).parents[1]  # the same garrison as here, built or installed
+    environment = {
+        **os.environ,
+        "PATH": f"{command.parent}:{os.environ['PATH']}",
+        "PYTHONPATH": os.pathsep.join(p for p in (str(package), os.environ.get("PYTHONPATH", "")) if p),
+    }
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", block.text], cwd=folder, env=environment, capture_output=True, text=True
     )
