@@ -51,4 +51,4 @@ docs: ## build the site into build/docs; warnings are errors
 	@tools/docs.sh
 
 clean: ## remove everything that was built or installed here
-	@rm -rf build out dist .venv
+	@rm -rf build out dist .venv docs/generated

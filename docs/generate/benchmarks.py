@@ -18,7 +18,8 @@ def page() -> str:
         "# Benchmarks\n",
         f"Measured on {newest.stem} on a machine with {found['cores']} cores under a load of "
         f"{found['load'][0]:.1f}; {versions}. `make bench` measures anew and writes `bench/results`. "
-        "Figures of one table were measured in turns, so the ratios are steadier than the times.\n",
+        "Figures of one table were measured in turns: `ratio` is to the first row (more is slower), `spread` its range "
+        "over the repetitions; ratios are steadier than times.\n",
         "## The machine\n",
         table(["limit", "value"], [[cell(k), f"{v:.1f}"] for k, v in found["limits"].items()]),
     ]

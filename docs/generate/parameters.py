@@ -25,9 +25,13 @@ def attacks_page() -> str:
         "`[[attack]]` with `kind`.\n",
     ]
     for info in _core.attack_infos():
-        parts.append(f"## {info['name']}\n\n{cell(info['doc'])} ({info['target']} attack).\n")
+        parts.append(f"## {info['name']}\n\n{_sentence(info['doc'])} ({info['target']} attack)\n")
         parts.append(_table(info["params"]))
     return "\n".join(parts)
+
+
+def _sentence(text: str) -> str:
+    return cell(text[:1].upper() + text[1:]) + "."
 
 
 def _table(params: list[dict[str, Any]]) -> str:
@@ -36,7 +40,8 @@ def _table(params: list[dict[str, Any]]) -> str:
     rows = [
         [code(p["name"]), cell(p["symbol"]), cell(p["unit"]), _range(p), _default(p), cell(p["doc"])] for p in params
     ]
-    return table(_HEAD, rows)
+    used = [k for k in range(len(_HEAD)) if any(row[k] for row in rows)]  # columns that say nothing are left out
+    return table([_HEAD[k] for k in used], [[row[k] for k in used] for row in rows])
 
 
 def _range(p: dict[str, Any]) -> str:
