@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev test test-fast fuzz lint format bench deb board clean
+.PHONY: help setup run dev test test-fast fuzz lint format bench deb board docs clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
 cpp = $(shell find include src bindings tests bench -name '*.hpp' -o -name '*.cpp')
@@ -55,5 +55,9 @@ deb: ## Debian packages for this machine, in dist/
 board: ## node programs for a board, BOARD=arm64 or armhf, in build/board-BOARD
 	@tools/board.sh $(BOARD)
 
+docs: ## build the site into build/docs; warnings are errors
+	@tools/setup.sh docs
+	@tools/docs.sh
+
 clean: ## remove everything that was built or installed here
-	@rm -rf build out dist .venv
+	@rm -rf build out dist .venv docs/generated

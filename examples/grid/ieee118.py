@@ -1,4 +1,4 @@
-"""The IEEE 118-bus power grid as a system to be watched: structure, and which sensors are indispensable.
+"""The IEEE 118-bus power grid as a system to be watched: structure, and which sensors are necessary.
 
     pip install garrison[grid]
     python examples/grid/ieee118.py -o out/grid
@@ -110,7 +110,7 @@ def main() -> dict[str, Any]:
         f"rho(A) = {report['spectral_radius_of_A']:.6f}"
     )
     table = Table(title="phasor units", title_justify="left")
-    for head in ("agent", "measures", "class", "necessary", "substitutes", "could lie unseen"):
+    for head in ("agent", "measures", "class", "necessary", "substitutes", "could drift unseen"):
         table.add_column(head, overflow="fold")
     for row in table_rows(report):
         table.add_row(*row)

@@ -106,7 +106,7 @@ def states_text(states: list[int], most: int = 12) -> str:
 
 
 def table_rows(report: dict[str, Any]) -> list[list[str]]:
-    """One row per agent: name, measures, class, necessary, substitutes, could lie unseen."""
+    """One row per agent: name, measures, class, necessary, substitutes, could drift unseen."""
     return [
         [
             a["agent"],

@@ -127,7 +127,7 @@ def _numeric(name: str, got: Any, expected: Any, relative: float) -> FieldResult
     try:
         g = np.asarray(array(_lists(got)), dtype=float)
     except (ValueError, TypeError):
-        return FieldResult.failure(name, f"got something else than an array, expected one of shape {e.shape}")
+        return FieldResult.failure(name, f"got a {type(got).__name__}, expected an array of shape {e.shape}")
     if g.shape != e.shape:
         return FieldResult.failure(name, f"got shape {g.shape}, expected {e.shape}")
     if allowed is not None:

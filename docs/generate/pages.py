@@ -1,0 +1,21 @@
+"""Writes docs/generated."""
+
+import shutil
+from pathlib import Path
+
+from generate import benchmarks, commands, parameters, scenario
+
+
+def write(folder: Path) -> None:
+    """All generated pages, anew."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    texts = {
+        "scenario.md": scenario.page(),
+        "commands.md": commands.page(),
+        "attacks.md": parameters.attacks_page(),
+        "benchmarks.md": benchmarks.page(),
+        **{f"parameters_{name}.md": text for name, text in parameters.of_filters().items()},
+    }
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")

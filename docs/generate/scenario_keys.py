@@ -1,0 +1,83 @@
+"""What the tables and keys of a scenario mean."""
+
+TABLES = {
+    "model": "The plant and the sensors: matrices, a fit to records (`fit`), a model file (`file`), or vehicles.",
+    "network": "Who hears whom: `edges`, a generator (`kind`), or `stations` on a map.",
+    "filter": "The filter: `name`, `label`, and its parameters; [the pages of the filters](../filters/index.md) list "
+    "them, and so does `garrison list NAME`.",
+    "compare": "Other filters on the same data, as often as wanted, with the same keys as `[filter]`; the name "
+    "`central_kalman` stands for a Kalman filter that sees every measurement.",
+    "attack": "Who is attacked, when and how, as often as wanted; the other keys are the parameters of the "
+    "[attack](attacks.md).",
+    "link": "Messages that are lost or late, by chance. Without this table every message arrives in its round.",
+    "noise": "The law of the simulated noise.",
+    "data": "Recorded measurements, which are replayed instead of simulated ones.",
+    "run": "How long, how often, from where. `steps` is required unless there is `[data]`.",
+    "certificate": "Bounds on the error that need no filter; see [certificates](../certificates.md).",
+}
+
+MEANINGS = {
+    "model": {
+        "A": 'n x n numbers, row by row, or `{ file = "A.csv" }`: x(t) = A x(t-1) + w',
+        "C": "measurements, one entry per agent: a row of n numbers, a matrix of several rows, or `[]` for a relay "
+        "without sensors",
+        "process_bound": "length of w at most, in units of the state",
+        "measurement_bound": "size of a measurement's noise at most; one number or one per measurement",
+        "process_covariance": "covariance of w: n x n numbers, or one number for a multiple of the identity",
+        "measurement_covariance": "covariance of each agent's noise: one number, or one matrix per agent",
+        "fit": "CSV of clean records from which the model is identified (`garrison fit` writes the same to a file)",
+        "from": "first date or time that is used",
+        "to": "last one",
+        "factors": "number of states",
+        "harmonics": "sines and cosines of the season that are removed first",
+        "period": "with `fit`: length of the season in samples; with `vehicles`: sampling time in s",
+        "root": "true: work with square roots of the records (wind speeds are then close to Gaussian)",
+        "factor": "multiplies every record first, to change units",
+        "vehicles": "number of vehicles in a string: position (m) and velocity (m/s) each",
+        "inputs": "true: recorded control inputs are part of the data",
+        "file": "a model file that `garrison fit -o model.json` wrote",
+    },
+    "network": {
+        "edges": "pairs of agents, by number (from 0) or by name",
+        "agents": "number of agents; left out: as many as `[model].C` has entries",
+        "directed": "true: a pair is (sender, receiver) and not both ways",
+        "kind": "a generated network, see below",
+        "stations": "CSV with a code, latitude and longitude per agent",
+        "radius_km": "stations at most so far apart are neighbours",
+    },
+    "filter": {"name": "which filter", "label": "its name in tables and pictures"},
+    "attack": {
+        "kind": "which attack",
+        "agents": "numbers or names of the attacked agents; one may stand without a list",
+        "start": "first attacked sample, or a date where the records have dates",
+        "stop": "first sample that is not attacked any more; left out: never",
+        "schedule": "pairs of a start and agents, for sets that change: `[[100, [3]], [200, [5, 7]]]`",
+        "probability": "chance per sample that the attack acts (1)",
+    },
+    "link": {
+        "drop": "probability that a message is lost",
+        "delay": "probability that it is late",
+        "delay_rounds": "how many rounds a late message is late",
+    },
+    "certificate": {
+        "spread": '"none"; "local": from the measurements of an agent and its neighbours; '
+        '"flooded": from all that the rounds bring',
+        "failure": "probability per agent and sample that it is wrong, for Gaussian noise; 0: for bounded noise",
+        "attacked": "most attacked sensors at a time; left out: that of the filter",
+    },
+    "noise": {"law": '"auto", or a law that the model has the bounds or covariances for'},
+    "data": {
+        "file": "CSV of measurements: a column per sensor, and a column of times where there are any",
+        "from": "first date or time that is replayed",
+        "to": "last one",
+    },
+    "run": {
+        "steps": "samples per trial",
+        "trials": "repetitions with other noise (1)",
+        "seed": "of noise, attacks and losses; equal seeds give bit-identical results (0)",
+        "threads": "0: as many as there are processors; the result does not depend on it",
+        "x0": "state at time 0",
+        "start": "estimate at time 0: one for all agents, or one row per agent",
+        "start_error": "standard deviation of random errors that are added to the start",
+    },
+}
