@@ -175,6 +175,12 @@ std::map<int, std::vector<int>> System::contraction_of_measured(const Sensors& s
 
 std::vector<int> System::class_candidates(std::span<const int> measured, std::size_t agent,
                                           AgentClass as) const {
+  if (agent >= measured.size())
+    refuse("agent", std::to_string(agent), "an agent below " + std::to_string(measured.size()));
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    if (measured[i] >= states())
+      refuse("measured state of agent " + std::to_string(i), std::to_string(measured[i]),
+             "a state in 0.." + std::to_string(states() - 1) + ", or -1 for none");
   const int own = measured[agent];
   if (own < 0 || as == AgentClass::gamma) return {};
   std::vector<int> found;

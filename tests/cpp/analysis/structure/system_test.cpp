@@ -206,6 +206,10 @@ TEST_CASE("the structural analysis refuses what does not exist") {
   const System system(Pattern(2, 2, std::vector<std::pair<int, int>>{{0, 1}, {1, 0}}));
   CHECK_THROWS_WITH_AS(system.classes(Sensors{{0}, {2}}),
                        doctest::Contains("measured state of agent 1: got 2"), InvalidInput);
+  CHECK_THROWS_WITH_AS(system.class_candidates(std::vector{0, 2}, 0, AgentClass::alpha),
+                       doctest::Contains("measured state of agent 1: got 2"), InvalidInput);
+  CHECK_THROWS_WITH_AS(system.class_candidates(std::vector{0}, 1, AgentClass::alpha),
+                       doctest::Contains("agent: got 1"), InvalidInput);
   const std::vector<AgentClass> types{AgentClass::beta};
   CHECK_THROWS_WITH_AS(mitigate(system, std::vector{0}, types, std::vector{1}, Choice::exact, Matrix()),
                        doctest::Contains("alarms: got 1"), InvalidInput);
