@@ -95,10 +95,11 @@ using SessionPtr = std::unique_ptr<Session, EndSession>;
 /// The engine, and after every call of it what the user's code raised meanwhile.
 class OwnRunner final : public Runner {
  public:
-  OwnRunner(SessionPtr session, int rounds, const Model& model, const Network& network)
+  OwnRunner(SessionPtr session, int rounds, const Model& model, const Network& network,
+            std::unique_ptr<CertifiedNetwork> certified)
       : session_(std::move(session)),
         engine_(std::make_shared<const Family::Gains>(Family::Gains{session_.get(), rounds}), model, network,
-                1),
+                1, std::move(certified)),
         // Never cuts anything: with a link that might, the engine looks at every message, and withheld ones
         // (None) do not arrive.
         faultless_(network, {.cuts = {{-1, -1, INT64_MAX - 1, INT64_MAX}}}, {}, 0, 0) {}
@@ -178,7 +179,17 @@ class OwnPrepared final : public Prepared {
     session->signals = signals_;
     for (int i = 0; i < model_.agents(); ++i) session->agents.push_back({info(i), {}, {}});
     for (auto& agent : session->agents) agent.signals.assign(signals_.size(), kNaN);
-    return std::make_unique<OwnRunner>(std::move(session), rounds_, model_, network_);
+    auto certified = certificate_ == nullptr
+                         ? nullptr
+                         : std::make_unique<CertifiedNetwork>(certificate_, network_, rounds_);
+    return std::make_unique<OwnRunner>(std::move(session), rounds_, model_, network_, std::move(certified));
+  }
+  std::shared_ptr<const certificate::Plan> certificate() const override { return certificate_; }
+  std::shared_ptr<const Prepared> with(std::shared_ptr<const certificate::Plan> plan) const override {
+    const py::gil_scoped_acquire gil;
+    auto certified = std::make_shared<OwnPrepared>(*this);
+    certified->certificate_ = std::move(plan);
+    return certified;
   }
   void check_start(const Matrix&) const override {}
   void check_log(std::span<const double>) const override {}
@@ -187,7 +198,7 @@ class OwnPrepared final : public Prepared {
     Family::Message<Dynamic> message{&layout_, std::vector<double>(layout_.total)};
     attack.require(FieldList(message));
   }
-  std::unique_ptr<LaneRunner> lanes() const override { return nullptr; }
+  std::unique_ptr<TrialsRunner> trials() const override { return nullptr; }
   std::unique_ptr<World> world(const WorldOptions&) const override { return nullptr; }
   std::vector<std::byte> gains_bytes() const override { refuse_alone("a design file"); }
   std::vector<std::string> gains_outline() const override { return {"gains: of " + name_ + ".design"}; }
@@ -220,6 +231,7 @@ class OwnPrepared final : public Prepared {
   std::vector<std::string> signals_;
   Held gains_;
   int rounds_ = 0;
+  std::shared_ptr<const certificate::Plan> certificate_;  // null = none
 };
 
 std::shared_ptr<const Prepared> OwnFilter::prepare(const Model& model, const Network& network) const {

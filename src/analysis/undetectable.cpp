@@ -64,8 +64,8 @@ std::vector<int> necessary(const Matrix& A, const Matrix& C, const detail::Pair&
       listed[k] = residual <= level;
       if (listed[k]) continue;
       const auto unseen = [&](const Matrix& rows_of_C) {
-        const Visibility v = detail::examine(A, rows_of_C, 1.0);
-        return v.unseen.size() + v.unclear.size();
+        const Visibility seen_modes = detail::examine(A, rows_of_C, 1.0);
+        return seen_modes.unseen.size() + seen_modes.unclear.size();
       };
       if (!unseen_by_all) unseen_by_all = unseen(C);
       listed[k] = unseen(without(C, rows)) > *unseen_by_all;
