@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev test test-fast lint format bench clean
+.PHONY: help setup run dev test test-fast lint format bench deb board clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
 cpp = $(shell find include src bindings tests bench -name '*.hpp' -o -name '*.cpp')
@@ -45,6 +45,12 @@ bench: ## measure against the peers; results in bench/results
 	@tools/setup.sh bench
 	@bench/build.sh
 	@.venv/bin/python bench/run.py
+
+deb: ## Debian packages for this machine, in dist/
+	@tools/deb.sh
+
+board: ## node programs for a board, BOARD=arm64 or armhf, in build/board-BOARD
+	@tools/board.sh $(BOARD)
 
 clean: ## remove everything that was built or installed here
 	@rm -rf build out dist .venv

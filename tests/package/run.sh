@@ -12,19 +12,7 @@ tools/stage.sh "install library" cmake --install build/release --prefix "$work/p
 
 tools/stage.sh "package: CMake" cmake -G Ninja -S tests/package -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix"
 tools/stage.sh "package: build" cmake --build "$work/build"
-"$work/build/uses_garrison"
-"$work/build/uses_headers"
-
-# Every node gives the bits of the whole library's agents, from the same parts.
-"$work/build/parts" >"$work/cases"
-while read -r family name; do
-  rm -rf "$work/parts" && mkdir "$work/parts"
-  "$work/build/parts" "$family" "$name" "$work/parts" >"$work/expected"
-  node=node_$(sed -E "s/(^|_)(.)/\U\2/g" <<<"$family")  # the type: partial_sharing is PartialSharing
-  "$work/build/$node" "$work"/parts/*.part >"$work/estimates"
-  cmp "$work/expected" "$work/estimates"
-  echo "node: $family ($name) agrees in all bits, $(wc -l <"$work/estimates") agents"
-done <"$work/cases"
+tests/package/programs.sh "$work/build"
 
 PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name garrison.pc)")
 export PKG_CONFIG_PATH

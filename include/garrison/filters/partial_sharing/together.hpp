@@ -116,7 +116,9 @@ class PartialSharing::Together {
     const std::uint8_t* const first = shares_.data();
     std::uint8_t* const now = now_.data();
     const std::size_t count = shares_.size();
+#ifndef __clang__
 #pragma GCC ivdep  // bytes might be anything, also each other
+#endif
     for (std::size_t k = 0; k < count; ++k) now[k] = partial_sharing::shifted<n>(first[k], offset);
   }
 
