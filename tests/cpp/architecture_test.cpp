@@ -27,10 +27,12 @@ const std::map<std::string, std::set<std::string>> allowed{
     {"drivers", {"drivers", "engine", "attacks", "wire", "core", "kernel"}},
 };
 
-/// The folder that a path below include/garrison or src begins with; the version belongs to the core.
+/// The folder that a path below include/garrison or src begins with; the version belongs to the core,
+/// the header that includes them all to the top.
 std::string layer(const fs::path& path) {
   const std::string first = path.begin()->string();
-  return first == "version.hpp" ? "core" : first;
+  if (first == "version.hpp") return "core";
+  return first == "garrison.hpp" ? "drivers" : first;
 }
 }  // namespace
 
