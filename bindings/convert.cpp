@@ -64,8 +64,8 @@ py::array plain(const std::string& which, py::handle given, const std::string& e
     const auto shape = x.attr("shape").cast<py::tuple>();
     double entries = 1.0;
     for (const auto& length : shape) entries *= length.cast<double>();
-    garrison::require_memory(which, "a sparse matrix of shape " + py::str(py::handle(shape)).cast<std::string>(),
-                             8.0 * entries);
+    garrison::require_memory(
+        which, "a sparse matrix of shape " + py::str(py::handle(shape)).cast<std::string>(), 8.0 * entries);
     x = x.attr("toarray")();
   }
   if (is_masked_array(x)) {

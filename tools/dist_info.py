@@ -39,7 +39,8 @@ def main(folder: Path, command: Path) -> None:
     (folder / "entry_points.txt").write_text(f"[console_scripts]\n{name} = {entry}\n", encoding="utf-8")
     module, function = entry.split(":")
     command.write_text(
-        f"#!/usr/bin/python3\nimport sys\n\nfrom {module} import {function}\n\nsys.exit({function}())\n", encoding="utf-8"
+        f"#!/usr/bin/python3\nimport sys\n\nfrom {module} import {function}\n\nsys.exit({function}())\n",
+        encoding="utf-8",
     )
 
 

@@ -31,7 +31,8 @@ class GARRISON_EXPORT Selection {
   /// Entries of agent i at k = 0, sorted; k samples later entry a has become (a + offset(k)) mod m.
   std::span<const int> entries(int agent) const {
     const auto i = static_cast<std::size_t>(agent);
-    return std::span(entries_).subspan(first_[i], first_[i + 1] - first_[i]);
+    const auto begin = static_cast<std::size_t>(first_[i]);
+    return std::span(entries_).subspan(begin, static_cast<std::size_t>(first_[i + 1]) - begin);
   }
   int shared(int agent) const { return static_cast<int>(entries(agent).size()); }
   int offset(std::int64_t k) const {
@@ -64,7 +65,7 @@ class GARRISON_EXPORT Selection {
 
  private:
   std::vector<int> entries_;
-  std::vector<std::size_t> first_{0};
+  std::vector<std::uint64_t> first_{0};  // of one width on every machine: it travels in design files
   int states_ = 0;
   int shift_ = 0;
   int period_ = 1;
