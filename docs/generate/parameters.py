@@ -25,13 +25,9 @@ def attacks_page() -> str:
         "`[[attack]]` with `kind`.\n",
     ]
     for info in _core.attack_infos():
-        parts.append(f"## {info['name']}\n\n{_sentence(info['doc'])} ({info['target']} attack)\n")
+        parts.append(f"## {info['name']}\n\n{info['target'].capitalize()} attack: {cell(info['doc'])}.\n")
         parts.append(_table(info["params"]))
     return "\n".join(parts)
-
-
-def _sentence(text: str) -> str:
-    return cell(text[:1].upper() + text[1:]) + "."
 
 
 def _table(params: list[dict[str, Any]]) -> str:
