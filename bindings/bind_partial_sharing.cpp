@@ -196,8 +196,8 @@ void bind_design(py::module_& s) {
 
 void bind_partial_sharing(py::module_& m) {
   py::module_ s = m.def_submodule("partial_sharing",
-                                  "Analysis of the partial-sharing filter; notes item numbers as "
-                                  "in its C++ headers.");
+                                  "Analysis of the partial-sharing filter; errata of its paper: "
+                                  "docs/filters/partial_sharing.md.");
   bind_selection(s);
   py::class_<Analysis>(
       s, "Analysis",
@@ -310,7 +310,8 @@ void bind_partial_sharing(py::module_& m) {
             if (fraction) require_range("fraction", *fraction, 0.0, 1.0);
             return gamma_star(a.setting, a.steady(), fraction.value_or(a.setting.shared_fraction()));
           },
-          py::arg("fraction") = py::none(), "(22), advisory: false as printed, vacuous when 0 (notes 7, 8).")
+          py::arg("fraction") = py::none(),
+          "(22), advisory: false as printed, vacuous when 0: docs/filters/partial_sharing.md#m7.")
       .def(
           "lambda_I",
           [](const Analysis& a) {

@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from generate import benchmarks, commands, parameters, scenario
+from generate import benchmarks, commands, parameters, python_api, scenario
 
 
 def write(folder: Path) -> None:
@@ -15,6 +15,7 @@ def write(folder: Path) -> None:
         "commands.md": commands.page(),
         "attacks.md": parameters.attacks_page(),
         "benchmarks.md": benchmarks.page(),
+        "python_rest.md": python_api.rest(),
         **{f"parameters_{name}.md": text for name, text in parameters.of_filters().items()},
     }
     for name, text in texts.items():

@@ -7,8 +7,6 @@ from garrison import _core
 
 from generate.markdown import cell, code, table
 
-_HEAD = ["parameter", "symbol", "unit", "range", "default", "meaning"]
-
 
 def of_filters() -> dict[str, str]:
     """Name of a filter -> table of its parameters."""
@@ -25,23 +23,22 @@ def attacks_page() -> str:
         "`[[attack]]` with `kind`.\n",
     ]
     for info in _core.attack_infos():
-        parts.append(f"## {info['name']}\n\n{_sentence(info['doc'])} ({info['target']} attack)\n")
+        parts.append(f"## {info['name']}\n\n{info['target'].capitalize()} attack: {cell(info['doc'])}.\n")
         parts.append(_table(info["params"]))
     return "\n".join(parts)
-
-
-def _sentence(text: str) -> str:
-    return cell(text[:1].upper() + text[1:]) + "."
 
 
 def _table(params: list[dict[str, Any]]) -> str:
     if not params:
         return "No parameters.\n"
-    rows = [
-        [code(p["name"]), cell(p["symbol"]), cell(p["unit"]), _range(p), _default(p), cell(p["doc"])] for p in params
-    ]
-    used = [k for k in range(len(_HEAD)) if any(row[k] for row in rows)]  # columns that say nothing are left out
-    return table([_HEAD[k] for k in used], [[row[k] for k in used] for row in rows])
+    rows = [[_name(p), cell(p["doc"]), "; ".join(part for part in (_range(p), _default(p)) if part)] for p in params]
+    return table(["parameter (symbol, unit)", "meaning", "range; default"], rows)
+
+
+def _name(p: dict[str, Any]) -> str:
+    """The name, below it symbol and unit where there are any; few columns fit on a phone."""
+    more = ", ".join(cell(p[key]) for key in ("symbol", "unit") if p[key] not in ("", "1"))
+    return code(p["name"]) + (f"<br>{more}" if more else "")
 
 
 def _range(p: dict[str, Any]) -> str:
@@ -56,8 +53,8 @@ def _range(p: dict[str, Any]) -> str:
 
 def _default(p: dict[str, Any]) -> str:
     if p["required"]:
-        return "required"
+        return "**required**"
     value = p["default"]
     if value == [] or (isinstance(value, float) and math.isnan(value)):
-        return "left out"
-    return code(str(value).lower() if isinstance(value, bool) else value)
+        return ""
+    return "default " + code(str(value).lower() if isinstance(value, bool) else value)

@@ -39,6 +39,19 @@ def test_a_failing_block_is_seen(tmp_path: Path) -> None:
         documents.run(page, tmp_path)
 
 
+@pytest.mark.parametrize("page", documents.pages(), ids=_name)
+def test_rows_of_tables_are_whole(page: Path) -> None:
+    lines = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL).splitlines()
+    wrong, width = [], 0
+    for line in lines:
+        cells = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else 0
+        width = cells if not width or not cells else width
+        if cells != width:
+            wrong.append(line)
+        width = width if cells else 0
+    assert not wrong, "a | in a cell is written \\|: " + "\n".join(wrong)
+
+
 def _anchors(page: Path) -> set[str]:
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
     titles = re.findall(r"^#+ (.*)$", text, flags=re.MULTILINE)

@@ -19,7 +19,8 @@
 
 namespace garrison {
 
-/// The saturation paper only cites this filter; our definition (notes, item 20): all modes form one group.
+/// The saturation paper only cites this filter; our definition, docs/filters/baselines.md#lfre:
+/// all modes form one group.
 /// An agent that can observe the whole state alone is a source and runs a Luenberger observer,
 ///   xhat_i(t) = A xhat_i(t-1) + H_i (y_i(t-1) - C_i xhat_i(t-1)),  xhat_i(1) = A xhat_i(0).
 /// Every other one averages, entry by entry, its parents' xhat(t-1) without the f largest and f smallest, and

@@ -1,5 +1,5 @@
 """
-Analysis of the partial-sharing filter; notes item numbers as in its C++ headers.
+Analysis of the partial-sharing filter; errata of its paper: docs/filters/partial_sharing.md.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class Analysis:
         """
     def gamma_star(self, fraction: typing.SupportsFloat | typing.SupportsIndex | None = None) -> float:
         """
-        (22), advisory: false as printed, vacuous when 0 (notes 7, 8).
+        (22), advisory: false as printed, vacuous when 0: docs/filters/partial_sharing.md#m7.
         """
     def lambda_I(self) -> list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
         """

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fixed points of r -> F(r) r + q0 (our notes, section 3). Up to r1 no honest sensor saturates and F is
-// constant: a linear inequality. Beyond r1 the gain falls like 1/r: a quadratic one.
+// Fixed points of r -> F(r) r + q0 (docs/filters/saturation.md#s-closed). Up to r1 no honest sensor saturates
+// and F is constant: a linear inequality. Beyond r1 the gain falls like 1/r: a quadratic one.
 #include "garrison/filters/saturation/constants.hpp"
 
 namespace garrison::saturation {

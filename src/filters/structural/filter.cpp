@@ -116,7 +116,8 @@ void add_test(Structural::Gains& g, const Setting& s, const GainMatrices& K, con
              "the covariance in time of so large a network is not computed");
     add_spread(g, s, [&](Index i) { return P[static_cast<std::size_t>(i)]; });
     for (Index i = 0; i < N; ++i) {
-      // Jensen: P_i >= cov(e_i), so these are bounds and alarms are rarer than asked for (notes, section 3).
+      // Jensen: P_i >= cov(e_i), so these are bounds and alarms are rarer than asked for
+      // (docs/filters/structural.md#d-riccati).
       Matrix mixed = Matrix::Zero(n, n);
       for (Index j = 0; j < N; ++j)
         if (s.W(i, j) != 0.0) mixed += s.W(i, j) * P[static_cast<std::size_t>(j)];

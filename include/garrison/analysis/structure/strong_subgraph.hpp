@@ -18,10 +18,10 @@ struct GARRISON_EXPORT StrongSubgraph {
   bool exact = false;              ///< the search finished: cost = lower_bound
 };
 
-/// Least total weight of a strongly connected spanning subgraph. The problem is NP-hard in general (notes,
-/// item 28): branch and bound over `max_nodes` choices, started from the union of a cheapest out- and a
-/// cheapest in-arborescence of the best root (at most twice the optimum). `edges`: (from, to) pairs,
-/// `weights` >= 0.
+/// Least total weight of a strongly connected spanning subgraph. The problem is NP-hard in general
+/// (docs/filters/structural.md#d28): branch and bound over `max_nodes` choices, started from the union of a
+/// cheapest out- and a cheapest in-arborescence of the best root (at most twice the optimum). `edges`: (from,
+/// to) pairs, `weights` >= 0.
 /// @throws InvalidInput when an edge leaves 0..agents-1 or a weight is negative or not finite.
 GARRISON_EXPORT StrongSubgraph cheapest_strong_subgraph(int agents,
                                                         std::span<const std::pair<int, int>> edges,

@@ -28,8 +28,8 @@ enum class Choice : char {
 };
 
 /// The alarmed agents' sensors are replaced one at a time, in the given order, and classes are worked out
-/// anew after each one (notes, item 3: two substitutions at once can fail). `measured`: -1 = no sensor.
-/// `cost`: agents x states for Choice::exact, or empty: all alike.
+/// anew after each one (docs/filters/structural.md#d3: two substitutions at once can fail). `measured`: -1 =
+/// no sensor. `cost`: agents x states for Choice::exact, or empty: all alike.
 /// @throws InvalidInput when an agent or state does not exist.
 GARRISON_EXPORT Mitigation mitigate(const System& system, std::span<const int> measured,
                                     std::span<const AgentClass> types, std::span<const int> alarms,
@@ -48,7 +48,8 @@ struct GARRISON_EXPORT Picks {
   std::vector<Pick> picks;  ///< sorted by agent
 };
 /// Remark 9: one agent per class, each measuring its cheapest state of it. It can fail to restore
-/// observability when classes overlap (notes, item 29). `cost`: agents x states, not negative.
+/// observability when classes overlap (docs/filters/structural.md#d29). `cost`: agents x states, not
+/// negative.
 GARRISON_EXPORT Picks cheapest_per_class(const MatrixRef& cost, std::span<const std::vector<int>> classes);
 /// The cheapest sensors (agent, state), at most one state per agent, with which [A; sensors] has full
 /// structural rank: one assignment of states to rows of A (cost 0) and agents.

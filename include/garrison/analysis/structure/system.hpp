@@ -16,7 +16,8 @@ namespace garrison::structure {
 using Sensors = std::vector<std::vector<int>>;
 
 /// Section II-B of the structural paper: alpha agents measure a state of a contraction, beta agents one of a
-/// parent component, gamma agents neither. By membership, alpha before beta before gamma (notes, item 4).
+/// parent component, gamma agents neither. By membership, alpha before beta before gamma
+/// (docs/filters/structural.md#d4).
 enum class AgentClass : char { alpha, beta, gamma };
 GARRISON_EXPORT std::string_view name_of(AgentClass c);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The three controllers that the paper compares with and only names; definitions are ours (notes, section 2).
+// The three controllers that the paper compares with and only names; definitions are ours,
+// docs/filters/baselines.md#platoon-baseline.
 #pragma once
 
 #include <limits>

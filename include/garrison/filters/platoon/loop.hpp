@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Analysis of the closed loop: Assumption 4, Lemma 2 and Theorem 4. L_g is symmetric with known eigenvalues,
-// so P_0 = I (x) A - L_g (x) F_0 splits into N problems of size 2 (our notes, S9): O(N) for any N.
+// so P_0 = I (x) A - L_g (x) F_0 splits into N problems of size 2 (docs/filters/platoon.md#s9-blocks):
+// O(N) for any N.
 #pragma once
 
 #include <vector>
@@ -25,8 +26,8 @@ struct LoopFactors {
   double M_min;
   double kappa;  ///< ||M|| + 2 ||M P_0||^2, the printed theta
   double xi;     ///< sqrt(2 kappa M_max/M_min): limsup ||E|| <= xi limsup ||delta|| as printed
-  /// sum over k of ||P_0^k||: the sharper factor (our notes, S10), up to and including the first term below
-  /// 1e-9. NaN when that takes more than kMostTerms block powers.
+  /// sum over k of ||P_0^k||: the sharper factor (docs/filters/platoon.md#s10-sum), up to and
+  /// including the first term below 1e-9. NaN when that takes more than kMostTerms block powers.
   double l1;
 };
 inline constexpr double kMostTerms = 2e7;
@@ -36,7 +37,7 @@ GARRISON_EXPORT LoopFactors loop_factors(int vehicles, double period, double gs,
 /// Theorem 4: limsup of phi (4), from the largest asymptotic estimation error.
 struct LoopBound {
   double eta;         ///< (31) as printed; misses the process noise in the neighbours' predictions
-  double eta_safe;    ///< with it: + 2 sqrt(N) T (g_s + g_v) eps (our notes, E5)
+  double eta_safe;    ///< with it: + 2 sqrt(N) T (g_s + g_v) eps (docs/filters/platoon.md#e5)
   double bound;       ///< alpha + eta xi, as printed
   double bound_safe;  ///< alpha + eta_safe xi
   double

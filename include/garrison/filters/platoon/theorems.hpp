@@ -10,7 +10,7 @@ namespace garrison::platoon {
 GARRISON_EXPORT double beta1_bar(const Setting& setting, double omega);
 GARRISON_EXPORT double beta2_bar(const Setting& setting, double omega);
 /// (23) at omega: with b >= 1 it is equivalent to 0 < beta1_bar < beta2_bar (Remark 5 says that it is not
-/// necessary; our notes, E6). False when omega q <= f_1.
+/// necessary; docs/filters/platoon.md#e6). False when omega q <= f_1.
 GARRISON_EXPORT bool proposition2(const Setting& setting, double omega);
 /// (24).
 GARRISON_EXPORT double f3(const Setting& setting, double omega);
@@ -22,7 +22,8 @@ struct Interval {
 };
 /// All omega with 0 < beta1_bar < beta2_bar (open interval).
 GARRISON_EXPORT Interval omega_interval(const Setting& setting);
-/// All betas that Theorem 1 admits for some omega (our notes, S1). Setting::beta is validated, not used.
+/// All betas that Theorem 1 admits for some omega (docs/filters/platoon.md#s1-omega). Setting::beta is
+/// validated, not used.
 GARRISON_EXPORT Interval beta_interval(const Setting& setting);
 /// The same for the bound that holds: the safe recursion maps q below q without any detection.
 GARRISON_EXPORT Interval beta_interval_safe(const Setting& setting);

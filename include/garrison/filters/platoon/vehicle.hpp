@@ -22,7 +22,7 @@ struct Options {
   bool detector = true;
   BoundKind bound = BoundKind::safe;
   bool tie_by_bound = false;    ///< (13), equally near sources: the smaller error bound wins
-  bool cover = false;           ///< S5: flood pairs and count (29) exactly
+  bool cover = false;           ///< S5 of docs/filters/platoon.md: flood pairs and count (29) exactly
   bool pairs = false;           ///< S4: all pairs within range
   bool neighbours = false;      ///< S6: (28) for every neighbour
   bool median = false;          ///< S3: the median where its bound is smaller

@@ -10,9 +10,9 @@ namespace garrison::rdkf {
 /// Theorem III.3: without attack, a start with V = max_i e_i' P_i^-1 e_i at most this never saturates and V
 /// falls by the factor `rate` per step. +inf where nobody has a sensor.
 struct Levels {
-  double printed;    ///< with 2 lambda, as printed: FALSE (our notes, 5 and 6), here for comparison only
+  double printed;    ///< with 2 lambda, as printed: FALSE (docs/filters/rdkf.md#r5, r6), for comparison only
   double corrected;  ///< with lambda, agents coupled
-  double refined;    ///< with the sharper threshold of our notes, 7; at least `corrected`
+  double refined;    ///< with the sharper threshold of docs/filters/rdkf.md#r7; at least `corrected`
 };
 
 struct GARRISON_EXPORT Constants {
@@ -21,16 +21,16 @@ struct GARRISON_EXPORT Constants {
   Vector resiliency_bound;
   /// Half of it: the estimate is at most this far from the fused prediction, whatever is measured.
   Vector prior_deviation_bound;
-  Vector refined_threshold;  ///< t_i of our notes, 7; +inf without sensors
+  Vector refined_threshold;  ///< t_i of docs/filters/rdkf.md#r7; +inf without sensors
   Levels level;              ///< `norm` only, NaN for other penalties
-  double rate;               ///< gamma < 1 of our notes, 8: V_k <= gamma V_{k-1} (for (7) from anywhere)
-  double eta;  ///< the same with Q_j in place of P_j^-1: growth of the prediction error, one step
+  double rate;  ///< gamma < 1 of docs/filters/rdkf.md#r8: V_k <= gamma V_{k-1} (for (7) from anywhere)
+  double eta;   ///< the same with Q_j in place of P_j^-1: growth of the prediction error, one step
   double dkf_error_radius;    ///< spectral radius of the error of (7)
   double prior_error_radius;  ///< of the error when no measurement is used; at least the radius of A
   /// No attack, however long, moves the estimate of agent i by more than this from where it would be without
   /// any measurement; +inf where prior_error_radius >= 1 (no bound for persistent attacks); NaN, like the
-  /// radii, where the stacked error has more than 1000 entries. Never less than the series of our notes, 2:
-  /// what is cut off is bounded.
+  /// radii, where the stacked error has more than 1000 entries. Never less than the series of
+  /// docs/filters/rdkf.md#r-persistent: what is cut off is bounded.
   Vector persistent_bound;
 };
 

@@ -22,7 +22,8 @@ namespace garrison {
 /// N_i (itself included) to the prediction x0 = Q_i^-1 (1/d_i) sum z_j, and solves (8):
 ///   xhat_i(k) = argmin over x of penalty(b_i - M_i x) + (x - x0)' Q_i (x - x0),
 /// b = Sv^-1/2 y, M = Sv^-1/2 C, penalty lambda |r| in the paper. Whatever is measured moves the estimate by
-/// at most half of (10) from x0. Steady-state covariances from (5) in the appendix' reading (our notes, 1).
+/// at most half of (10) from x0. Steady-state covariances from (5) in the appendix' reading
+/// (docs/filters/rdkf.md#r1).
 ///
 /// A neighbour that is missing counts as holding this agent's own previous estimate. Entries of a
 /// measurement that are not finite (or beyond kHuge) are missing: the step is that of a sensor without their

@@ -8,9 +8,9 @@ namespace garrison::rdkf {
 
 /// Solves one step like `solve`, without factors made before: the same minimiser within rounding, several
 /// times cheaper than `step_factors` and `solve` together. Newton's method on the secular equation with a
-/// Cholesky factor of D + mu I per iteration (our notes, 3.1). Its result is checked against the optimality
-/// conditions; where D has no inverse, or the check fails, the spectral way of `step_factors` is gone
-/// instead.
+/// Cholesky factor of D + mu I per iteration (docs/filters/rdkf.md#r-exact). Its result is checked against
+/// the optimality conditions; where D has no inverse, or the check fails, the spectral way of `step_factors`
+/// is gone instead.
 ///
 /// @param Q n x n, symmetric positive definite; @param M q x n; @param b q numbers, finite
 /// @param penalty norm or huber

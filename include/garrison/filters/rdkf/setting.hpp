@@ -24,7 +24,7 @@ struct GARRISON_EXPORT Setting {
 };
 
 /// @throws InvalidInput when a covariance is missing or not positive definite (a singular one of w breaks
-/// uniqueness of (5), our notes, 4), the network is not connected, or (A, C) is not detectable
+/// uniqueness of (5), docs/filters/rdkf.md#r9), the network is not connected, or (A, C) is not detectable
 GARRISON_EXPORT Setting setting(const Model& model, const Network& network);
 
 /// Every mode of A on or outside of the unit circle is surely seen by some row of C: visibility(A, C, 1) in

@@ -9,7 +9,7 @@ namespace garrison::rdkf {
 /// One application of (5), for all agents at once:
 ///   P_i <- ((1/d_i) sum over j in N_i of (A P_j A' + Sw_j)^-1 + C_i' Sv_i^-1 C_i)^-1.
 /// The appendix' reading; the printed (5) lacks the inverse of the bracket and inverts Sw, which biases (7)
-/// (our notes, 1). P: one n x n matrix per agent, symmetric positive semidefinite.
+/// (docs/filters/rdkf.md#r1). P: one n x n matrix per agent, symmetric positive semidefinite.
 GARRISON_EXPORT std::vector<Matrix> riccati_sweep(const Setting& s, const std::vector<Matrix>& P);
 
 struct SteadyOptions {

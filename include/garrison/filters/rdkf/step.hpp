@@ -12,17 +12,19 @@ namespace garrison::rdkf {
 enum class Penalty {
   norm,   ///< lambda |r|, the paper's (8)
   huber,  ///< |r|^2 up to lambda/2, lambda |r| - lambda^2/4 beyond: unsaturated it is the Kalman step
-          ///< (notes 3.4)
-  l1,     ///< lambda times the sum of |r_m|: one bad sensor does not blind the agent's others (notes 3.5)
+          ///< (docs/filters/rdkf.md#r-huber)
+  l1,     ///< lambda times the sum of |r_m|: one bad sensor does not blind the agent's others,
+          ///< docs/filters/rdkf.md#r-l1
   group,  ///< lambda times the sum over the neighbourhood of |b_j - M_j x|; measurements travel too
-          ///< (notes 3.5)
+          ///< (docs/filters/rdkf.md#r-l1)
 };
 
 /// What of  min over x of penalty(b - M x) + (x - x0)' Q (x - x0)  does not depend on b and x0, for `norm`
 /// and `huber`.
 ///
 /// The dual is  max over |u| <= lambda of u'r0 - u' D u / 2,  r0 = b - M x0, D = M Q^-1 M' / 2 (plus 1/2 for
-/// `huber`); with Q = L L' and M L^-T = V s Z' it falls apart into q scalars (our notes, 3.1).
+/// `huber`); with Q = L L' and M L^-T = V s Z' it falls apart into q scalars
+/// (docs/filters/rdkf.md#r-exact).
 struct GARRISON_EXPORT StepFactors {
   Packed R;           ///< q x q, V' Sv^-1/2: turns a measurement y into V'b
   Packed K;           ///< q x n, V'M

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adaptive saturation level (our notes, not in the paper): beta_t is the known bound on honest innovations,
-// so no honest measurement is ever clipped and the asymptotic bound no longer depends on eta0.
+// Adaptive saturation level (not in the paper: docs/filters/saturation.md#s-adaptive): beta_t is the known
+// bound on honest innovations, so no honest measurement is ever clipped and the asymptotic bound no longer
+// depends on eta0.
 #pragma once
 
 #include "garrison/filters/saturation/setting.hpp"

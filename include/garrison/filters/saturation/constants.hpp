@@ -43,8 +43,8 @@ GARRISON_EXPORT double F(const Setting& setting, double rho);
 /// rho_0 .. rho_T of (7), T >= 0. @throws InvalidInput, see constants()
 GARRISON_EXPORT std::vector<double> rho_sequence(const Setting& setting, int T);
 
-/// Ends of {r >= 0 : F(r) r + q0 <= r}, an interval because F(r) r is convex (our notes). (9) says that eta0
-/// lies in it; then lim rho_t = lo, whatever eta0.
+/// Ends of {r >= 0 : F(r) r + q0 <= r}, an interval because F(r) r is convex
+/// (docs/filters/saturation.md#s-closed). (9) says that eta0 lies in it; then lim rho_t = lo, whatever eta0.
 struct FixedPoints {
   double lo;  ///< NaN when the set is empty
   double hi;  ///< NaN when the set is empty; inf when there is no upper end (always for a < 1)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coordinates in which the conditions are easier to meet (our notes, section 3): ||A|| and lambda0 depend on
-// the basis of the state, what can be reconstructed from the sensors does not.
+// Coordinates in which the conditions are easier to meet (docs/filters/saturation.md#s-coordinates): ||A||
+// and lambda0 depend on the basis of the state, what can be reconstructed from the sensors does not.
 #pragma once
 
 #include "garrison/core/error.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which (beta, eta0, L) satisfy condition (9): theorem 2 made exact (our notes, section 3), all in closed
-// form.
+// Which (beta, eta0, L) satisfy condition (9): theorem 2 made exact in closed form,
+// docs/filters/saturation.md#s-closed.
 #pragma once
 
 #include <functional>

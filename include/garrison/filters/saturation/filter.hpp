@@ -152,7 +152,8 @@ struct GARRISON_EXPORT Saturation {
   static Check check(const Params& params, const Model& model, const Network& network);
   /// Validates and prepares; @throws InvalidInput (see the doc of each parameter).
   static Gains design(const Params& params, const Model& model, const Network& network);
-  /// Bounds and detector need one initial estimate for all (our notes); @throws InvalidInput.
+  /// Bounds and detector need one initial estimate for all (docs/filters/saturation.md#s1); @throws
+  /// InvalidInput.
   static void check_start(const Gains& gains, const Matrix& x0);
   /// What a user should know of a run: it refuted an assumption.
   static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);

@@ -12,7 +12,7 @@
 namespace garrison::saturation {
 
 /// Plant, network and tuning, reduced to what the theorems need. All sensors have rows of unit length and
-/// start from the same estimate (our notes: Lemma 2 and the detector fail otherwise).
+/// start from the same estimate (Lemma 2 and the detector fail otherwise: docs/filters/saturation.md#s1).
 struct Setting {
   int agents = 0;             ///< N >= 1
   double a = kNaN;            ///< ||A||, spectral norm, >= 0
@@ -24,7 +24,8 @@ struct Setting {
   double b_w = kNaN;          ///< ||w(t)|| <= b_w, >= 0
   double b_v = kNaN;          ///< |v_i(t)| <= b_v for all i, >= 0
   /// q0 with sqrt(N-s)/N a p0 in place of (N-s)/N a p0 (p(t) bounds the stacked vector: Cauchy-Schwarz) and
-  /// without the b_w that (24) counts twice (our notes). Sound and smaller; false = as printed in (8).
+  /// without the b_w that (24) counts twice (docs/filters/saturation.md#s6). Sound and smaller; false = as
+  /// printed in (8).
   bool sharp = false;
 
   template <class V>

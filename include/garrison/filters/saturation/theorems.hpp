@@ -26,7 +26,8 @@ struct TheoremBounds {
 /// `T` >= 1: length of the lists. @throws InvalidInput for a bad setting, varpi < 0 or T < 1
 GARRISON_EXPORT TheoremBounds theorem_bounds(const Setting& setting, double varpi, int T);
 
-/// a (1 - lambda0/N) >= varpi: no subset search needed (our notes). @throws InvalidInput
+/// a (1 - lambda0/N) >= varpi: no subset search needed (docs/filters/saturation.md#s-closed).
+/// @throws InvalidInput
 GARRISON_EXPORT double varpi_bound(const Setting& setting);
 
 /// Theorem 4 when d of the s attackers are proved at time T.
@@ -36,8 +37,9 @@ struct DetectedBound {
   double qbar;          ///< q0 - d beta / N of (17)
   double rhobar_limit;  ///< lim of (17)
   double F_star;        ///< F(rhobar_limit); Gammabar read as t >= T+1, where (17) has a predecessor
-  double W;             ///< W(T) as printed; may rise with d for a < 1 (our notes); NaN when F_star >= 1
-  double tight;         ///< rhobar_limit + p0 <= W, what the proof gives and never rises with d: use this one
+  double W;  ///< W(T) as printed; may rise with d for a < 1 (docs/filters/saturation.md#s13); NaN when F_star
+             ///< >= 1
+  double tight;  ///< rhobar_limit + p0 <= W, what the proof gives and never rises with d: use this one
 };
 /// Theorem 4 for d = 0..s; empty when (9) fails or a g >= 1. `T` >= 0.
 /// @throws InvalidInput for a bad setting or T < 0

@@ -10,7 +10,8 @@
 namespace garrison::structural {
 
 /// Probability that a zero-mean Gaussian residual stays below m standard deviations: erf(m / sqrt 2). It is
-/// 1 - false-alarm rate, not a detection probability (notes, item 16). @throws InvalidInput unless m > 0.
+/// 1 - false-alarm rate, not a detection probability (docs/filters/structural.md#d16).
+/// @throws InvalidInput unless m > 0.
 GARRISON_EXPORT double kappa(double m);
 /// The m with false-alarm rate `rate` per sample: sqrt 2 erfinv(1 - rate). @throws InvalidInput unless
 /// 0 < rate < 1.
@@ -25,8 +26,8 @@ GARRISON_EXPORT double chi_square_level(int degrees, double rate);
 
 /// Thresholds for |r_i| at m standard deviations, m > 0: from exact standard deviations, N numbers.
 GARRISON_EXPORT Vector thresholds(const Vector& residual_std, double m);
-/// The paper's (17), m (|c_i| Q1 + R_ii): a variance used as a deviation, for comparison only (notes, item
-/// 15).
+/// The paper's (17), m (|c_i| Q1 + R_ii): a variance used as a deviation, for comparison only,
+/// docs/filters/structural.md#d15.
 /// @throws InvalidInput when Q1 is not finite: the bound needs |Ahat|_2 < 1.
 GARRISON_EXPORT Vector thresholds_printed(const Setting& s, double Q1, double m);
 /// Its root, m sqrt(|c_i|^2 Q1 + R_ii): the right unit, hugely conservative.

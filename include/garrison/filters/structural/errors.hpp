@@ -19,7 +19,7 @@ GARRISON_EXPORT double spectral_radius(const MatrixRef& M);
 /// rho(Ahat) without forming it: Arnoldi's method on the blocks, for N n in the thousands.
 GARRISON_EXPORT double error_radius(const Setting& s, const GainMatrices& K);
 
-/// Exact stationary second moments (notes, items 11 and 15): no bound, no norm.
+/// Exact stationary second moments (docs/filters/structural.md#d11, d15): no bound, no norm.
 struct GARRISON_EXPORT Stationary {
   double rho = kNaN;                ///< rho(Ahat) < 1
   Matrix Q;                         ///< covariance of the stacked error, Nn x Nn
@@ -35,13 +35,13 @@ GARRISON_EXPORT Stationary stationary(const Setting& s, const GainMatrices& K, i
 /// Noise-free residuals from e = 0 while y_agent is off by 1 from row 0 on: rows x N.
 GARRISON_EXPORT Matrix step_response(const Setting& s, const GainMatrices& K, int agent, int rows);
 /// (18): |c_i'K_i c_j| / |c_j'K_j c_j - 1|, 0 on the diagonal, infinite where the denominator is 0. It speaks
-/// of the first instant of an attack only (notes, item 18).
+/// of the first instant of an attack only (docs/filters/structural.md#d18).
 GARRISON_EXPORT Matrix isolation_ratios(const Setting& s, const GainMatrices& K);
 /// sum_j W(i, j) A xhat_j for every agent: N x n from N x n.
 GARRISON_EXPORT Matrix predictions(const Setting& s, const MatrixRef& estimates);
 
-/// (10) and (16). `printed` takes the paper's Rbar, which is false when measurements are shared (notes, item
-/// 12); the corrected one holds. Infinite when |Ahat|_2 >= 1 (item 13).
+/// (10) and (16). `printed` takes the paper's Rbar, which is false when measurements are shared
+/// (docs/filters/structural.md#d12); the corrected one holds. Infinite when |Ahat|_2 >= 1 (d13 there).
 struct GARRISON_EXPORT CovarianceBound {
   double a1, a2, b, Rbar_norm, bound, Q1;
 };

@@ -24,9 +24,10 @@ namespace garrison {
 ///   (3) xpred_i = sum_j W_ij A xhat_j,
 ///   (4) xhat_i = xpred_i + K_i sum_{j : U_ij = 1} c_j (y_j - c_j'xpred_i),
 ///  (14) r_i = y_i - c_i'xhat_i, an alarm when |r_i| >= m s_i (19).
-/// s_i is the exact stationary standard deviation (notes, items 11 and 15) and m follows from `false_alarm`,
-/// instead of the paper's (17). Large networks (N n > 1200) use the Riccati bound of s_i: fewer false alarms
-/// than asked for, never more. The network says who may hear whom; W and U may use fewer of its links.
+/// s_i is the exact stationary standard deviation (docs/filters/structural.md#d11, d15) and m follows
+/// from `false_alarm`, instead of the paper's (17). Large networks (N n > 1200) use the Riccati bound of s_i:
+/// fewer false alarms than asked for, never more. The network says who may hear whom; W and U may use fewer
+/// of its links.
 ///
 /// A missing estimate gives its weight to the agent's own; a missing measurement counts as predicted. From
 /// then on, until it is stationary again, an agent carries a bound P_i >= cov(e_i) of its own error (Jensen)

@@ -9,9 +9,9 @@
 
 namespace garrison::structural {
 
-/// Coupled Riccati recursion (notes, section 3 item 1): P_i^- = A (sum_j W_ij P_j) A' + E and K_i its Kalman
-/// gain, N recursions of n x n. P_i >= cov(e_i) (Jensen); a bounded fixed point with E > 0 certifies
-/// rho(Ahat) < 1. O(N n^3) a sweep.
+/// Coupled Riccati recursion (docs/filters/structural.md#d-riccati): P_i^- = A (sum_j W_ij P_j) A' + E
+/// and K_i its Kalman gain, N recursions of n x n. P_i >= cov(e_i) (Jensen); a bounded fixed point with E > 0
+/// certifies rho(Ahat) < 1. O(N n^3) a sweep.
 struct GARRISON_EXPORT RiccatiGains {
   GainMatrices K;
   std::vector<Matrix> P;       ///< n x n per agent: a bound of the stationary error covariance
@@ -57,7 +57,7 @@ GARRISON_EXPORT Designed design_gains(const Setting& s, const std::string& metho
 
 /// One unstable scalar state that agent 0 observes alone and shares with nobody: the gain k with the least
 /// spectral radius of A diag(1 - k c, 1, ...) W, and that radius. Lemma 2 does not make it smaller than 1
-/// (notes, item 20).
+/// (docs/filters/structural.md#d20).
 struct GARRISON_EXPORT ScalarGainChoice {
   double gain, radius;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Algorithm 2 with the corrected (28), and the stronger tests of our notes.
+// Algorithm 2 with the corrected (28), and the stronger tests of docs/filters/platoon.md#s-tests.
 #include <algorithm>
 #include <cmath>
 

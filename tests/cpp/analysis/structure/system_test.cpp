@@ -121,7 +121,7 @@ TEST_CASE("mitigation one at a time never loses an observability that some choic
   CHECK(replaced > 20);
 }
 
-TEST_CASE("two substitutions at once can fail where one at a time cannot (notes, item 3)") {
+TEST_CASE("two substitutions at once can fail where one at a time cannot (docs/filters/structural.md#d3)") {
   const std::vector<std::pair<int, int>> edges{{0, 1}, {1, 2}, {2, 0}, {1, 0}, {3, 6}, {3, 2},
                                                {4, 5}, {5, 5}, {5, 3}, {6, 8}, {6, 9}, {6, 1},
                                                {7, 3}, {8, 7}, {8, 4}, {9, 3}};

@@ -157,7 +157,8 @@ TEST_CASE(
   CHECK(accusations > 50000);
 }
 
-TEST_CASE("the printed bound is violated in random loops, as our notes say, and never reported") {
+TEST_CASE(
+    "the printed bound is violated in random loops (E1, E2 of docs/filters/platoon.md) and never reported") {
   test::Rng rng(8);
   int violated = 0;
   for (int run = 0; run < 200; ++run) {

@@ -97,7 +97,9 @@ double paper_varpi(int s) {
   return varpi;
 }
 
-TEST_CASE("saturation constants: the adaptive threshold reaches the figures of the notes") {
+TEST_CASE(
+    "saturation constants: the adaptive threshold reaches the figures of "
+    "docs/filters/saturation.md#s-adaptive") {
   Setting s{.agents = 30, .a = 1.0512492197250394, .eta0 = 50.0, .b_w = 0.02, .b_v = 0.01};
   struct Row {
     int s, L;

@@ -33,7 +33,9 @@ double lambda0_of(const Matrix& C, int s) {
   return std::max(least, 0.0);
 }
 
-TEST_CASE("saturation coordinates: diagonal scaling of the paper's system, figures of the notes") {
+TEST_CASE(
+    "saturation coordinates: diagonal scaling of the paper's system, figures of "
+    "docs/filters/saturation.md#s-coordinates") {
   Matrix A(2, 2);
   A << 1.0, 0.1, 0.0, 1.0;
   Matrix C(30, 2);

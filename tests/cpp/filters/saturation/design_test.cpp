@@ -113,7 +113,8 @@ TEST_CASE("saturation design: rounds and threshold together") {
   CHECK(all.fewest_rounds == 50);
   CHECK(all.rounds == 90);
   CHECK(all.contraction == plain(90));
-  CHECK(all.threshold.bound == doctest::Approx(5.58).epsilon(0.002));  // notes, best fixed beta
+  CHECK(all.threshold.bound ==
+        doctest::Approx(5.58).epsilon(0.002));  // best fixed beta, docs/filters/saturation.md#s-adaptive
 
   const Design thrifty = design_rounds_and_threshold(s, plain, 1, 400, 0.01);
   const Design best = design_rounds_and_threshold(s, plain, 1, 400);

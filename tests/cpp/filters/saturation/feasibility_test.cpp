@@ -65,7 +65,7 @@ TEST_CASE("saturation feasibility: case 07, largest norm and the paper's eps") {
   }
 }
 
-TEST_CASE("saturation feasibility: smallest L of the notes, printed and sharp") {
+TEST_CASE("saturation feasibility: smallest L of docs/filters/saturation.md#s6, printed and sharp") {
   struct Row {
     int s, printed, sharp;
   };

@@ -105,7 +105,7 @@ TEST_CASE("the corrected bound (10) holds whenever it exists; Riccati bounds hol
   CHECK(bounded > 5);
 }
 
-TEST_CASE("the printed noise term gives a false bound (notes, item 12)") {
+TEST_CASE("the printed noise term gives a false bound (docs/filters/structural.md#d12)") {
   constexpr int N = 5;
   Setting s{Matrix::Constant(1, 1, 0.5), Matrix::Ones(N, 1),          Matrix::Constant(N, N, 0.2),
             Matrix::Ones(N, N),          Matrix::Constant(1, 1, 0.0), Matrix::Identity(N, N)};

@@ -66,7 +66,8 @@ TEST_CASE("discounting reaches a Schur gain from one that is not") {
   CHECK(reached >= 4);
 }
 
-TEST_CASE("Lemma 2 does not give a Schur gain: a = 3, one eye, self-weights 1/2 (notes, item 20)") {
+TEST_CASE(
+    "Lemma 2 does not give a Schur gain: a = 3, one eye, self-weights 1/2 (docs/filters/structural.md#d20)") {
   Matrix C = Matrix::Zero(3, 1);
   C(0, 0) = 1.0;
   Matrix W(3, 3);

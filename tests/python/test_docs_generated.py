@@ -1,0 +1,48 @@
+"""What the site generates from the code is complete: keys of scenarios, parameters, commands."""
+
+import pytest
+from conftest import ROOT
+from garrison import _core, cli
+
+
+@pytest.fixture(autouse=True)
+def _generators(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+
+
+def test_every_key_of_the_reader_has_a_meaning() -> None:
+    from generate import scenario
+
+    keys = scenario.keys_of_the_reader()
+    assert {"steps", "drop", "radius_km", "law", "schedule"} <= keys
+    page = scenario.page()
+    assert all(f"`{key}`" in page for key in keys)
+
+
+def test_a_key_without_a_meaning_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    from generate import scenario
+
+    monkeypatch.delitem(scenario.MEANINGS["run"], "trials")
+    with pytest.raises(RuntimeError, match="no meaning for \\['trials'\\]"):
+        scenario.page()
+
+
+def test_every_parameter_is_in_its_table() -> None:
+    from generate import parameters
+
+    tables = parameters.of_filters()
+    for info in _core.filter_infos():
+        assert all(f"`{p['name']}`" in tables[info["name"]] for p in info["params"]), info["name"]
+    attacks = parameters.attacks_page()
+    for info in _core.attack_infos():
+        assert f"## {info['name']}\n" in attacks
+        assert all(f"`{p['name']}`" in attacks for p in info["params"]), info["name"]
+
+
+def test_every_command_is_shown() -> None:
+    from generate import commands
+
+    page = commands.page()
+    for command in cli.COMMANDS:
+        name = command.__name__.rpartition(".")[2].rstrip("_").replace("_", "-")
+        assert f"## garrison {name}\n" in page

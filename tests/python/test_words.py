@@ -1,0 +1,52 @@
+"""Phrases that readers stumbled over do not come back."""
+
+import re
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+#: phrase -> what is written instead
+BANNED = {
+    "our notes": "the paper or theorem, or docs/filters/<family>.md#anchor",
+    "(notes, item": "docs/filters/<family>.md#anchor",
+    "of the notes": "docs/filters/<family>.md#anchor",
+    "see the C++ header": "what the header says",
+    "got something else": "what was got",
+    "the answer is no": "a check failed",
+    "hijacked in truth": "actually attacked",
+    "is being held back": "sensors whose measurements were clipped",
+    "who did how well": "results by filter",
+    "for machines": "as JSON",
+    "is called now and then": "how often it is called",
+    "indispensable": "necessary",
+    "same arguments, same bits": "equal arguments give bit-identical results",
+}
+_FOLDERS = ("README.md", "CONTRIBUTING.md", "docs", "python", "include", "src", "bindings", "examples", "tests/cpp")
+_SUFFIXES = (".md", ".py", ".pyi", ".hpp", ".cpp", ".toml")
+
+
+def _files() -> list[Path]:
+    found = []
+    for name in _FOLDERS:
+        path = ROOT / name
+        found += [path] if path.is_file() else sorted(p for p in path.rglob("*") if p.suffix in _SUFFIXES)
+    return [p for p in found if "generated" not in p.parts]
+
+
+def _hits(path: Path) -> set[str]:
+    text = re.sub(r"\s*(///?<?|#|\*)?\s+", " ", path.read_text(encoding="utf-8")).lower()
+    return {phrase for phrase in BANNED if phrase.lower() in text}
+
+
+def test_no_file_holds_a_banned_phrase() -> None:
+    found = {(str(p.relative_to(ROOT)), phrase) for p in _files() for phrase in _hits(p)}
+    lines = [f"{name}: {phrase!r}; better: {BANNED[phrase]}" for name, phrase in sorted(found)]
+    assert not lines, "\n".join(lines)
+
+
+@pytest.mark.parametrize("phrase", BANNED)
+def test_a_phrase_is_found_across_lines_of_a_comment(phrase: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.hpp"
+    path.write_text("/// Some words " + phrase.replace(" ", "\n/// ") + " and more.\n")
+    assert _hits(path) == {phrase}
