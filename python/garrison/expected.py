@@ -24,6 +24,7 @@ def expected_certificate(design: _core.Design) -> list[dict[str, Any]]:
         measurements=np.zeros((1, design.model.outputs)),
         truth=None,
         trials=1,
+        first_trial=0,
         seed=0,
         threads=1,
         start=None,

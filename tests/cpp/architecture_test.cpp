@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dependencies point one way: core <- kernel; core <- analysis <- certificate <- filters <- engine <-
-// drivers; core <- attacks <- engine; core <- wire <- engine.
+// drivers and node; core <- attacks <- engine; core <- wire <- engine.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -24,6 +24,7 @@ const std::map<std::string, std::set<std::string>> allowed{
     {"attacks", {"attacks", "core", "kernel"}},
     {"filters", {"filters", "certificate", "analysis", "core", "kernel"}},
     {"engine", {"engine", "attacks", "certificate", "wire", "core", "kernel"}},
+    {"node", {"node", "engine", "wire", "core"}},
     {"drivers", {"drivers", "engine", "attacks", "certificate", "wire", "core", "kernel"}},
 };
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace garrison::node::test;
+
+TEST_CASE("300 seeds of faults: what must hold holds") {
+  Totals totals;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) Simulation(seed, totals).run();
+  CHECK(totals.taken_twice_wrong == 0);
+  CHECK(totals.mutants_wrong == 0);
+  CHECK(totals.fused_wrong == 0);
+  CHECK(totals.bodies_wrong == 0);
+  CHECK(totals.estimates_wrong == 0);
+  CHECK(totals.bounds_wrong == 0);
+  CHECK(totals.proofs_wrong == 0);
+  CHECK(totals.nodes_wrong == 0);
+  CHECK(totals.replayed_wrong == 0);
+  CHECK(totals.plain_wrong == 0);
+  // Every kind of fault and of comparison took place.
+  for (const std::int64_t seen :
+       {totals.injected, totals.mutated, totals.conflicts, totals.crashes, totals.joins, totals.clock_steps,
+        totals.resent, totals.bounds, totals.proofs, totals.fused, totals.replayed, totals.plain})
+    CHECK(seen > 100);
+}
+
+TEST_CASE("the same seed is the same run") {
+  Totals a, b;
+  Simulation(17, a).run();
+  Simulation(17, b).run();
+  CHECK(a.events == b.events);
+  CHECK(a.datagrams == b.datagrams);
+  CHECK(a.refused == b.refused);
+  CHECK(a.fused == b.fused);
+}
