@@ -24,23 +24,24 @@ constexpr int kBad = 20;  // sample of the one bad measurement
 OptionValues numbers(int states) {
   std::vector<double> poles;
   for (int k = 0; k < states; ++k) poles.push_back(0.3 + 0.1 * k);
-  return {{"threshold", {0.5, 4.0}},
-          {"rounds", {std::int64_t{1}, std::int64_t{12}}},
-          {"step", {kNaN, 0.2}},
-          {"attacked", {std::int64_t{0}, std::int64_t{1}}},
-          {"initial_error", {kNaN, 2.0}},
-          {"weight", {0.0, 0.5, 5.0}},
-          {"smoothing", {0.0, 0.1}},
-          {"gain", {0.1, 0.3}},
-          {"shared", {std::int64_t{0}, std::int64_t{1}}},
-          {"shared_each", {std::vector<double>{}, std::vector<double>(kAgents, 1.0)}},
-          {"selection", {std::vector<double>{}}},  // a table of its own: partial_sharing/side_by_side_test.cpp
-          {"selection_seed", {std::int64_t{0}, std::int64_t{3}}},
-          {"shift", {std::int64_t{1}}},
-          {"start_variance", {1.0, 0.0}},
-          {"start_covariance", {std::vector<double>{}}},
-          {"faulty", {std::int64_t{0}, std::int64_t{1}}},
-          {"poles", {std::vector<double>{}, poles}}};
+  return {
+      {"threshold", {0.5, 4.0}},
+      {"rounds", {std::int64_t{1}, std::int64_t{12}}},
+      {"step", {kNaN, 0.2}},
+      {"attacked", {std::int64_t{0}, std::int64_t{1}}},
+      {"initial_error", {kNaN, 2.0}},
+      {"weight", {0.0, 0.5, 5.0}},
+      {"smoothing", {0.0, 0.1}},
+      {"gain", {0.1, 0.3}},
+      {"shared", {std::int64_t{0}, std::int64_t{1}}},
+      {"shared_each", {std::vector<double>{}, std::vector<double>(kAgents, 1.0)}},
+      {"selection", {std::vector<double>{}}},  // a table of its own: partial_sharing/side_by_side_test.cpp
+      {"selection_seed", {std::int64_t{0}, std::int64_t{3}}},
+      {"shift", {std::int64_t{1}}},
+      {"start_variance", {1.0, 0.0}},
+      {"start_covariance", {std::vector<double>{}}},
+      {"faulty", {std::int64_t{0}, std::int64_t{1}}},
+      {"poles", {std::vector<double>{}, poles}}};
 }
 
 double largest(const Bulk<double>& values) {

@@ -32,10 +32,10 @@
 
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/filter.hpp"
-#include "garrison/core/trials.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/core/trials.hpp"
 #include "garrison/filters/consensus_params.hpp"
 #include "garrison/filters/saturation/adaptive.hpp"
 #include "garrison/filters/saturation/detector.hpp"
@@ -159,7 +159,7 @@ struct GARRISON_EXPORT Saturation {
   static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
   /// Eight trials at once; null when the detector makes trials take different branches.
   static std::unique_ptr<TrialsRunner> trials(std::shared_ptr<const Gains> gains, const Model& model,
-                                           const Network& network);
+                                              const Network& network);
   static int rounds(const Gains& g) { return g.rounds; }
   static Averaging averaging(const Gains& g) { return {g.alpha, g.omega}; }
 
