@@ -1,6 +1,5 @@
 """Sphinx: `make docs` builds the site into build/docs; warnings are errors."""
 
-import re
 import sys
 from pathlib import Path
 
@@ -31,12 +30,6 @@ html_copy_source = False
 pages.write(DOCS / "generated")
 
 
-def _without_marks(_app: object, _name: str, source: list[str]) -> None:
-    """Marks for the test of the code blocks are not for readers."""
-    source[0] = re.sub(r"^# needs: .*\n", "", source[0], flags=re.MULTILINE)
-
-
 def setup(app: object) -> None:
     """Docstrings are plain text, not reStructuredText."""
     app.connect("autodoc-process-docstring", plain_docstrings.process)  # type: ignore[attr-defined]
-    app.connect("source-read", _without_marks)  # type: ignore[attr-defined]

@@ -13,8 +13,6 @@ from conftest import ROOT
 #: languages of blocks -> whether they are run or written; others are refused, so that no block escapes by its name
 LANGUAGES = {"python", "shell", "toml", "text", "cpp", "cmake"}
 _BLOCK = re.compile(r"^(?P<indent> *)```(?P<language>[^\n`]*)\n(?P<text>.*?)^ *```\s*$", re.DOTALL | re.MULTILINE)
-#: first line of a block that shows what a build may lack: `# needs: garrison.sweep`
-_NEEDS = re.compile(r"# needs: (garrison(?:\.\w+)+)\n")
 _FILE = re.compile(r"# file: (\S+)( \(append\))?\n")
 
 
@@ -51,8 +49,6 @@ def run(page: Path, folder: Path) -> None:
     (folder / "examples").symlink_to(ROOT / "examples")
     names: dict[str, object] = {}
     for block in blocks(page):
-        if (needed := _NEEDS.match(block.text)) is not None and not _exists(needed[1]):
-            continue
         if block.language == "python":
             source = "\n" * block.line + block.text  # tracebacks name the line of the page
             exec(compile(source, str(page), "exec"), names)
@@ -61,16 +57,6 @@ def run(page: Path, folder: Path) -> None:
         elif (head := _FILE.match(block.text)) is not None:
             with (folder / head[1]).open("a" if head[2] else "w", encoding="utf-8") as file:
                 file.write(block.text[head.end() :])
-
-
-def _exists(name: str) -> bool:
-    """Whether garrison has this attribute of an attribute."""
-    thing: object = garrison
-    for part in name.split(".")[1:]:
-        if not hasattr(thing, part):
-            return False
-        thing = getattr(thing, part)
-    return True
 
 
 def _shell(block: Block, page: Path, folder: Path) -> None:
