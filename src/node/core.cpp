@@ -57,8 +57,8 @@ void Core::tick(Instant now) noexcept {
     ++counters_.overruns;
     finish_rounds(now);
   }
+  if (state_ == State::held && slot > sent_) leave_hold(slot);
   const bool next = slot > std::max(sent_, agent_.sample());
-  if (state_ == State::held && next) state_ = State::waiting;
   if (state_ == State::waiting && next) begin_sample(slot, now);
   if (state_ == State::rounds) advance(now);
 }
@@ -102,8 +102,9 @@ Micros Core::due() const noexcept {
       return heard_slot_ == INT64_MIN ? schedule_.begin(agent_.start() + 1)
                                       : schedule_.begin(heard_slot_ + 1);
     case State::waiting:
-    case State::held:
       return schedule_.begin(std::max(sent_, t) + 1);
+    case State::held:
+      return schedule_.begin(sent_ + 1);
     case State::rounds:
       break;
   }
@@ -152,6 +153,16 @@ void Core::watch_clock(Instant now) noexcept {
     state_ = State::held;
   } else if (agent_.sample() > agent_.start() || state_ == State::listening) {
     start_listening(schedule_.listen_after_step);
+  }
+}
+
+/// Where it was listening, or is ahead with nothing sent, it has to hear the others first.
+void Core::leave_hold(std::int64_t slot) noexcept {
+  if (agent_.round() < agent_.rounds() || slot <= agent_.sample()) {
+    start_listening(schedule_.listen_after_step);
+    hear(slot);
+  } else {
+    state_ = State::waiting;
   }
 }
 
@@ -207,7 +218,9 @@ void Core::begin_sample(std::int64_t slot, Instant now) noexcept {
   sent_ = slot;
   complete_ = missed == 0;
   state_ = State::rounds;
-  post(agent_.sense(slot, y, bytes_), 0, true);
+  const Agent::Sent first = agent_.sense(slot, y, bytes_);
+  if (first.refusal != Refusal::none) return start_listening(schedule_.listen_for);  // no round to be in
+  post(first, 0, true);
 }
 
 void Core::advance(Instant now) noexcept {

@@ -111,6 +111,7 @@ class Core {
   std::size_t kept(std::int64_t sample, int round) const noexcept;
 
   void watch_clock(Instant now) noexcept;
+  void leave_hold(std::int64_t slot) noexcept;
   void start_listening(int slots) noexcept;
   void hear(std::int64_t slot) noexcept;
   void finish_rounds(Instant now) noexcept;
