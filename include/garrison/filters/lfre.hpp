@@ -22,7 +22,8 @@ namespace garrison {
 /// The saturation paper only cites this filter; our definition, docs/filters/baselines.md#lfre:
 /// all modes form one group.
 /// An agent that can observe the whole state alone is a source and runs a Luenberger observer,
-///   xhat_i(t) = A xhat_i(t-1) + H_i (y_i(t-1) - C_i xhat_i(t-1)),  xhat_i(1) = A xhat_i(0).
+///   xhat_i(t) = A xhat_i(t-1) + H_i (y_i(t-1) - C_i xhat_i(t-1)),  xhat_i(1) = A xhat_i(0),
+/// with the first of its outputs alone; where that one is missing it predicts, whatever the others say.
 /// Every other one averages, entry by entry, its parents' xhat(t-1) without the f largest and f smallest, and
 /// predicts: xhat_i(t) = A mean. Parents are the neighbours closer to a source, or all neighbours when fewer
 /// than 2f + 1 are. Missing neighbours are left out; with none left the agent predicts from its own estimate.

@@ -34,7 +34,7 @@ class Size : public NumbersOf<Size> {
     const std::size_t bits = (values.size() + 7) / 8;
     now_ += bits;
     most_ += bits + 8 * values.size();
-    for (const double v : values) now_ += std::isnan(v) ? 0 : 8;
+    for (const double v : values) now_ += std::isnan(v) ? 0U : 8U;
   }
   void numbers(std::string_view, std::span<double> values) { add(8 * values.size()); }
   void optional(std::string_view, double&) { add(8); }
