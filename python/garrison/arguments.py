@@ -2,14 +2,15 @@
 
 import operator
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from garrison import _core
 from garrison.numeric import Array, numbers, real
 from garrison.words import near, only, refusal, shown
 
+T = TypeVar("T")
 _MOST = 2**31 - 1
 
 
@@ -45,6 +46,28 @@ def flag(which: str, value: Any) -> bool:
     if not isinstance(value, bool):
         raise refusal(which, shown(value), "True or False")
     return value
+
+
+def text(which: str, value: Any) -> str:
+    """Words."""
+    if not isinstance(value, str):
+        raise refusal(which, shown(value), "words in quotes")
+    return value
+
+
+def texts(which: str, value: Any) -> list[str]:
+    """Words in a list."""
+    return [text(f"{which}[{k}]", one) for k, one in enumerate(_list(which, value, "a list of words"))]
+
+
+def labelled(which: str, value: Any, kind: type[T], expected: str) -> dict[str, T]:
+    """Objects of a kind by their labels."""
+    if not isinstance(value, Mapping) or not all(isinstance(k, str) for k in value):
+        raise refusal(which, shown(value), f"a mapping of labels to {expected}")
+    for label, one in value.items():
+        if not isinstance(one, kind):
+            raise refusal(f"{which}[{label!r}]", shown(one), expected)
+    return dict(value)
 
 
 def path(which: str, value: Any) -> Path:
@@ -145,11 +168,11 @@ def _rows(which: str, value: Any, width: int) -> list[tuple[int | None, ...]]:
     return rows
 
 
-def callback(which: str, value: Any) -> Callable[[int, int], Any] | None:
+def callback(which: str, value: Any) -> Any:
     """A function to be called, or None."""
     if value is not None and not callable(value):
         raise refusal(which, shown(value), "a function, or None")
-    return value  # type: ignore[no-any-return]
+    return value
 
 
 def table(which: str, value: Any) -> Array:

@@ -14,7 +14,7 @@ from garrison._core import saturation
 from garrison.checks import Check, check
 from garrison.drivers import simulate
 from garrison.filters import make_filter
-from garrison.words import hinted, near, refusal
+from garrison.words import hinted, near, refusal, require_plant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -91,12 +91,14 @@ def design(
 
     Raises InvalidInput when something does not fit, DesignInfeasible when no parameters exist; it says what would help.
     """
+    require_plant("design", model, network)
+    family, goal, curve = arguments.text("family", family), arguments.text("goal", goal), arguments.flag("curve", curve)
     if family not in _FAMILIES:
         names = [info["name"] for info in _core.filter_infos()]
         advice = near(family, _FAMILIES) or ("this family has no design by a bound" if family in names else "")
         raise refusal("family", repr(family), f"one of {', '.join(_FAMILIES)}", advice)
     if goal not in GOALS:
-        raise refusal("goal", repr(goal), f"one of {', '.join(GOALS)}", near(str(goal), GOALS))
+        raise refusal("goal", repr(goal), f"one of {', '.join(GOALS)}", near(goal, GOALS))
     if (attacked is None) != (goal == "liars"):
         raise refusal("attacked", str(attacked), 'a number, or nothing with goal = "liars"')
     most = arguments.whole("most_rounds", most_rounds, 1, 10**6)

@@ -195,6 +195,8 @@ class Run:
         """
         from garrison.figures import run_figure, string_figure
 
+        if not isinstance(compare, Iterable):
+            raise refusal("plot: compare", f"a {type(compare).__name__}", "other runs")
         trial, chosen, others = self._trial(trial), self._agents(agents), list(compare)
         for other in others:
             if not isinstance(other, Run):
@@ -211,6 +213,8 @@ class Run:
             return None
         names, last = list(self.network.names), self.network.agents - 1
         found = []
+        if not isinstance(given, (int, str, Iterable)):
+            raise refusal("agents", f"a {type(given).__name__}", "numbers or names of agents")
         for one in [given] if isinstance(given, (int, str)) else given:
             if isinstance(one, str):
                 if one not in names:

@@ -85,6 +85,12 @@ def count(number: int, noun: str, plural: str = "") -> str:
     return f"{number} {noun if number == 1 else plural or noun + 's'}"
 
 
+def require_plant(function: str, model: object, network: object) -> None:
+    """Refuse what is no model and no network, or these in another order."""
+    if not isinstance(model, _core.Model) or not isinstance(network, _core.Network):
+        raise refusal(function, f"({type(model).__name__}, {type(network).__name__}, ..)", "(model, network, ..)")
+
+
 def require_order(function: str, model: object, network: object, filter: object) -> None:
     """Refuse arguments in another order than (model, network, filter), the only one in garrison."""
     kinds = (("model", _core.Model), ("network", _core.Network), ("filter", _core.Filter))

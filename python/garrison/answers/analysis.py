@@ -18,7 +18,7 @@ from garrison.answers.limits import LATE, Limit, contraction, from_removal, of_f
 from garrison.answers.removals import Removal, smallest_removal
 from garrison.answers.sensors import Sensors, sensors_of
 from garrison.answers.watch import Progress, Watch
-from garrison.words import count, hinted, refusal
+from garrison.words import count, hinted, refusal, require_plant, shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -116,12 +116,15 @@ def analyze(
     progress(question, done, total) is called before every question. Ctrl-C ends it within a fraction of a second.
     Raises InvalidInput when something does not fit.
     """
-    if not isinstance(model, _core.Model) or not isinstance(network, _core.Network):
-        raise refusal("analyze", f"({type(model).__name__}, {type(network).__name__}, ..)", "(model, network, ..)")
+    require_plant("analyze", model, network)
+    if filter is not None and not isinstance(filter, _core.Filter):
+        raise refusal("filter", shown(filter), "a filter of garrison.filters, or None")
+    title, progress = arguments.text("title", title), arguments.callback("progress", progress)
+    names = None if names is None else arguments.texts("names", names)
     seconds = arguments.number("seconds", seconds)
     if not seconds > 0:
         raise refusal("seconds", str(seconds), "a time > 0")
-    sensors = sensors_of(model, network, list(names) if names else None)
+    sensors = sensors_of(model, network, names or None)
     offered = _candidates(model, candidates, costs)
     watch = Watch(seconds, _QUESTIONS, progress)
     found = _Answers(model, network, sensors, offered, watch, list(names or network.names))

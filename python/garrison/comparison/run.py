@@ -17,7 +17,7 @@ from garrison.drivers import central_kalman, simulate
 from garrison.families import family_of
 from garrison.prepared import prepare
 from garrison.record import Run
-from garrison.words import hinted, refusal
+from garrison.words import hinted, refusal, require_plant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -130,18 +130,23 @@ def compare(
     lies in messages. progress(filter, done, total) is called before every run. What a filter refuses is a row with
     the reason. Raises InvalidInput when an argument does not fit.
     """
-    liars = sorted({arguments.whole("attacked", a, 0, model.agents - 1) for a in attacked})
+    require_plant("compare", model, network)
+    given = arguments.whole_numbers("attacked", attacked)
+    liars = sorted({arguments.whole("attacked", a, 0, model.agents - 1) for a in given})
+    title, progress = arguments.text("title", title), arguments.callback("progress", progress)
+    own = None if filters is None else arguments.labelled("filters", filters, _core.Filter, "filters")
+    theirs = None if attacks is None else arguments.labelled("attacks", attacks, _core.Attack, "attacks")
     if not liars:
         raise refusal("attacked", "nobody", "one agent at least")
     steps = arguments.whole("steps", steps, 2)
     start = arguments.whole("start", start, 1, steps - 1)
     trials = arguments.whole("trials", trials, 1)
     size = typical_size(model, steps) if size is None else arguments.number("size", size)
-    chosen = filters_for(model, network, len(liars), size) if filters is None else dict(filters)
-    against = attacks_for(liars, model.states, start, size) if attacks is None else dict(attacks)
+    chosen = filters_for(model, network, len(liars), size) if own is None else own
+    against = attacks_for(liars, model.states, start, size) if theirs is None else theirs
     job = _Job(model, network, liars, steps, start, trials, arguments.whole("seed", seed, 0, 2**63 - 1), x0)
     conditions: list[tuple[str, _core.Attack | None]] = [(NONE, None), *against.items()]
-    extra = [*BASELINES, CENTRAL] if baselines else []
+    extra = [*BASELINES, CENTRAL] if arguments.flag("baselines", baselines) else []
     total, done = (len(chosen) + len(extra)) * len(conditions), 0
     rows: list[Row] = []
     logs: dict[str, Run] = {}

@@ -16,7 +16,7 @@ from garrison.sweeps.grid import Point, points_of
 from garrison.sweeps.pool import outcomes
 from garrison.sweeps.tables import Row, point_rows, read_part, trial_rows, write_csv, write_parquet
 from garrison.sweeps.work import COLUMNS, Task, rows_of
-from garrison.words import count, hinted, refusal
+from garrison.words import count, hinted, refusal, shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -87,12 +87,21 @@ def sweep(
     A point that is refused is a row with the reason; a task whose worker dies three times is a row "lost". Ctrl-C
     keeps what is done. Raises InvalidInput when something does not fit or `out` holds another sweep.
     """
-    path = Path(scenario).absolute()
+    path = arguments.path("scenario", scenario).absolute()
+    independent, progress = arguments.flag("independent", independent), arguments.callback("progress", progress)
+    if client is not None and not hasattr(client, "submit"):
+        raise refusal("client", shown(client), "a dask.distributed Client, or None")
     document = read_document(path)
+    if set is not None and not isinstance(set, Mapping):
+        raise refusal("set", shown(set), "a mapping of keys of the scenario to lists of values")
     if points is None:
         points = points_of(set or {})
     elif set:
         raise refusal("sweep", "both set and points", "one of them")
+    elif isinstance(points, (str, bytes)) or not isinstance(points, Sequence):
+        raise refusal("points", shown(points), "a list of mappings of keys to values")
+    elif wrong := [p for p in points if not isinstance(p, Mapping)]:
+        raise refusal("points", f"an entry {shown(wrong[0])}", "a mapping of keys to values")
     trials = arguments.whole("trials", trials, 1, 2**24)
     workers = arguments.whole("workers", workers, 1, 4096)
     if block is not None:
