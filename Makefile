@@ -41,7 +41,7 @@ format: setup ## format C++ and Python, write the type stubs anew
 	@.venv/bin/clang-format -i $(cpp)
 	@tools/stubs.sh
 
-fuzz: setup ## two minutes: every public callable with bad values, mutated scenarios and CSV files; prints the figures
+fuzz: setup ## some minutes: every public callable with bad values, mutated scenarios and CSV files; prints the figures
 	@.venv/bin/pytest -q tests/fuzz
 
 bench: ## measure against the peers; results in bench/results
