@@ -12,7 +12,6 @@ from pathlib import Path
 
 import garrison as gr
 import pytest
-from conftest import ROOT
 from garrison.scenario.overrides import overridden
 from garrison.sweeps import grid, pool
 from garrison.sweeps.work import Task, work
@@ -182,7 +181,7 @@ def test_a_sweep_that_is_ended_goes_on_later(scenario: Path, tmp_path: Path, how
     out = tmp_path / "out"
     options = ["--set", "attack.value=1:9:9", "--trials", "400", "--block", "40", "-o"]
     command = [sys.executable, "-m", "garrison", "sweep", str(scenario), *options]
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "python")}
+    environment = os.environ | {"PYTHONPATH": str(Path(gr.__file__).parents[1])}
     process = subprocess.Popen([*command, str(out)], env=environment, stderr=subprocess.PIPE, text=True)
     deadline = time.monotonic() + 60
     while len(list(out.glob("parts/*.csv"))) < 3 and time.monotonic() < deadline:
