@@ -2,14 +2,12 @@
 
 import argparse
 import sys
-from pathlib import Path
 
-from garrison._commands.output import new_file, write_whole
+from garrison._commands.output import new_file, write_picture
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
 from garrison.answers import Analysis, analyze
 from garrison.answers.text import limit_rows, sensor_rows, sentences
 from garrison.scenario import read_scenario
-from garrison.words import refusal
 
 _MOST_ROWS = 60
 
@@ -44,7 +42,7 @@ def do(args: argparse.Namespace) -> int:
         progress=_tell if sys.stderr.isatty() else None,
     )
     if target is not None:
-        _write_picture(target, found)
+        write_picture(target, found.plot())
     if args.json:
         print_json(found.report())
     else:
@@ -71,11 +69,3 @@ def _print(found: Analysis, output: str | None) -> None:
         console.print(f"... and {len(rows) - _MOST_ROWS} more; see --json")
     if output:
         console.print(f"\nwritten to {output}")
-
-
-def _write_picture(target: Path, found: Analysis) -> None:
-    figure = found.plot()
-    kind = target.suffix.lower().removeprefix(".")
-    if kind not in figure.canvas.get_supported_filetypes():
-        raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
-    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))

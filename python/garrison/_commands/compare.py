@@ -2,10 +2,9 @@
 
 import argparse
 import sys
-from pathlib import Path
 from typing import Any
 
-from garrison._commands.output import new_file, write_whole
+from garrison._commands.output import new_file, write_picture
 from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table
 from garrison.comparison import Comparison, compare
 from garrison.comparison.run import COLUMNS
@@ -67,7 +66,7 @@ def do(args: argparse.Namespace) -> int:
     )
     found.rows[:0] = mine.rows
     if target is not None:
-        _write(target, found)
+        write_picture(target, found.plot())
     if args.json:
         print_json({"title": found.title, "attacked": found.attacked, "rows": found.rows})
         return OK
@@ -122,11 +121,3 @@ def _cell(value: Any) -> str:
     if isinstance(value, str):
         return "" if value == "ok" else value if len(value) <= 48 else f"{value[:45]}..."
     return f"{value:.3g}"
-
-
-def _write(target: Path, found: Comparison) -> None:
-    figure = found.plot()
-    kind = target.suffix.lower().removeprefix(".")
-    if kind not in figure.canvas.get_supported_filetypes():
-        raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
-    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))

@@ -2,11 +2,10 @@
 
 import argparse
 import math
-from pathlib import Path
 
-from garrison._commands.output import new_file, write_whole
+from garrison._commands.output import new_file, write_picture
 from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table
-from garrison.designing import GOALS, Designed, design
+from garrison.designing import GOALS, design
 from garrison.scenario import read_scenario
 from garrison.words import refusal
 
@@ -52,7 +51,7 @@ def do(args: argparse.Namespace) -> int:
         most_rounds=args.most_rounds,
     )
     if target is not None:
-        _write(target, found)
+        write_picture(target, found.plot())
     if args.json:
         facts = {"goal": found.goal, "filter": found.filter.params, "attacked": found.attacked, "error": found.error}
         print_json(facts | {"fewest_rounds": found.fewest_rounds, "curve": [vars(c) for c in found.curve]})
@@ -65,11 +64,3 @@ def do(args: argparse.Namespace) -> int:
     if args.output:
         print(f"written to {args.output}")
     return OK
-
-
-def _write(target: Path, found: Designed) -> None:
-    figure = found.plot()
-    kind = target.suffix.lower().removeprefix(".")
-    if kind not in figure.canvas.get_supported_filetypes():
-        raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
-    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))

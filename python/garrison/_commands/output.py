@@ -8,8 +8,10 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from garrison import _core
+from garrison.words import refusal
 
 #: names and hashes of the files that a run wrote
 MANIFEST = "manifest.json"
@@ -121,3 +123,11 @@ def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
+
+
+def write_picture(target: Path, figure: Any) -> None:
+    """Write a figure whole, in the format that the ending of `target` names."""
+    kind = target.suffix.lower().removeprefix(".")
+    if kind not in figure.canvas.get_supported_filetypes():
+        raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
+    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))
