@@ -11,6 +11,8 @@ from garrison.checks import check
 Array = NDArray[np.float64]
 #: growth of the error over half a run, beyond that of the plant, from which on it is called divergence
 _GROWTH = 1e3
+#: most samples of which a median is taken
+_WIDTH = 24
 #: most states of the whole network, and sets of sensors, up to which conditions are evaluated without being asked
 _STATES, _SUBSETS = 400, 20_000
 
@@ -50,13 +52,18 @@ def of_divergence(model: _core.Model, estimate: Array | None, error: Array | Non
     if size is None or half < 5 or quiet_from > half:
         return []
     # Medians over time: a single wild measurement is no divergence. nan (no truth there) is passed over.
-    last = len(size[0]) - 1
-    windows = (slice(half - half // 5, half + 1), slice(last - half // 5, last + 1))
-    middle, end = (float(np.median(np.fmax.reduce(np.fmax.reduce(size[:, w], axis=2), axis=0))) for w in windows)
+    last, width = len(size[0]) - 1, min(half // 5, _WIDTH)
+    windows = (slice(half - width, half + 1), slice(last - width, last + 1))
+    middle, end = (_median(np.fmax.reduce(np.fmax.reduce(size[:, w], axis=2), axis=0)) for w in windows)
     limit = _GROWTH * max(middle, float(np.finfo(float).tiny))
     if math.isnan(middle) or math.isnan(end) or end <= limit or end <= limit * _plant_growth(model, last + 1 - half):
         return []
     return [f"the {what} grow from {middle:.3g} in the middle to {end:.3g} at the end of the run: the filter diverges"]
+
+
+def _median(values: Array) -> float:
+    """The upper one of the two in the middle; np.median takes ten times as long for so few."""
+    return float(np.sort(values)[len(values) // 2])
 
 
 def _lengths(estimate: Array | None) -> Array | None:
@@ -64,6 +71,7 @@ def _lengths(estimate: Array | None) -> Array | None:
 
 
 def _plant_growth(model: _core.Model, samples: int) -> float:
-    """Growth of the state of the plant over so many samples; 1 for a stable one."""
-    radius = max(1.0, float(np.abs(np.linalg.eigvals(np.asarray(model.A))).max()))
-    return math.exp(min(samples * math.log(radius), 700.0))
+    """Largest growth of a state of the plant over so many samples, in the Frobenius norm; at least 1."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        growth = float(np.linalg.norm(np.linalg.matrix_power(np.asarray(model.A), samples)))
+    return max(1.0, growth) if math.isfinite(growth) else math.inf

@@ -24,9 +24,9 @@ def of_rate(filter: _core.Filter, statistic: Array | None, threshold: Array | No
     asked = filter.params.get("false_alarm")
     if not isinstance(asked, float) or statistic is None or threshold is None:
         return []
-    tested = np.isfinite(statistic) & np.isfinite(threshold)
-    tests = tested.sum(axis=(0, 1))
-    over = (tested & (statistic > threshold)).sum(axis=(0, 1))[tests > 0]
+    above, within = statistic > threshold, statistic <= threshold  # not tested: neither
+    tests = above[..., 0].size - _per_sensor(~(above | within))
+    over = _per_sensor(above)[tests > 0]
     tests = tests[tests > 0]
     if len(tests) < _SENSORS:
         return []
@@ -39,6 +39,12 @@ def of_rate(filter: _core.Filter, statistic: Array | None, threshold: Array | No
         "process_covariance or measurement_covariance is too small, the noise depends on its past, A or C is wrong, "
         "or a lie has moved all estimates; see garrison.calibrate"
     ]
+
+
+def _per_sensor(rare: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Events of each sensor (the last axis); where they are rare this is ten times as fast as a sum."""
+    sensors = rare.shape[-1]
+    return np.bincount(np.flatnonzero(rare) % sensors, minlength=sensors)
 
 
 def of_bounds(model: _core.Model, filter: _core.Filter, measurements: Array | None) -> list[str]:

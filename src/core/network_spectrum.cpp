@@ -14,12 +14,15 @@ namespace {
 constexpr int kDenseLimit = 400;
 constexpr int kLanczosSteps = 300;
 constexpr double kLanczosAccuracy = 1e-13;
+/// Of where to shift to: the error of a Ritz value is the square of its residual.
+constexpr double kShiftAccuracy = 1e-4;
 
 using Sparse = Eigen::SparseMatrix<double>;
 
 /// Estimate of the largest eigenvalue of a symmetric operator on the space orthogonal to the all-ones vector,
-/// by Lanczos with full reorthogonalisation; stops when the Ritz value has settled to kLanczosAccuracy.
-double largest_eigenvalue(Eigen::Index size, const std::function<Vector(const Vector&)>& apply) {
+/// by Lanczos with full reorthogonalisation; stops when the residual of the Ritz vector is `accuracy` of it.
+double largest_eigenvalue(Eigen::Index size, double accuracy,
+                          const std::function<Vector(const Vector&)>& apply) {
   const auto deflate = [](Vector& v) { v.array() -= v.mean(); };
   Vector q(size);
   for (Eigen::Index i = 0; i < size; ++i) q(i) = std::sin(1.0 + 12.9898 * static_cast<double>(i));
@@ -41,7 +44,7 @@ double largest_eigenvalue(Eigen::Index size, const std::function<Vector(const Ve
       Eigen::SelfAdjointEigenSolver<Matrix> ritz;
       ritz.computeFromTridiagonal(alpha.head(k + 1), beta.head(k), Eigen::ComputeEigenvectors);
       value = ritz.eigenvalues()(k);
-      if (beta(k) * std::abs(ritz.eigenvectors()(k, k)) <= kLanczosAccuracy * std::abs(value)) break;
+      if (beta(k) * std::abs(ritz.eigenvectors()(k, k)) <= accuracy * std::abs(value)) break;
     }
     q = r / beta(k);
   }
@@ -63,14 +66,15 @@ Sparse sparse_laplacian(const Network& network) {
 /// stops short of it; on (sigma I - Lap)^-1 with sigma just above it, it stands out. A factorisation that
 /// succeeds proves that sigma is above.
 double top_eigenvalue(const Sparse& lap) {
-  const double estimate = largest_eigenvalue(lap.rows(), [&](const Vector& v) { return Vector(lap * v); });
+  const double estimate =
+      largest_eigenvalue(lap.rows(), kShiftAccuracy, [&](const Vector& v) { return Vector(lap * v); });
   Sparse identity(lap.rows(), lap.rows());
   identity.setIdentity();
   for (double sigma = estimate * (1.0 + 1e-4);; sigma += 0.01 * estimate) {
     const Eigen::SimplicialLDLT<Sparse> factor(Sparse(sigma * identity - lap));
     if (factor.info() != Eigen::Success || factor.vectorD().minCoeff() <= 0.0) continue;
-    return sigma -
-           1.0 / largest_eigenvalue(lap.rows(), [&](const Vector& v) { return Vector(factor.solve(v)); });
+    return sigma - 1.0 / largest_eigenvalue(lap.rows(), kLanczosAccuracy,
+                                            [&](const Vector& v) { return Vector(factor.solve(v)); });
   }
 }
 
@@ -91,7 +95,7 @@ LaplacianSpectrum Network::laplacian_spectrum() const {
   // definite; on vectors orthogonal to 1 its inverse differs from the pseudo-inverse by a constant only.
   const Sparse grounded = lap.bottomRightCorner(agents() - 1, agents() - 1);
   const Eigen::SimplicialLDLT<Sparse> factor(grounded);
-  const double inverse = largest_eigenvalue(agents(), [&](const Vector& v) {
+  const double inverse = largest_eigenvalue(agents(), kLanczosAccuracy, [&](const Vector& v) {
     Vector x = Vector::Zero(agents());
     x.tail(agents() - 1) = factor.solve(v.tail(agents() - 1));
     x.array() -= x.mean();

@@ -2,8 +2,11 @@
 #include "garrison/engine/channel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <tuple>
+
+#include "garrison/kernel/chances.hpp"
 
 namespace garrison {
 namespace {
@@ -19,12 +22,14 @@ void require_agent(const std::string& which, int id, int least, int agents) {
 class Scheduled final : public Channel {
  public:
   explicit Scheduled(std::vector<Cut> cuts) : cuts_(std::move(cuts)) {}
-  Fate fate(const Envelope& m, int receiver) const override {
-    for (const Cut& cut : cuts_)
-      if ((cut.sender < 0 || cut.sender == m.sender) && (cut.receiver < 0 || cut.receiver == receiver) &&
-          m.sample >= cut.start && m.sample < cut.stop)
-        return Fate::lost;
-    return Fate::delivered;
+  void decide(std::int64_t sample, int, const Links& links, std::span<Fate> fates) const override {
+    for (const Cut& cut : cuts_) {
+      if (sample < cut.start || sample >= cut.stop) continue;
+      for (std::size_t e = 0; e < fates.size(); ++e)
+        if ((cut.sender < 0 || cut.sender == links.senders[e]) &&
+            (cut.receiver < 0 || cut.receiver == links.receivers[e]) && fates[e] == Fate::delivered)
+          fates[e] = Fate::lost;
+    }
   }
 
  private:
@@ -37,13 +42,22 @@ class Recorded final : public Channel {
     for (const Lost& one : lost) keys_.push_back(key(one.message, one.receiver));
     std::sort(keys_.begin(), keys_.end());
   }
-  Fate fate(const Envelope& m, int receiver) const override {
-    return std::binary_search(keys_.begin(), keys_.end(), key(m, receiver)) ? Fate::lost : Fate::delivered;
+  void decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const override {
+    const auto [first, last] =
+        std::equal_range(keys_.begin(), keys_.end(), Key{sample, round, 0, 0}, earlier);
+    if (first == last) return;
+    for (std::size_t e = 0; e < fates.size(); ++e)
+      if (fates[e] == Fate::delivered &&
+          std::binary_search(first, last, Key{sample, round, links.senders[e], links.receivers[e]}))
+        fates[e] = Fate::lost;
   }
 
  private:
   using Key = std::tuple<std::int64_t, int, int, int>;
   static Key key(const Envelope& m, int receiver) { return {m.sample, m.round, m.sender, receiver}; }
+  static bool earlier(const Key& a, const Key& b) {
+    return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
+  }
   std::vector<Key> keys_;
 };
 
@@ -53,6 +67,29 @@ SeededFaults::SeededFaults(double drop, double delay, std::uint64_t seed, std::u
     : drop_(drop), delay_(delay), random_(seed, trial, Purpose::link) {
   require_probability("link.drop", drop);
   require_probability("link.delay", delay);
+}
+
+void SeededFaults::decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const {
+  constexpr std::size_t most = 256;
+  std::array<std::uint32_t, most> address;
+  std::array<std::uint8_t, most> happens;
+  for (std::size_t first = 0; first < fates.size(); first += most) {
+    const std::size_t count = std::min(most, fates.size() - first);
+    for (std::size_t e = 0; e < count; ++e)
+      address[e] = static_cast<std::uint32_t>(links.senders[first + e]) * 65537U +
+                   static_cast<std::uint32_t>(links.receivers[first + e]);
+    const auto strike = [&](double probability, std::uint32_t index, Fate fate) {
+      if (probability <= 0.0) return;
+      happen(random_, sample, address.data(), index, probability, count, happens.data());
+      for (std::size_t e = 0; e < count; ++e) {
+        Fate& known = fates[first + e];
+        known = happens[e] != 0 && known == Fate::delivered ? fate : known;
+      }
+    };
+    const auto index = 2U * static_cast<std::uint32_t>(round);
+    strike(drop_, index, Fate::lost);
+    strike(delay_, index + 1, Fate::late);
+  }
 }
 
 std::unique_ptr<Channel> scheduled_faults(const Network& network, std::vector<Cut> cuts) {

@@ -30,6 +30,12 @@ Link::Link(const Network& network, LinkFaults faults,
   }
 }
 
+void Link::decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const {
+  std::fill(fates.begin(), fates.end(), Fate::delivered);
+  if (seeded_.any()) seeded_.decide(sample, round, links, fates);
+  for (const auto& channel : channels_) channel->decide(sample, round, links, fates);
+}
+
 template <class Action>
 bool Link::strike(const Hop& hop, const Action& action) const {
   const Random random(seed_, trial_, Purpose::attack);

@@ -44,6 +44,10 @@ class Random {
     return radius * std::cos(2.0 * std::numbers::pi * unit(words, 1));
   }
 
+  /// Of philox: block(time, agent, index) has the counter (time, agent, index, stream) under this key.
+  std::array<std::uint32_t, 2> key() const { return key_; }
+  std::uint32_t stream() const { return stream_; }
+
  private:
   std::array<std::uint32_t, 4> block(std::int64_t time, std::uint32_t agent, std::uint32_t index) const {
     return philox({static_cast<std::uint32_t>(time), agent, index, stream_}, key_);

@@ -4,12 +4,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "garrison/core/envelope.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/random.hpp"
-#include "garrison/kernel/isa.hpp"
 
 namespace garrison {
 
@@ -17,10 +17,17 @@ namespace garrison {
 /// sample and round. They are counted apart.
 enum class Fate : std::uint8_t { delivered, lost, late };
 
+/// The links of a network: link e leads from senders[e] to receivers[e].
+struct Links {
+  std::span<const int> senders;
+  std::span<const int> receivers;
+};
+
 class GARRISON_EXPORT Channel {
  public:
   virtual ~Channel() = default;
-  virtual Fate fate(const Envelope& message, int receiver) const = 0;
+  /// fates[e]: of what link e carries in this round; changes those that are `delivered` so far.
+  virtual void decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const = 0;
 };
 
 /// Messages from `sender` to `receiver` (-1: from all, to all) are lost at samples start <= t < stop.
@@ -37,20 +44,13 @@ struct Lost {
 };
 
 /// Every message meets its fate independently; drop and delay are probabilities in [0, 1]. The result depends
-/// on the message, its receiver, seed and trial only. Inline: on a lossy network it is asked for every
-/// message.
+/// on sample, round, sender, receiver, seed and trial only.
 class GARRISON_EXPORT SeededFaults final : public Channel {
  public:
   /// @throws InvalidInput when a probability is outside [0, 1]
   SeededFaults(double drop, double delay, std::uint64_t seed, std::uint32_t trial);
   bool any() const { return drop_ > 0.0 || delay_ > 0.0; }
-  GARRISON_INLINE Fate fate(const Envelope& m, int receiver) const override {
-    const auto address = static_cast<std::uint32_t>(m.sender) * 65537U + static_cast<std::uint32_t>(receiver);
-    const auto index = 2U * static_cast<std::uint32_t>(m.round);
-    if (drop_ > 0.0 && random_.uniform(m.sample, address, index) < drop_) return Fate::lost;
-    if (delay_ > 0.0 && random_.uniform(m.sample, address, index + 1) < delay_) return Fate::late;
-    return Fate::delivered;
-  }
+  void decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const override;
 
  private:
   double drop_;

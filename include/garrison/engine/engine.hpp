@@ -87,13 +87,9 @@ class Engine final : public Runner {
       const auto i = static_cast<std::size_t>(places_[k].id);
       const Vec<n>& x = F::template estimate<n>(states_[k]);
       const Report r = F::template report<n>(local(k), *gains_, states_[k]);
-      const Bound bound = certificate::least(r.bound, certified_ ? certified_->of(places_[k].id) : nullptr,
-                                             {x.data(), static_cast<std::size_t>(x.size())});
       if (f.estimate != nullptr)
         std::copy_n(x.data(), x.size(), f.estimate + i * static_cast<std::size_t>(x.size()));
-      if (f.bound != nullptr) f.bound[i] = bound.value;
-      if (f.published != nullptr) f.published[i] = r.bound;
-      if (f.bound_kind != nullptr) f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
+      if (f.bound != nullptr) f.bound[i] = r.bound;
       if (f.statistic != nullptr) f.statistic[i] = r.statistic;
       if (f.threshold != nullptr) f.threshold[i] = r.threshold;
       if (f.verdict != nullptr) f.verdict[i] = static_cast<std::uint8_t>(r.verdict);
@@ -101,6 +97,7 @@ class Engine final : public Runner {
       F::template signals<n>(local(k), *gains_, states_[k], signals.data());
       for (std::size_t s = 0; s < F::signal_count; ++s) f.signals[s * N + i] = signals[s];
     }
+    if (f.bound != nullptr) certify(f);
   }
 
   void expected(int agent, double* out) const override {
@@ -231,6 +228,25 @@ class Engine final : public Runner {
     if (samples_ == 0) bytes_ = 0;
     bytes_ += mail_.bytes();
     samples_ += round == 0 ? 1 : 0;
+  }
+
+  /// Says where the bounds of the family come from, or puts better ones in their place.
+  void certify(const Frame& f) const {
+    const std::size_t N = states_.size();
+    if (f.published != nullptr) std::copy_n(f.bound, N, f.published);
+    const auto note = [&f](std::size_t i, const Bound& bound) {
+      f.bound[i] = bound.value;
+      if (f.bound_kind != nullptr) f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
+    };
+    if (!certified_) {
+      for (std::size_t i = 0; i < N; ++i) note(i, certificate::least(f.bound[i], nullptr, {}));
+      return;
+    }
+    for (std::size_t i = 0; i < N; ++i) {
+      const Vec<n>& x = F::template estimate<n>(states_[position_[i]]);
+      const std::span<const double> estimate(x.data(), static_cast<std::size_t>(x.size()));
+      note(i, certificate::least(f.bound[i], certified_->of(static_cast<int>(i)), estimate));
+    }
   }
 
   /// Runs `action(k, outgoing)` for every agent k, then makes the outgoing messages the current ones.

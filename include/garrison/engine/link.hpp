@@ -45,13 +45,8 @@ class GARRISON_EXPORT Link {
   int memory() const { return memory_; }
   bool lies(int sender) const { return liar_[static_cast<std::size_t>(sender)] != 0; }
 
-  GARRISON_INLINE Fate fate(const Envelope& message, int receiver) const {
-    if (seeded_.any())
-      if (const Fate fate = seeded_.fate(message, receiver); fate != Fate::delivered) return fate;
-    for (const auto& channel : channels_)
-      if (const Fate fate = channel->fate(message, receiver); fate != Fate::delivered) return fate;
-    return Fate::delivered;
-  }
+  /// What becomes of what each link carries in this round.
+  void decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const;
   /// How many samples old what this sender sends is now; 0 = new.
   int age(const Hop& hop) const;
   /// Lets the attacks rewrite the message; false = the sender withholds it.

@@ -40,6 +40,7 @@ class Mailroom {
       for (const int j : network.neighbours(i)) {
         slots_.push_back(position[static_cast<std::size_t>(j)]);
         senders_.push_back(j);
+        receivers_.push_back(i);
       }
     }
     first_.push_back(slots_.size());
@@ -59,6 +60,8 @@ class Mailroom {
     std::size_t lies = 0;
     if (link != nullptr)
       for (const int sender : senders_) lies += link->lies(sender) ? 1 : 0;
+    lies_ = lies > 0;
+    fates_.assign(senders_.size(), Fate::delivered);
     messages_.resize(depth_ * order_.size() + lies);
     posted_ = 0;
   }
@@ -95,12 +98,35 @@ class Mailroom {
     if (as_wired_) return;
     const Message* const current = messages_.data() + base(posted_ - 1);
     for (std::size_t k = 0; k < order_.size(); ++k) deliverable_[k] = bounded(current[k]);
+    LinkCounters counters;
+    if (link_ != nullptr) link_->decide(t, round, {senders_, receivers_}, fates_);
+    counters.lost = std::count(fates_.begin(), fates_.end(), Fate::lost);
+    counters.late = std::count(fates_.begin(), fates_.end(), Fate::late);
+    const std::size_t first_slot = base(posted_ - 1);
     std::size_t forged = depth_ * order_.size();
     for (std::size_t k = 0; k < order_.size(); ++k) {
-      received_[k] = 0;
-      for (std::size_t e = first_[k]; e < first_[k + 1]; ++e)
-        deliver({t, round, senders_[e], order_[k], states_}, slots_[e], k, forged, shape);
+      std::size_t place = first_[k];
+      for (std::size_t e = first_[k]; e < first_[k + 1]; ++e) {
+        if (lies_ && link_->lies(senders_[e])) {
+          if (fates_[e] != Fate::delivered) continue;
+          const Hop hop{t, round, senders_[e], order_[k], states_};
+          if (!forge(hop, slots_[e], k, messages_[forged], counters, shape)) continue;
+          delivered_[place] = static_cast<std::uint32_t>(forged++);
+          delivered_from_[place++] = senders_[e];
+          continue;
+        }
+        // Without branches: chance decides, which no processor can foresee.
+        const bool here = fates_[e] == Fate::delivered;
+        const bool taken = here & (deliverable_[slots_[e]] != 0);
+        delivered_[place] = static_cast<std::uint32_t>(first_slot) + slots_[e];
+        delivered_from_[place] = senders_[e];
+        place += taken ? 1U : 0U;
+        counters.sent += taken ? 1 : 0;
+        counters.refused += here != taken ? 1 : 0;
+      }
+      received_[k] = place - first_[k];
     }
+    if (link_ != nullptr) link_->counters += counters;
   }
 
   Inbox<Message> inbox(std::size_t k) const {
@@ -129,34 +155,20 @@ class Mailroom {
       return {};
   }
 
+  /// Writes what a liar sends in place of the message of `sender`; false when nothing is to be delivered.
   template <class Shape>
-  GARRISON_INLINE void deliver(const Hop& hop, std::uint32_t sender, std::size_t receiver,
-                               std::size_t& forged, const Shape& shape) {
-    LinkCounters nobody_counts;
-    LinkCounters& counters = link_ == nullptr ? nobody_counts : link_->counters;
-    const Fate fate =
-        link_ == nullptr ? Fate::delivered : link_->fate({hop.sender, hop.t, hop.round}, hop.receiver);
-    if (fate == Fate::late) return void(++counters.late);
-    if (fate == Fate::lost) return void(++counters.lost);
-    std::size_t slot = base(posted_ - 1) + sender;
+  bool forge(const Hop& hop, std::uint32_t sender, std::size_t receiver, Message& message,
+             LinkCounters& counters, const Shape& shape) {
+    const std::size_t age = posts_in(link_->age(hop));
+    if (age >= posted_) return ++counters.lost, false;  // nothing that old
+    message = messages_[base(posted_ - 1 - age) + sender];
+    shape(receiver, hop.sender, message);
+    Hop told = hop;
+    told.entries = entries(message);
     bool changed = false;
-    bool deliverable = deliverable_[sender] != 0;
-    if (link_ != nullptr && link_->lies(hop.sender)) {
-      const std::size_t age = posts_in(link_->age(hop));
-      if (age >= posted_) return void(++counters.lost);  // nothing that old
-      messages_[forged] = messages_[base(posted_ - 1 - age) + sender];
-      slot = forged++;
-      shape(receiver, hop.sender, messages_[slot]);
-      Hop told = hop;
-      told.entries = entries(messages_[slot]);
-      if (!link_->rewrite(told, FieldList(messages_[slot]), changed)) return void(++counters.lost);
-      deliverable = bounded(messages_[slot]);
-    }
-    if (!deliverable) return void(++counters.refused);
-    const std::size_t place = first_[receiver] + received_[receiver]++;
-    delivered_[place] = static_cast<std::uint32_t>(slot);
-    delivered_from_[place] = hop.sender;
-    ++(changed ? counters.forged : counters.sent);
+    if (!link_->rewrite(told, FieldList(message), changed)) return ++counters.lost, false;
+    if (!bounded(message)) return ++counters.refused, false;
+    return ++(changed ? counters.forged : counters.sent), true;
   }
 
   std::vector<int> order_;
@@ -165,6 +177,8 @@ class Mailroom {
   std::vector<std::size_t> first_;        // of each agent's slots, N+1
   std::vector<std::uint32_t> slots_;      // as wired: positions of the neighbours, by public id
   std::vector<int> senders_;              // their public ids
+  std::vector<int> receivers_;            // of each slot
+  std::vector<Fate> fates_;               // of what each slot carries this round
   std::vector<std::size_t> listeners_;    // of each agent
   std::vector<std::uint32_t> delivered_;  // as delivered this round: indices into messages_
   std::vector<int> delivered_from_;       // their senders
@@ -175,6 +189,7 @@ class Mailroom {
   std::uint64_t posted_ = 0;
   bool as_wired_ = true;
   Link* link_ = nullptr;
+  bool lies_ = false;  // some agent lies in its messages
 };
 
 }  // namespace garrison

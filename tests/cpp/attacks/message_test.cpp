@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "../agents_by_hand.hpp"
 #include "garrison/core/fields.hpp"
 #include "garrison/engine/link.hpp"
 
@@ -104,11 +105,11 @@ TEST_CASE("honest links fail with their probability and the seed decides") {
   int different = 0;
   for (int t = 1; t <= 10000; ++t) {
     const Envelope message{t % 4, t, t % 3};
-    const int to = (t + 1) % 4;
-    lost += link.fate(message, to) == Fate::lost ? 1 : 0;
-    late += link.fate(message, to) == Fate::late ? 1 : 0;
-    CHECK(link.fate(message, to) == same.fate(message, to));
-    different += link.fate(message, to) != other.fate(message, to) ? 1 : 0;
+    const auto fate = [&](const Link& of) { return test::fate(of, message, (t + 1) % 4); };
+    lost += fate(link) == Fate::lost ? 1 : 0;
+    late += fate(link) == Fate::late ? 1 : 0;
+    CHECK(fate(link) == fate(same));
+    different += fate(link) != fate(other) ? 1 : 0;
   }
   CHECK(std::abs(lost - 3000) < 200);
   CHECK(std::abs(late - 3500) < 200);  // 0.7 * 0.5

@@ -164,6 +164,13 @@ struct GARRISON_EXPORT Structural {
     std::vector<char> left_out;  // in the sample before, per Heard
     std::vector<double> P;       // n x n
     std::vector<double> work;    // room for four n x n
+    // What follows from the gains, and is not part of a snapshot: I - sum K_i c_j c_j', column by column, and
+    // sum R_jj K_i c_j (K_i c_j)', when no measurement is missing; n x n each.
+    std::vector<double> whole;
+    double pace = 0.0;         // samples in which the deviation of an error falls by the factor e
+    std::vector<int> senders;  // of this sample: the Heard behind each message of the inbox
+    std::vector<int> missing;  // Heard whose measurement is not used, the first `gone`
+    int gone = 0;
     AgentSet accused;
 
     template <class V>
@@ -239,7 +246,11 @@ struct GARRISON_EXPORT Structural {
     if (carries(g)) {
       fresh.P.assign(structural::entries(nn), 0.0);
       fresh.work.assign(4 * structural::entries(nn), 0.0);
+      fresh.whole = when_whole<n>(l, g);
     }
+    fresh.pace = g.rho > 0.0 && g.rho < 1.0 ? -1.0 / std::log(g.rho) : 0.0;
+    fresh.senders.assign(fresh.left_out.size(), 0);
+    fresh.missing.assign(fresh.left_out.size(), 0);
     fresh.accused.resize(l.agents);
     s = std::move(fresh);
     s.start = s.rest = g.settle;
@@ -277,10 +288,11 @@ struct GARRISON_EXPORT Structural {
     const int nn = dimension<n>(l);
     const auto id = static_cast<std::size_t>(l.id);
     const bool measured = !std::isnan(s.y);
+    receive(l, g, s, inbox);
     const Seen seen = predict(l, g, s, inbox, m);
     const bool settled = s.rest == 0 && s.start == 0 && seen.estimates;
     const bool carried = carries(g) && (g.isolate || !(settled && seen.measurements));
-    if (carried) predict_spread(l, g, s, inbox);
+    if (carried) run_widest_of<PredictSpread<n>, n>(&l, &g, &s, &inbox);
     const double* c = row(g, l.id, nn);
     s.innovation = measured ? s.y - dot(g, l.id, s.prior, nn) : kNaN;
     bool over = false;
@@ -384,6 +396,22 @@ struct GARRISON_EXPORT Structural {
     bool estimates = true;
     bool measurements = true;
   };
+  /// The bound of the error, in registers as wide as the machine's.
+  template <int n>
+  struct PredictSpread {
+    template <int B>
+    GARRISON_INLINE static void run(const Local* l, const Gains* g, State<n>* s,
+                                    const Inbox<Message<n>>* inbox) noexcept {
+      predict_spread<B>(*l, *g, *s, *inbox);
+    }
+  };
+  template <int n>
+  struct UpdateSpread {
+    template <int B>
+    GARRISON_INLINE static void run(const Local* l, const Gains* g, State<n>* s) noexcept {
+      update_spread<B>(*l, *g, *s);
+    }
+  };
   /// Whether y_j is due.
   static bool expects(const Gains& g, const Heard& j) noexcept { return j.first >= 0 && g.sensing(j.id); }
   static bool carries(const Gains& g) noexcept { return !g.covariance.empty(); }
@@ -402,25 +430,37 @@ struct GARRISON_EXPORT Structural {
   /// P of an estimate of which nothing is known: a diagonal, `factor` times the stationary variances.
   template <int n>
   static void begin(const Local& l, const Gains& g, State<n>& s, double factor) noexcept;
-  /// Whether P is a covariance that can be worked with: messages of a liar may have made it anything.
+  /// The largest variance of the stationary error.
   template <int n>
-  static bool sound(const Local& l, const Gains& g, const State<n>& s) noexcept;
+  static double largest_settled(const Local& l, const Gains& g) noexcept;
   /// P = the covariance of the stationary error.
   template <int n>
   static void settle(const Local& l, const Gains& g, State<n>& s) noexcept;
+  /// I - sum K_i c_j c_j', column by column, and sum R_jj K_i c_j (K_i c_j)', over all measurements that are
+  /// due.
+  template <int n>
+  static std::vector<double> when_whole(const Local& l, const Gains& g);
+  /// Finds out who sent each message, and whose is missing.
+  template <int n>
+  static void receive(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox) noexcept;
   /// (3): the mean first, then A; a missing estimate's weight goes to the own one.
   template <int n>
   static Seen predict(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
                       Message<n>& m) noexcept;
-  /// Jensen: A (sum_j W_ij P_j) A' + E >= cov(e before the update), into the first n x n of `work`.
   template <int n>
+  static double own_weight(const Heard* heard, const State<n>& s) noexcept;
+  /// Jensen: A (sum_j W_ij P_j) A' + E >= cov(e before the update), into the first n x n of `work`.
+  template <int B, int n>
   static void predict_spread(const Local& l, const Gains& g, State<n>& s,
                              const Inbox<Message<n>>& inbox) noexcept;
-  /// (4): own measurement, then those of the others in order of id; false when one of them was left out. With
-  /// `carried` also P_i = G prior G' + sum of what the noises add, G = I - sum K_i c_j c_j'.
+  /// (4): own measurement, then those of the others in order of id; false when one of them was left out.
+  /// Whose is not used is missing from then on. With `carried` also the bound of the error.
   template <int n>
   static bool update(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, bool used,
                      bool carried) noexcept;
+  /// P_i = G prior G' + sum of what the noises add, G = I - sum K_i c_j c_j', over what is not missing.
+  template <int B, int n>
+  static void update_spread(const Local& l, const Gains& g, State<n>& s) noexcept;
   /// Whether a measurement that is heard is over its level, the bound of what is expected of it being
   /// `prior`.
   template <int n>

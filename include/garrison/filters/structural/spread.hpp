@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "garrison/core/types.hpp"
+#include "garrison/kernel/block.hpp"
 
 namespace garrison::structural {
 
@@ -37,13 +38,13 @@ class Sums<Dynamic> {
 };
 
 template <int n>
-void pack(const double* full, int nn, double* __restrict__ lower) noexcept {
+GARRISON_INLINE void pack(const double* full, int nn, double* __restrict__ lower) noexcept {
   const int size = n == Dynamic ? nn : n;
   for (int i = 0; i < size; ++i)
     for (int j = 0; j <= i; ++j) *lower++ = full[static_cast<std::ptrdiff_t>(i) * size + j];
 }
 template <int n>
-void unpack(const double* lower, int nn, double* __restrict__ full) noexcept {
+GARRISON_INLINE void unpack(const double* lower, int nn, double* __restrict__ full) noexcept {
   const int size = n == Dynamic ? nn : n;
   for (int i = 0; i < size; ++i)
     for (int j = 0; j <= i; ++j, ++lower) {
@@ -53,35 +54,59 @@ void unpack(const double* lower, int nn, double* __restrict__ full) noexcept {
 }
 /// sum += weight * the packed matrix
 template <int n>
-void add_packed(const double* lower, double weight, int nn, double* __restrict__ sum) noexcept {
+GARRISON_INLINE void add_packed(const double* lower, double weight, int nn,
+                                double* __restrict__ sum) noexcept {
   const int size = static_cast<int>(packed(n == Dynamic ? nn : n));
   for (int k = 0; k < size; ++k) sum[k] += weight * lower[k];
 }
-/// out = L S L' + out, S symmetric; entry (i, k) of L is L[i * row + k * column]. `half`: room for n x n.
-template <int n>
-void add_congruence(const double* L, int row, int column, const double* S, int nn, double* __restrict__ half,
-                    double* __restrict__ out) noexcept {
+/// out = L S L' + out, S symmetric; L column by column, so that all rows are read along memory. `half`: room
+/// for n x n. B: doubles of a register.
+template <int B, int n>
+GARRISON_INLINE void add_congruence(const double* L, const double* S, int nn, double* __restrict__ half,
+                                    double* __restrict__ out) noexcept {
   const int size = n == Dynamic ? nn : n;
+  constexpr int W = n == Dynamic ? 1 : block_of(n, B);
+  using V = typename Block<W>::type;
   const auto at = [size](int i, int j) { return static_cast<std::ptrdiff_t>(i) * size + j; };
-  const auto l = [=](int i, int k) {
-    return L[static_cast<std::ptrdiff_t>(i) * row + static_cast<std::ptrdiff_t>(k) * column];
-  };
-  for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) half[at(i, j)] = l(i, 0) * S[j];
-    for (int k = 1; k < size; ++k)
-      for (int j = 0; j < size; ++j) half[at(i, j)] += l(i, k) * S[at(k, j)];
-  }
   for (int i = 0; i < size; ++i)
-    for (int j = 0; j <= i; ++j) {
-      double sum = 0.0;
-      for (int k = 0; k < size; ++k) sum += half[at(i, k)] * l(j, k);
-      out[at(i, j)] += sum;
-      if (i != j) out[at(j, i)] += sum;
+    for (int j = 0; j < size; j += W) {
+      V sum = L[i] * *Block<W>::of(S + j);
+      for (int k = 1; k < size; ++k) sum += L[at(k, i)] * *Block<W>::of(S + at(k, j));
+      *Block<W>::of(half + at(i, j)) = sum;
     }
+  for (int i = 0; i < size; ++i)
+    for (int j = 0; j < size; j += W) {
+      V sum = *Block<W>::of(out + at(i, j));
+      for (int k = 0; k < size; ++k) sum += half[at(i, k)] * *Block<W>::of(L + at(k, j));
+      *Block<W>::of(out + at(i, j)) = sum;
+    }
+}
+/// Whether no entry of S is larger than positive semidefinite matrices with its diagonal have it, and that
+/// diagonal is in [0, most * limit], all up to rounding. NaN is not. `diagonal`: room for n.
+template <int B, int n>
+GARRISON_INLINE bool is_covariance(const double* S, double most, double limit, int nn,
+                                   double* __restrict__ diagonal) noexcept {
+  const int size = n == Dynamic ? nn : n;
+  constexpr int W = n == Dynamic ? 1 : block_of(n, B);
+  using V = typename Block<W>::type;
+  V bad{};
+  for (int i = 0; i < size; ++i) diagonal[i] = S[static_cast<std::ptrdiff_t>(i) * (size + 1)];
+  for (int j = 0; j < size; j += W) {
+    const V d = *Block<W>::of(diagonal + j);
+    bad += (d >= -1e-9 * most) & (d <= limit * most) ? V{} : V{} + 1.0;
+    for (int i = 0; i < size; ++i) {
+      const V entry = *Block<W>::of(S + static_cast<std::ptrdiff_t>(i) * size + j);
+      const V largest = diagonal[i] * d;
+      bad += entry * entry <= largest + 1e-9 * (largest + most * most) ? V{} : V{} + 1.0;
+    }
+  }
+  bool all = true;
+  for (int lane = 0; lane < W; ++lane) all = all && bad[lane] == 0.0;
+  return all;
 }
 /// c'S c
 template <int n>
-double quadratic(const double* S, const double* c, int nn) noexcept {
+GARRISON_INLINE double quadratic(const double* S, const double* c, int nn) noexcept {
   const int size = n == Dynamic ? nn : n;
   double sum = 0.0;
   for (int i = 0; i < size; ++i) {
@@ -93,8 +118,8 @@ double quadratic(const double* S, const double* c, int nn) noexcept {
 }
 /// out += factor * (S c)(S c)'
 template <int n>
-void add_seen_outer(const double* S, const double* c, double factor, int nn,
-                    double* __restrict__ out) noexcept {
+GARRISON_INLINE void add_seen_outer(const double* S, const double* c, double factor, int nn,
+                                    double* __restrict__ out) noexcept {
   const int size = n == Dynamic ? nn : n;
   const auto seen = [&](int i) {
     double row = 0.0;
@@ -107,13 +132,14 @@ void add_seen_outer(const double* S, const double* c, double factor, int nn,
   }
 }
 /// out += factor * a b'
-template <int n>
-void add_outer(const double* a, const double* b, double factor, int nn, double* __restrict__ out) noexcept {
+template <int B, int n>
+GARRISON_INLINE void add_outer(const double* a, const double* b, double factor, int nn,
+                               double* __restrict__ out) noexcept {
   const int size = n == Dynamic ? nn : n;
-  for (int i = 0; i < size; ++i) {
-    const double left = factor * a[i];
-    for (int j = 0; j < size; ++j) out[static_cast<std::ptrdiff_t>(i) * size + j] += left * b[j];
-  }
+  constexpr int W = n == Dynamic ? 1 : block_of(n, B);
+  for (int i = 0; i < size; ++i)
+    for (int j = 0; j < size; j += W)
+      *Block<W>::of(out + static_cast<std::ptrdiff_t>(i) * size + j) += factor * a[i] * *Block<W>::of(b + j);
 }
 
 }  // namespace garrison::structural

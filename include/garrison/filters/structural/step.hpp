@@ -29,30 +29,18 @@ void Structural::begin(const Local& l, const Gains& g, State<n>& s, double facto
   const int nn = dimension<n>(l);
   const double* settled = stationary(g, l.id, nn);
   const std::size_t next = static_cast<std::size_t>(nn) + 1;
-  double most = 0.0;
-  for (std::size_t k = 0; k < s.P.size(); k += next) most = std::max(most, settled[k]);
+  const double most = largest_settled<n>(l, g);
   std::fill(s.P.begin(), s.P.end(), 0.0);
   for (std::size_t k = 0; k < s.P.size(); k += next) s.P[k] = factor * (settled[k] > 0.0 ? settled[k] : most);
 }
 
 template <int n>
-bool Structural::sound(const Local& l, const Gains& g, const State<n>& s) noexcept {
+double Structural::largest_settled(const Local& l, const Gains& g) noexcept {
   const int nn = dimension<n>(l);
   const double* settled = stationary(g, l.id, nn);
-  const auto at = [nn](int i, int k) {
-    return static_cast<std::size_t>(i) * static_cast<std::size_t>(nn) + static_cast<std::size_t>(k);
-  };
   double most = 0.0;
-  for (int i = 0; i < nn; ++i) most = std::max(most, settled[at(i, i)]);
-  bool all = true;
-  for (int i = 0; i < nn; ++i)
-    for (int k = 0; k <= i; ++k) {
-      const double size = s.P[at(i, i)] * s.P[at(k, k)];
-      const double slack = 1e-9 * (size + most * most);
-      all &= s.P[at(i, i)] >= -1e-9 * most && s.P[at(i, i)] <= kMostVariance * most;
-      all &= s.P[at(i, k)] * s.P[at(i, k)] <= size + slack;
-    }
-  return all;
+  for (int k = 0; k < nn; ++k) most = std::max(most, settled[static_cast<std::ptrdiff_t>(k) * (nn + 1)]);
+  return most;
 }
 
 template <int n>
@@ -61,32 +49,71 @@ void Structural::settle(const Local& l, const Gains& g, State<n>& s) noexcept {
 }
 
 template <int n>
+std::vector<double> Structural::when_whole(const Local& l, const Gains& g) {
+  const int nn = dimension<n>(l);
+  const std::size_t size = structural::entries(nn);
+  std::vector<double> both(2 * size, 0.0);
+  for (int k = 0; k < nn; ++k) both[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] = 1.0;
+  const auto id = static_cast<std::size_t>(l.id);
+  for (int at = g.offsets[id]; at < g.offsets[id + 1]; ++at) {
+    const Heard& j = g.heard[static_cast<std::size_t>(at)];
+    if (!expects(g, j)) continue;
+    const double* column = g.columns.data() + j.first;
+    structural::add_outer<1, n>(row(g, j.id, nn), column, -1.0, nn, both.data());
+    structural::add_outer<1, n>(column, column, g.noise[static_cast<std::size_t>(j.id)], nn,
+                                both.data() + size);
+  }
+  return both;
+}
+
+template <int n>
+void Structural::receive(const Local& l, const Gains& g, State<n>& s,
+                         const Inbox<Message<n>>& inbox) noexcept {
+  const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
+  const std::size_t count = s.left_out.size();
+  int* const senders = s.senders.data();
+  int* const missing = s.missing.data();
+  std::size_t gone = 0;
+  if (inbox.size() + 1 == count) {
+    for (std::size_t k = 0; k + 1 < count; ++k) senders[k] = static_cast<int>(k + 1);
+  } else {
+    // Without branches: chance decides who is missing, which no processor can foresee.
+    std::size_t at = 0;
+    for (std::size_t e = 1; e < count; ++e) {
+      const bool here = at < inbox.size() && inbox.sender(at) == heard[e].id;
+      senders[at] = missing[gone] = static_cast<int>(e);
+      at += here ? 1U : 0U;
+      gone += here ? 0U : 1U;
+    }
+  }
+  s.gone = static_cast<int>(gone);
+}
+
+template <int n>
 Structural::Seen Structural::predict(const Local& l, const Gains& g, State<n>& s,
                                      const Inbox<Message<n>>& inbox, Message<n>& m) noexcept {
   const int nn = dimension<n>(l);
   const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
-  const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
   Seen seen;
   seen.measurements = l.outputs == 0 || !std::isnan(s.y);
-  double own = heard->weight;
+  for (int k = 0; k < s.gone; ++k) {
+    const Heard& j = heard[s.missing[static_cast<std::size_t>(k)]];
+    seen.estimates = seen.estimates && j.weight == 0.0;
+    seen.measurements = seen.measurements && !expects(g, j);
+  }
   int rest = s.rest;
   structural::Sums<n> sums(m.numbers.data());
   double* const mean = sums.data();
   for (int k = 0; k < nn; ++k) mean[k] = 0.0;
-  std::size_t at = 0;
-  for (const Heard* j = heard + 1; j != end; ++j) {
-    if (at >= inbox.size() || inbox.sender(at) != j->id) {
-      own += j->weight;
-      seen.estimates = seen.estimates && j->weight == 0.0;
-      seen.measurements = seen.measurements && !expects(g, *j);
-      continue;
-    }
-    const auto& letter = inbox[at++];
+  for (std::size_t at = 0; at < inbox.size(); ++at) {
+    const Heard& j = heard[s.senders[at]];
+    const auto& letter = inbox[at];
     rest = std::max(rest, letter.rest);  // what is off there is off here from now on
-    if (!letter.measured && expects(g, *j)) seen.measurements = false;
-    for (int k = 0; k < nn; ++k) mean[k] += j->weight * letter.numbers[k];
+    if (!letter.measured && expects(g, j)) seen.measurements = false;
+    for (int k = 0; k < nn; ++k) mean[k] += j.weight * letter.numbers[k];
   }
   s.rest = rest;
+  const double own = own_weight(heard, s);
   for (int k = 0; k < nn; ++k) mean[k] += own * s.x[k];
   for (int i = 0; i < nn; ++i) {
     double next = 0.0;
@@ -97,30 +124,31 @@ Structural::Seen Structural::predict(const Local& l, const Gains& g, State<n>& s
 }
 
 template <int n>
-void Structural::predict_spread(const Local& l, const Gains& g, State<n>& s,
-                                const Inbox<Message<n>>& inbox) noexcept {
+double Structural::own_weight(const Heard* heard, const State<n>& s) noexcept {
+  double own = heard->weight;
+  for (int k = 0; k < s.gone; ++k) own += heard[s.missing[static_cast<std::size_t>(k)]].weight;
+  return own;
+}
+
+template <int B, int n>
+GARRISON_INLINE void Structural::predict_spread(const Local& l, const Gains& g, State<n>& s,
+                                                const Inbox<Message<n>>& inbox) noexcept {
   const int nn = dimension<n>(l);
   const std::size_t size = structural::entries(nn);
   double* prior = s.work.data();
   double* mean = prior + size;
   double* half = mean + size;
   const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
-  const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
-  double own = heard->weight;
   structural::Sums<n == Dynamic ? Dynamic : n * (n + 1) / 2> sums(half);
   double* const lower = sums.data();
   std::fill_n(lower, structural::packed(nn), 0.0);
-  std::size_t at = 0;
-  for (const Heard* j = heard + 1; j != end; ++j) {
-    if (at >= inbox.size() || inbox.sender(at) != j->id)
-      own += j->weight;
-    else
-      structural::add_packed<n>(inbox[at++].covariance.data(), j->weight, nn, lower);
-  }
+  for (std::size_t at = 0; at < inbox.size(); ++at)
+    structural::add_packed<n>(inbox[at].covariance.data(), heard[s.senders[at]].weight, nn, lower);
   structural::unpack<n>(lower, nn, mean);
+  const double own = own_weight(heard, s);
   for (std::size_t k = 0; k < size; ++k) mean[k] += own * s.P[k];
   std::copy_n(g.process.data(), size, prior);
-  structural::add_congruence<n>(l.A, 1, nn, mean, nn, half, prior);
+  structural::add_congruence<B, n>(l.A, mean, nn, half, prior);
 }
 
 template <int n>
@@ -129,30 +157,18 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
   const int nn = dimension<n>(l);
   const std::size_t size = structural::entries(nn);
   const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
-  const Heard* end = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id) + 1];
   double* prior = s.work.data();
-  double* G = prior + size;
-  double* more = G + size;
-  if (carried) {
-    std::fill_n(G, 2 * size, 0.0);
-    for (int k = 0; k < nn; ++k) G[static_cast<std::ptrdiff_t>(k) * (nn + 1)] = 1.0;
-    std::fill(s.P.begin(), s.P.end(), 0.0);
-  }
+  double* more = prior + size;
   structural::Sums<n> sums(s.x.data());
   double* const x = sums.data();
   for (int k = 0; k < nn; ++k) x[k] = s.prior[k];
-  const auto use = [&](const Heard& j, double innovation) {
-    const double* column = g.columns.data() + j.first;
-    for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
-    if (!carried) return;
-    structural::add_outer<n>(column, row(g, j.id, nn), -1.0, nn, G);
-    structural::add_outer<n>(column, column, g.noise[static_cast<std::size_t>(j.id)], nn, s.P.data());
-  };
+  if (carried && g.isolate) std::fill_n(more, size, 0.0);
   // That a measurement was over its level says of an honest sensor that the estimate is off.
   bool out = false;
   double growth = 1.0;
-  const auto leave = [&](const Heard& j, bool by_level) {
-    char& before = s.left_out[static_cast<std::size_t>(&j - heard)];
+  const auto leave = [&](int e, bool by_level) {
+    const Heard& j = heard[e];
+    char& before = s.left_out[static_cast<std::size_t>(e)];
     out = true;
     if (carried) growth = std::max(growth, g.doubt[static_cast<std::size_t>(j.id)]);
     if (by_level && !before && carried) {
@@ -162,39 +178,65 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     }
     before = 1;
   };
-  const auto keep = [&](const Heard& j) {
-    if (g.isolate) s.left_out[static_cast<std::size_t>(&j - heard)] = 0;
+  const auto use = [&](int e, double innovation) {
+    const double* column = g.columns.data() + heard[e].first;
+    for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
+    if (g.isolate) s.left_out[static_cast<std::size_t>(e)] = 0;
   };
-  const bool measured = !std::isnan(s.y);
+  const auto miss = [&](int e) { s.missing[static_cast<std::size_t>(s.gone++)] = e; };
   if (used) {
-    use(*heard, s.innovation);
-    keep(*heard);
-  } else if (measured) {
-    leave(*heard, true);
+    use(0, s.innovation);
+  } else {
+    if (!std::isnan(s.y)) leave(0, true);
+    miss(0);
   }
-  std::size_t at = 0;
-  for (const Heard* j = heard + 1; j != end; ++j) {
-    if (at >= inbox.size() || inbox.sender(at) != j->id) continue;
-    const auto& letter = inbox[at++];
-    if (j->first < 0) continue;
+  for (std::size_t at = 0; at < inbox.size(); ++at) {
+    const int e = s.senders[at];
+    const Heard& j = heard[e];
+    const auto& letter = inbox[at];
+    if (j.first < 0) continue;
     if (!letter.measured) {
-      if (letter.withheld && g.isolate) leave(*j, false);
+      if (letter.withheld && g.isolate) leave(e, false);
+      miss(e);
       continue;
     }
-    const double innovation = letter.numbers[nn] - dot(g, j->id, s.prior, nn);
-    if (g.isolate && carried && s.start == 0 && surprising<n>(g, *j, prior, innovation, nn)) {
-      leave(*j, true);
+    const double innovation = letter.numbers[nn] - dot(g, j.id, s.prior, nn);
+    if (g.isolate && carried && s.start == 0 && surprising<n>(g, j, prior, innovation, nn)) {
+      leave(e, true);
+      miss(e);
     } else {
-      use(*j, innovation);
-      keep(*j);
+      use(e, innovation);
     }
   }
   if constexpr (n != Dynamic) std::copy_n(x, nn, s.x.data());
   if (!carried) return !out;
-  for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
-  structural::add_congruence<n>(G, nn, 1, prior, nn, more, s.P.data());
-  if (!sound(l, g, s)) begin(l, g, s, kMostVariance);
+  if (g.isolate)
+    for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
+  run_widest_of<UpdateSpread<n>, n>(&l, &g, &s);
   return !out;
+}
+
+template <int B, int n>
+GARRISON_INLINE void Structural::update_spread(const Local& l, const Gains& g, State<n>& s) noexcept {
+  const int nn = dimension<n>(l);
+  const std::size_t size = structural::entries(nn);
+  const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
+  double* prior = s.work.data();
+  double* G = prior + size;
+  double* half = G + size;
+  std::copy_n(s.whole.data(), size, G);
+  std::copy_n(s.whole.data() + size, size, s.P.data());
+  for (int k = 0; k < s.gone; ++k) {
+    const Heard& j = heard[s.missing[static_cast<std::size_t>(k)]];
+    if (!expects(g, j)) continue;
+    const double* column = g.columns.data() + j.first;
+    structural::add_outer<B, n>(row(g, j.id, nn), column, 1.0, nn, G);
+    structural::add_outer<B, n>(column, column, -g.noise[static_cast<std::size_t>(j.id)], nn, s.P.data());
+  }
+  structural::add_congruence<B, n>(G, prior, nn, half, s.P.data());
+  // Messages of a liar may have made it anything.
+  if (!structural::is_covariance<B, n>(s.P.data(), largest_settled<n>(l, g), kMostVariance, nn, half))
+    begin(l, g, s, kMostVariance);
 }
 
 template <int n>
@@ -216,8 +258,7 @@ void Structural::pass(const Local& l, const Gains& g, State<n>& s, bool whole) n
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * (nn + 1);
       if (settled[at] > 0.0) ratio = std::max(ratio, s.P[static_cast<std::size_t>(at)] / settled[at]);
     }
-    const double more =
-        g.rho > 0.0 && g.rho < 1.0 ? std::ceil(-0.5 * std::log(ratio) / std::log(g.rho)) : 0.0;
+    const double more = ratio > 1.0 ? std::ceil(0.5 * std::log(ratio) * s.pace) : 0.0;
     const double most = std::min<double>(kMostRest, std::max(1, g.recover) + more);
     s.rest = std::max(s.rest, static_cast<int>(most));
     return;
