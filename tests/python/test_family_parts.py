@@ -22,7 +22,9 @@ def test_a_family_is_shown_and_described(name: str) -> None:
     assert f"| `{name}` |" in readme, f"README.md: the table of filters has no row for {name}"
     heading = f"\n## {words(name).replace('_', ' ').capitalize()}\n"
     described = words(name) in OWN_PAGE or heading in (PAGES / "baselines.md").read_text()
-    assert described, f"{name}: expected docs/filters/{words(name)}.md, or the heading {heading!r} in baselines.md there"
+    assert described, (
+        f"{name}: expected docs/filters/{words(name)}.md, or the heading {heading!r} in baselines.md there"
+    )
 
 
 @pytest.mark.parametrize("family", OWN_PAGE)
