@@ -4,7 +4,7 @@ import argparse
 import sys
 
 from garrison._commands.output import new_file, write_picture
-from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
+from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, tell_work
 from garrison.answers import Analysis, analyze
 from garrison.answers.text import limit_rows, sensor_rows, sentences
 from garrison.scenario import read_scenario
@@ -39,7 +39,7 @@ def do(args: argparse.Namespace) -> int:
         names=scenario.names,
         title=scenario.title,
         seconds=args.seconds,
-        progress=_tell if sys.stderr.isatty() else None,
+        progress=tell_work if sys.stderr.isatty() else None,
     )
     if target is not None:
         write_picture(target, found.plot())
@@ -48,11 +48,6 @@ def do(args: argparse.Namespace) -> int:
     else:
         _print(found, args.output)
     return NO if found.over_time.most == 0 else OK
-
-
-def _tell(words: str, done: int, total: int) -> None:
-    line = "" if done >= total else f"{done + 1} of {total}: {words}"
-    print(f"\r\033[K{line[:100]}", end="", file=sys.stderr, flush=True)
 
 
 def _print(found: Analysis, output: str | None) -> None:

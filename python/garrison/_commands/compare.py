@@ -5,7 +5,7 @@ import sys
 from typing import Any
 
 from garrison._commands.output import new_file, write_picture
-from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table
+from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table, tell_work
 from garrison.comparison import Comparison, compare
 from garrison.comparison.run import COLUMNS
 from garrison.scenario import read_scenario
@@ -51,7 +51,7 @@ def do(args: argparse.Namespace) -> int:
         trials=args.trials,
         size=args.size,
         title=scenario.title,
-        progress=_tell if sys.stderr.isatty() else None,
+        progress=tell_work if sys.stderr.isatty() else None,
     )
     mine = compare(
         scenario.model,
@@ -108,11 +108,6 @@ def _agents(text: str, names: list[str]) -> list[int]:
         else:
             raise refusal("--agents", repr(word), f"a number in 0..{len(names) - 1} or a name")
     return found
-
-
-def _tell(words: str, done: int, total: int) -> None:
-    line = "" if done >= total else f"{done} of {total}: {words}"
-    print(f"\r\033[K{line[:100]}", end="", file=sys.stderr, flush=True)
 
 
 def _cell(value: Any) -> str:

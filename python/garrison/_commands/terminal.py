@@ -88,3 +88,9 @@ def print_warnings(lines: Iterable[str], stderr: bool = False) -> None:
     """Doubts, one a line."""
     for line in lines:
         print(f"warning: {line}", file=sys.stderr if stderr else sys.stdout)
+
+
+def tell_work(words: str, done: int, total: int) -> None:
+    """Progress of a call that does several things one after the other: which one it is at, on a line of its own."""
+    line = "" if done >= total else f"{done + 1} of {total}: {words}"
+    print(f"\r\033[K{line[:100]}", end="", file=sys.stderr, flush=True)

@@ -73,7 +73,7 @@ double doubt_without(const Setting& s, Index i, double rho) {
 /// What agents need to carry a bound of their error's covariance from `covariance(i)` on.
 template <class Covariance>
 void add_spread(Structural::Gains& g, const Setting& s, const Covariance& covariance) {
-  if (s.n() > Structural::kCarried && !g.isolate) return;
+  if (s.n() > structural::kCarried && !g.isolate) return;
   for (Index i = 0; i < s.N(); ++i) {
     const Matrix Q = covariance(i);
     g.covariance.insert(g.covariance.end(), Q.data(), Q.data() + Q.size());
@@ -295,8 +295,8 @@ Structural::Gains Structural::design(const Params& p, const Model& model, const 
     g.innovation_std = g.std;
   }
   const double rest = g.rho > 0.0 && g.rho < 1.0 ? std::ceil(std::log(kSettled) / std::log(g.rho)) : 1.0;
-  g.recover = static_cast<int>(std::min<double>(rest, kMostRest));
-  g.settle = p.settle >= 0 ? std::min(p.settle, kMostRest) : g.recover;
+  g.recover = static_cast<int>(std::min<double>(rest, structural::kMostRest));
+  g.settle = p.settle >= 0 ? std::min(p.settle, structural::kMostRest) : g.recover;
   return g;
 }
 

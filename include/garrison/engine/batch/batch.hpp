@@ -36,15 +36,11 @@ struct BatchStep {
   bool plain;
 };
 
-/// The agents of family F as one object, if F has a faster way than agent by agent; here it has none. Bits
-/// are those of the agents on their own, for any number of threads; nothing is allocated after `start`.
+/// What a batch answers that leaves everything to the agents.
 template <class F, int n>
-class Batch {
-  using State = typename F::template State<n>;
-  using Message = typename F::template Message<n>;
-
- public:
-  Batch(std::span<State>, int /*states*/) {}
+struct AgentByAgent {
+  AgentByAgent() = default;
+  AgentByAgent(std::span<typename F::template State<n>>, int /*states*/) {}
   /// Once, when all agents are known.
   template <class Locals>
   void join(const Locals&) {}
@@ -56,7 +52,7 @@ class Batch {
     return {BatchStep::nothing, true};
   }
   /// The message of agent k, after a step that did no more than sense.
-  void send(std::size_t, Message&) const {}
+  void send(std::size_t, typename F::template Message<n>&) const {}
   /// The only round of a family that takes its rounds out of the agents' hands; false: it does not.
   template <class Locals, class Inboxes>
   bool fuse(const typename F::Gains&, const Locals&, const Inboxes&, Workers&) {
@@ -68,28 +64,25 @@ class Batch {
   void release() {}
 };
 
+/// The agents of family F as one object, if F has a faster way than agent by agent; here it has none. Bits
+/// are those of the agents on their own, for any number of threads; nothing is allocated after `start`.
+template <class F, int n>
+class Batch : public AgentByAgent<F, n> {
+ public:
+  using AgentByAgent<F, n>::AgentByAgent;
+};
+
 template <class F, int n>
   requires Averages<F, n>
-class Batch<F, n> {
-  using State = typename F::template State<n>;
-  using Message = typename F::template Message<n>;
-
+class Batch<F, n> : public AgentByAgent<F, n> {
  public:
-  Batch(std::span<State> agents, int states) : all_(agents, states) {}
-  template <class Locals>
-  void join(const Locals&) {}
-  template <class Locals>
-  void start(const typename F::Gains&, const Locals&) {}
+  Batch(std::span<typename F::template State<n>> agents, int states) : all_(agents, states) {}
   template <class Sample>
   BatchStep step(const Sample& sample) {
     const auto [finite, averaged] = all_.step(sample);
     return {averaged ? BatchStep::everything : BatchStep::sensed, finite};
   }
-  void send(std::size_t k, Message& m) const { all_.send(k, m); }
-  template <class Locals, class Inboxes>
-  bool fuse(const typename F::Gains&, const Locals&, const Inboxes&, Workers&) {
-    return false;
-  }
+  void send(std::size_t k, typename F::template Message<n>& m) const { all_.send(k, m); }
   void settle() { all_.settle(); }
   void release() { all_.release(); }
 
@@ -99,12 +92,9 @@ class Batch<F, n> {
 
 template <class F, int n>
   requires StepsSideBySide<F, n>
-class Batch<F, n> {
-  using State = typename F::template State<n>;
-  using Message = typename F::template Message<n>;
-
+class Batch<F, n> : public AgentByAgent<F, n> {
  public:
-  Batch(std::span<State> agents, int states) : all_(agents, states) {}
+  Batch(std::span<typename F::template State<n>> agents, int states) : all_(agents, states) {}
   template <class Locals>
   void join(const Locals& local) {
     all_.join(local);
@@ -117,14 +107,11 @@ class Batch<F, n> {
   BatchStep step(const Sample& sample) {
     return {all_.step(sample) ? BatchStep::everything : BatchStep::nothing, true};
   }
-  void send(std::size_t, Message&) const {}
   template <class Locals, class Inboxes>
   bool fuse(const typename F::Gains& gains, const Locals& local, const Inboxes& inbox, Workers& workers) {
     all_.fuse(gains, local, inbox, workers);
     return true;
   }
-  void settle() {}
-  void release() {}
 
  private:
   SideBySide<F, n> all_;

@@ -259,7 +259,7 @@ void Structural::pass(const Local& l, const Gains& g, State<n>& s, bool whole) n
       if (settled[at] > 0.0) ratio = std::max(ratio, s.P[static_cast<std::size_t>(at)] / settled[at]);
     }
     const double more = ratio > 1.0 ? std::ceil(0.5 * std::log(ratio) * s.pace) : 0.0;
-    const double most = std::min<double>(kMostRest, std::max(1, g.recover) + more);
+    const double most = std::min<double>(structural::kMostRest, std::max(1, g.recover) + more);
     s.rest = std::max(s.rest, static_cast<int>(most));
     return;
   }
