@@ -133,7 +133,7 @@ def compare(
     require_plant("compare", model, network)
     given = arguments.whole_numbers("attacked", attacked)
     liars = sorted({arguments.whole("attacked", a, 0, model.agents - 1) for a in given})
-    title, progress = arguments.text("title", title), arguments.callback("progress", progress)
+    title, progress = arguments.text("title", title), arguments.callback("progress", progress, "(filter, done, total)")
     own = None if filters is None else arguments.labelled("filters", filters, _core.Filter, "filters")
     theirs = None if attacks is None else arguments.labelled("attacks", attacks, _core.Attack, "attacks")
     if not liars:
