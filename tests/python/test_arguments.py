@@ -49,8 +49,8 @@ def test_arrays_are_lists_and_numbers_alone_are_none(parts: tuple[gr.Model, gr.N
         "plot: compare: got": lambda: run.plot(compare=lone),
         "measured: got": lambda: gr.replay_mitigated(
             parts[1],
-            A=0.9,
-            process_covariance=1.0,
+            A=[[0.9]],
+            process_covariance=[[1.0]],
             measurement_variance=1.0,
             measured=lone,
             truth=np.zeros((4, 1)),
