@@ -63,6 +63,7 @@ def _run(
     run = Run(data, model, network, filter)
     if conditions:
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
+    run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
     quiet = max((a.start for a in attacks), default=0)
     run.warnings += refuted.of_bounds(model, filter, run.measurements)
     run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
