@@ -47,7 +47,8 @@ def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:
     known = list(known)
     for name in names:
         if name not in known:
-            raise refusal(where, f"the unknown key {name!r}", f"one of {', '.join(known)}", near(name, known))
+            words = f"one of {', '.join(known)}" if known else "none"
+            raise refusal(where, f"the unknown key {name!r}", words, near(name, known))
 
 
 def hinted(function: Callable[P, T]) -> Callable[P, T]:
