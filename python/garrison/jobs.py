@@ -104,14 +104,15 @@ def run_scenario(scenario: Scenario, progress: Progress | None = None, condition
 
 def rehearse(scenario: Scenario) -> None:
     """Let every filter run for a single sample, so that everything a run would refuse is refused now."""
-    for _, filter in scenario.filters:
+    for label, filter in scenario.filters:
         if filter is not None:
             keep = _options(scenario, filter, True)["keep"]
             require_room(scenario.model, filter, keep, scenario.run.get("trials", 1), scenario.steps)
             _run(scenario, filter, True, None, conditions=False, rehearsal=True)
         else:
             y = scenario.measurements
-            central_kalman(scenario.model, np.zeros((1, scenario.model.outputs)) if y is None else y[:1])
+            y = np.zeros((1, scenario.model.outputs)) if y is None else y[:1]
+            central_kalman(scenario.model, y, **scenario.screens[label])
 
 
 def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], None] | None:
@@ -168,7 +169,8 @@ def _kalman_row(scenario: Scenario, label: str, attacked: bool, log: Run | None)
     truth = log.truth if simulated else scenario.truth
     start = np.asarray(scenario.run.get("start", np.zeros(scenario.model.states)))
     first = start.ravel() if start.size == scenario.model.states else np.zeros(scenario.model.states)
-    estimate = np.stack([central_kalman(scenario.model, y, start=first) for y in logs])[:, :, None]
+    screen = scenario.screens[label]
+    estimate = np.stack([central_kalman(scenario.model, y, start=first, **screen) for y in logs])[:, :, None]
     return Row(scenario, label, attacked, None, _distance(estimate, truth), _distance(estimate, scenario.robust))
 
 

@@ -91,7 +91,7 @@ def test_replay(parts: tuple[gr.Model, gr.Network, gr.Filter], name: str) -> Non
         require_ours(lambda given=given: gr.replay(*parts, **given))  # type: ignore[misc]
 
 
-@pytest.mark.parametrize("name", ["model", "measurements", "start", "start_variance"])
+@pytest.mark.parametrize("name", ["model", "measurements", "start", "start_variance", "gate", "huber"])
 def test_central_kalman(parts: tuple[gr.Model, gr.Network, gr.Filter], name: str) -> None:
     for value in NASTY:
         given: dict[str, Any] = {"model": parts[0], "measurements": np.zeros((3, 6))} | {name: value}

@@ -99,3 +99,18 @@ def test_the_central_kalman_filter_of_a_simulated_scenario(scenario: Path) -> No
         right = np.linalg.norm(estimate - main_row.run.truth[k], axis=1)
         assert central.error is not None
         np.testing.assert_array_equal(central.error[k, :, 0], right)
+
+
+def test_protected_central_kalman_filters(scenario: Path, capsys: Capture) -> None:
+    text = scenario.read_text()
+    extra = '[[compare]]\nname = "central_kalman"\nlabel = "gated"\ngate = 0.001\n'
+    extra += '[[compare]]\nname = "central_kalman"\nhuber = 1.345\n'
+    scenario.write_text(text + extra)
+    rows = {row.label: row.summary["mean_error"] for row in run_scenario(read_scenario(scenario)) if row.attacked}
+    assert list(rows) == ["saturation", "central_kalman", "gated", "central_kalman (2)"]
+    assert rows["gated"] < 0.1 * rows["central_kalman"]
+    assert rows["central_kalman (2)"] < 0.5 * rows["central_kalman"]
+    for wrong, words in (("gate = 2", "gate: got 2"), ("gate = 0.1\nhuber = 1.0", "expected one of them")):
+        scenario.write_text(f'{text}[[compare]]\nname = "central_kalman"\n{wrong}\n')
+        assert main(["check", str(scenario)]) == 2
+        assert words in capsys.readouterr().err

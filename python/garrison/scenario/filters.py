@@ -10,6 +10,8 @@ from garrison.words import near, refusal, shown
 
 #: name of the baseline that is no distributed filter
 CENTRAL_KALMAN = "central_kalman"
+#: what protects it: garrison.central_kalman
+SCREENS = ["gate", "huber"]
 
 
 def read_filters(document: dict[str, Any], folder: Path) -> list[tuple[str, _core.Filter | None]]:
@@ -29,6 +31,16 @@ def read_filters(document: dict[str, Any], folder: Path) -> list[tuple[str, _cor
     return found
 
 
+def read_screens(document: dict[str, Any], folder: Path, labels: list[str]) -> dict[str, dict[str, float]]:
+    """What protects the central Kalman filters, by label. labels: of [filter] and all [[compare]] in order."""
+    sections = tables_of("compare", document.get("compare", []), folder)
+    return {
+        label: {key: section.number(key, 0.0) for key in SCREENS if key in section}
+        for label, section in zip(labels[1:], sections, strict=True)
+        if section.table["name"] == CENTRAL_KALMAN
+    }
+
+
 def _filter(section: Section, known: list[str]) -> tuple[str, _core.Filter | None]:
     name = section.require("name", "the name of a filter; see `garrison list filters`")
     if name not in known:
@@ -39,7 +51,7 @@ def _filter(section: Section, known: list[str]) -> tuple[str, _core.Filter | Non
         raise refusal(section.place("label"), shown(label), "a string")
     params = {k: v for k, v in section.table.items() if k not in ("name", "label")}
     if name == CENTRAL_KALMAN:
-        section.only(["name", "label"])
+        section.only(["name", "label", *SCREENS])
         return str(label), None
     info = next(i for i in _core.filter_infos() if i["name"] == name)
     return str(label), filters.make_filter(name, cleaned(name, info["params"], params))

@@ -15,7 +15,7 @@ from garrison.numeric import numbers
 from garrison.objects import named
 from garrison.scenario.attacks import read_attack
 from garrison.scenario.data import Recording, read_data
-from garrison.scenario.filters import CENTRAL_KALMAN, read_filters
+from garrison.scenario.filters import CENTRAL_KALMAN, read_filters, read_screens
 from garrison.scenario.model import read_model
 from garrison.scenario.network import read_network
 from garrison.scenario.overrides import overridden
@@ -44,6 +44,7 @@ class Scenario:
     link: dict[str, float]
     run: dict[str, Any]
     noise: str
+    screens: dict[str, dict[str, float]]  # of the central Kalman filters, by label: arguments of central_kalman
     certificate: dict[str, Any]  # arguments of garrison.prepare; empty = none
     names: list[str]  # of the agents
     positions: Array | None = None  # (agents, 2), kilometres east and north
@@ -106,12 +107,14 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
     names = known or [str(i) for i in range(model.agents)]
     recording = read_data(section("data"), model, fitted, names) if "data" in document else None
     run = _run(section("run"), model, recording is not None)
+    filters = read_filters(document, folder)
     scenario = Scenario(
         path=path,
         title=_title(document.get("title", path.stem)),
         model=model,
         network=named(ground.network, known),
-        filters=read_filters(document, folder),
+        filters=filters,
+        screens=read_screens(document, folder, [label for label, _ in filters]),
         attacks=[],
         link=_link(section("link")),
         run=run,
