@@ -27,8 +27,11 @@ from garrison.words import only, refusal, shown
 
 Array = NDArray[np.float64]
 
-_TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run", "certificate"]
-_RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error"]
+TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run", "certificate"]
+RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error"]
+LINK_KEYS = ["drop", "delay", "delay_rounds"]
+NOISE_KEYS = ["law"]
+CERTIFICATE_KEYS = ["spread", "failure", "attacked"]
 
 
 @dataclass
@@ -92,7 +95,7 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
     """
     path = Path(path)
     document = overridden(read_document(path), set or {})
-    only("scenario", document, ["title", *_TABLES])
+    only("scenario", document, ["title", *TABLES])
     folder = path.parent
 
     def section(name: str) -> Section:
@@ -152,7 +155,7 @@ def _title(value: Any) -> str:
 
 
 def _run(section: Section, model: _core.Model, recorded: bool) -> dict[str, Any]:
-    section.only(_RUN_KEYS)
+    section.only(RUN_KEYS)
     out: dict[str, Any] = {}
     for key, least in (("steps", 1), ("trials", 1), ("threads", 0)):
         if key in section:
@@ -177,7 +180,7 @@ def _run(section: Section, model: _core.Model, recorded: bool) -> dict[str, Any]
 
 
 def _link(section: Section) -> dict[str, float]:
-    section.only(["drop", "delay", "delay_rounds"])
+    section.only(LINK_KEYS)
     out: dict[str, float] = {}
     for key in ("drop", "delay"):
         if key in section:
@@ -191,7 +194,7 @@ def _link(section: Section) -> dict[str, float]:
 
 def _certificate(section: Section) -> dict[str, Any]:
     """What to certify; the filters' own `attacked` where the section does not say."""
-    section.only(["spread", "failure", "attacked"])
+    section.only(CERTIFICATE_KEYS)
     if not section.table:
         return {}
     out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": section.number("failure", 1e-6)}
@@ -205,7 +208,7 @@ def _certificate(section: Section) -> dict[str, Any]:
 
 
 def _noise(section: Section, recording: Recording | None) -> str:
-    section.only(["law"])
+    section.only(NOISE_KEYS)
     if recording is not None and section.table:
         raise refusal(section.where, "a law together with [data]", "none", "records carry their own noise")
     return section.text("law", "auto")  # the laws are the plant's; a rehearsal of the run refuses others
