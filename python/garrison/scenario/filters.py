@@ -6,7 +6,7 @@ from typing import Any
 from garrison import _core, filters
 from garrison.parameters import cleaned
 from garrison.scenario.section import Section, tables_of
-from garrison.words import near, refusal, shown
+from garrison.words import count, near, refusal, shown
 
 #: name of the baseline that is no distributed filter
 CENTRAL_KALMAN = "central_kalman"
@@ -21,7 +21,7 @@ def read_filters(document: dict[str, Any], folder: Path) -> list[tuple[str, _cor
         raise refusal("scenario", "no [filter]", f"one with name = one of {', '.join(names)}")
     main = document["filter"]
     if isinstance(main, list):
-        raise refusal("[filter]", f"{len(main)} tables [[filter]]", "one [filter]; others are [[compare]]")
+        raise refusal("[filter]", f"{count(len(main), 'table')} [[filter]]", "one [filter]; others are [[compare]]")
     sections = [Section("[filter]", main, folder), *tables_of("compare", document.get("compare", []), folder)]
     found: list[tuple[str, _core.Filter | None]] = []
     for k, section in enumerate(sections):

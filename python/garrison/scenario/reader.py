@@ -23,7 +23,7 @@ from garrison.scenario.section import Section, tables_of, whole
 from garrison.tables import Records
 from garrison.tables.clock import Moment
 from garrison.tables.text import decoded
-from garrison.words import only, refusal, shown
+from garrison.words import count, only, refusal, shown
 
 Array = NDArray[np.float64]
 
@@ -101,7 +101,7 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
     def section(name: str) -> Section:
         value = document.get(name, {})
         if isinstance(value, list):
-            raise refusal(f"[{name}]", f"{len(value)} tables [[{name}]]", f"one table: a line [{name}]")
+            raise refusal(f"[{name}]", f"{count(len(value), 'table')} [[{name}]]", f"one table: a line [{name}]")
         return Section(f"[{name}]", value, folder)
 
     model, fitted, names = read_model(section("model"))
