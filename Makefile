@@ -41,8 +41,8 @@ format: setup ## format C++ and Python, write the type stubs anew
 	@.venv/bin/clang-format -i $(cpp)
 	@tools/stubs.sh
 
-fuzz: setup ## some minutes: every public callable with bad values, mutated scenarios and CSV files; prints the figures
-	@.venv/bin/pytest -q tests/fuzz
+fuzz: setup ## every public callable with bad values, mutated scenarios and CSV files; SEED=1 tries others
+	@.venv/bin/pytest -q tests/fuzz --fuzz-seed=$(or $(SEED),0)
 
 bench: ## measure against the peers; results in bench/results
 	@tools/setup.sh bench

@@ -114,6 +114,11 @@ py::object aligned(const py::object& given) {
   return given.attr("loc")[columns];
 }
 
+/// A table of two columns that can be no adjacency matrix: senders and receivers.
+bool edge_table(const py::object& given) {
+  return table(given) && py::len(given.attr("columns")) == 2 && py::len(given) != 2;
+}
+
 /// A square table of more than two rows is an adjacency matrix.
 bool square(const py::list& items) {
   const auto N = items.size();
@@ -186,7 +191,7 @@ Network make_network(const py::object& source, const py::object& agents, bool di
                          : table(source) ? py::list(source.attr("to_numpy")())
                                          : py::list(source);
   const bool unclear = ambiguous(source, items, directed);
-  if (!unclear && (sparse || table(source) || square(items))) {
+  if (!unclear && (sparse || (table(source) && !edge_table(source)) || square(items))) {
     Network network = from_adjacency(source, directed, std::move(names));
     const int count = agents.is_none() ? network.agents() : convert::small("agents", agents);
     if (count != network.agents())

@@ -20,7 +20,7 @@ def page() -> str:
         "A scenario is a TOML file. Paths in it are relative to it. An unknown key is refused with the nearest known "
         "one. `title` (a string) may stand at the top; `[model]`, `[network]` and `[filter]` must be there.\n",
     ]
-    for name in _reader._TABLES:
+    for name in _reader.TABLES:
         parts.append(f"## {_heading(name)}\n\n{TABLES[name]}\n")
         if name in MEANINGS:
             parts.append(table(["key", "meaning"], [[code(k), text] for k, text in MEANINGS[name].items()]))
@@ -34,17 +34,17 @@ def _heading(name: str) -> str:
 
 
 def _kinds() -> str:
-    rows = [[code(kind), ", ".join(code(key) for key in keys)] for kind, keys in network._GENERATORS.items()]
+    rows = [[code(kind), ", ".join(code(key) for key in keys)] for kind, keys in network.GENERATORS.items()]
     return "Values of `kind` and the keys that each takes:\n\n" + table(["kind", "keys"], rows)
 
 
 def _require_complete() -> None:
-    described = {key for name, keys in MEANINGS.items() if name in _reader._TABLES for key in keys}
-    described |= {key for keys in network._GENERATORS.values() for key in keys}
+    described = {key for name, keys in MEANINGS.items() if name in _reader.TABLES for key in keys}
+    described |= {key for keys in network.GENERATORS.values() for key in keys}
     missing = sorted(keys_of_the_reader() - described)
-    if missing or set(TABLES) < set(_reader._TABLES):
+    if missing or set(TABLES) < set(_reader.TABLES):
         raise RuntimeError(f"docs/generate/scenario_keys.py: no meaning for {missing or 'a table'}, expected one")
-    unknown = sorted(described - keys_of_the_reader() - {key for keys in network._GENERATORS.values() for key in keys})
+    unknown = sorted(described - keys_of_the_reader() - {key for keys in network.GENERATORS.values() for key in keys})
     if unknown:
         raise RuntimeError(f"docs/generate/scenario_keys.py: meanings for {unknown}, which the reader does not take")
 

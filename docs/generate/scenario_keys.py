@@ -45,7 +45,12 @@ MEANINGS = {
         "stations": "CSV with a code, latitude and longitude per agent",
         "radius_km": "stations at most so far apart are neighbours",
     },
-    "filter": {"name": "which filter", "label": "its name in tables and pictures"},
+    "filter": {
+        "name": "which filter",
+        "label": "its name in tables and pictures",
+        "gate": "of `central_kalman`: probability at which a chi-square test leaves out an honest output",
+        "huber": "of `central_kalman`: deviations from which on a residual pulls no harder",
+    },
     "attack": {
         "kind": "which attack",
         "agents": "numbers or names of the attacked agents; one may stand without a list",

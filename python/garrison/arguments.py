@@ -27,9 +27,21 @@ def whole(which: str, value: Any, least: int, most: int = _MOST) -> int:
     return found
 
 
+def entries(which: str, value: Any, expected: str) -> list[Any]:
+    """What a list, an array or another iterable holds; words and mappings are none of them."""
+    if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable) or getattr(value, "ndim", 1) == 0:
+        raise refusal(which, shown(value), expected)
+    return list(value)
+
+
+def alone(value: Any) -> bool:
+    """One whole number, not an array of them."""
+    return hasattr(value, "__index__") and getattr(value, "ndim", 0) == 0
+
+
 def whole_numbers(which: str, value: Any, least: int = 0) -> list[int]:
     """Whole numbers in a list; one alone is a list of one."""
-    found = [value] if hasattr(value, "__index__") else _list(which, value, f"a list of whole numbers >= {least}")
+    found = [value] if alone(value) else entries(which, value, f"a list of whole numbers >= {least}")
     return [whole(f"{which}[{k}]", one, least) for k, one in enumerate(found)]
 
 
@@ -56,8 +68,9 @@ def text(which: str, value: Any) -> str:
 
 
 def texts(which: str, value: Any) -> list[str]:
-    """Words in a list."""
-    return [text(f"{which}[{k}]", one) for k, one in enumerate(_list(which, value, "a list of words"))]
+    """Words in a list; one alone is a list of one."""
+    value = [value] if isinstance(value, str) else value
+    return [text(f"{which}[{k}]", one) for k, one in enumerate(entries(which, value, "a list of words"))]
 
 
 def labelled(which: str, value: Any, kind: type[T], expected: str) -> dict[str, T]:
@@ -93,6 +106,15 @@ def write(which: str, where: Any, data: bytes) -> None:
         raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected the name of a file to write") from error
 
 
+def folder(which: str, where: Any) -> list[Path]:
+    """What is in a folder, which is made where there is none. Raises IoError when it cannot be made or read."""
+    try:
+        path(which, where).mkdir(parents=True, exist_ok=True)
+        return list(path(which, where).iterdir())
+    except (OSError, ValueError) as error:
+        raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected the name of a folder to write to") from error
+
+
 def _named(where: Any) -> str:
     """A path in full, for messages."""
     text = str(where)
@@ -105,7 +127,7 @@ def _why(error: OSError | ValueError) -> str:
 
 def choices(which: str, value: Any, known: tuple[str, ...]) -> list[str]:
     """Some of the known words; one word is a list of one."""
-    found = [value] if isinstance(value, str) else _list(which, value, f"some of {', '.join(known)}")
+    found = [value] if isinstance(value, str) else entries(which, value, f"some of {', '.join(known)}")
     for word in found:
         if not isinstance(word, str) or word not in known:
             advice = near(word, known) if isinstance(word, str) else ""
@@ -116,7 +138,7 @@ def choices(which: str, value: Any, known: tuple[str, ...]) -> list[str]:
 def attacks(value: Any) -> list[_core.Attack]:
     """One attack or several."""
     words = "an attack of garrison.attacks, or a list of them"
-    found: list[Any] = [value] if isinstance(value, (_core.Attack, str)) else _list("attack", value, words)
+    found: list[Any] = [value] if isinstance(value, (_core.Attack, str)) else entries("attack", value, words)
     for one in found:
         if not isinstance(one, _core.Attack):
             raise refusal("attack", shown(one), words)
@@ -159,20 +181,32 @@ def link(value: Mapping[str, Any] | None) -> dict[str, Any]:
 def _rows(which: str, value: Any, width: int) -> list[tuple[int | None, ...]]:
     """Rows of whole numbers or None."""
     expected = f"a list of rows of {width} whole numbers or None"
-    if isinstance(value, str) or not isinstance(value, Iterable):
-        raise refusal(which, shown(value), expected)
-    rows = [tuple(row) if isinstance(row, Iterable) and not isinstance(row, str) else (row,) for row in value]
-    for row in rows:
-        if len(row) != width or not all(v is None or (isinstance(v, int) and not isinstance(v, bool)) for v in row):
-            raise refusal(which, shown(row), expected)
+    rows = []
+    for k, row in enumerate(entries(which, value, expected)):
+        found = entries(f"{which}[{k}]", row, f"{width} whole numbers or None")
+        if len(found) != width:
+            raise refusal(f"{which}[{k}]", shown(row), f"{width} whole numbers or None")
+        rows.append(tuple(None if v is None else whole(f"{which}[{k}]", v, -_MOST) for v in found))
     return rows
 
 
-def callback(which: str, value: Any) -> Any:
-    """A function to be called, or None."""
-    if value is not None and not callable(value):
+def callback(which: str, value: Any, takes: str = "(done, total)") -> Any:
+    """A function to be called, or None. What it raises itself is its owner's and passes."""
+    if value is None:
+        return None
+    if not callable(value):
         raise refusal(which, shown(value), "a function, or None")
-    return value
+
+    def call(*given: Any) -> Any:
+        try:
+            return value(*given)
+        except TypeError as error:
+            if error.__traceback__ is None or error.__traceback__.tb_next is not None:
+                raise
+            # nothing of the function itself was reached
+            raise refusal(which, f"{shown(value)}, which fails: {error}", f"a function of {takes}") from error
+
+    return call
 
 
 def table(which: str, value: Any) -> Array:
@@ -181,9 +215,3 @@ def table(which: str, value: Any) -> Array:
     if rows.ndim > 2:
         raise refusal(which, f"{rows.ndim} dimensions", "rows of numbers")
     return rows.reshape(1, -1) if rows.ndim < 2 else rows
-
-
-def _list(which: str, value: Any, expected: str) -> list[Any]:
-    if isinstance(value, (bytes, Mapping)) or not isinstance(value, Iterable) or getattr(value, "ndim", 1) == 0:
-        raise refusal(which, shown(value), expected)
-    return list(value)

@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 from garrison import _core
 from garrison._core import Attack
 from garrison._core.attacks import *  # noqa: F403  (what the core registers)
+from garrison.arguments import entries
 from garrison.words import hinted, refusal, refuse_attribute, require_order, shown
 
 #: the name of every attack's function
@@ -49,13 +50,29 @@ def _custom(
         got = "neither agents nor schedule" if agents is None else "both agents and schedule"
         raise refusal(name, got, "exactly one of them")
     if schedule is None:
-        one = agents if isinstance(agents, Iterable) else [agents]
-        phases = [(1 if start is None else start, list(one))]
+        phases = [(1 if start is None else start, _several("agents", agents))]
     elif start is not None:
         raise refusal(name, "start and schedule", "one of them", "every phase of a schedule has its start")
     else:
-        phases = [(time, list(these)) for time, these in schedule]
-    return _core.custom_attack(name, function, phases, stop, probability)  # type: ignore[arg-type]
+        phases = _phases(schedule)
+    return _core.custom_attack(name, function, phases, stop, probability)
+
+
+def _several(which: str, given: Any, expected: str = "a list of agents") -> list[Any]:
+    """The entries of a list; one alone is a list of one. The core looks at each."""
+    one = not isinstance(given, (str, bytes, Iterable)) or getattr(given, "ndim", 1) == 0
+    return entries(which, [given] if one else given, expected)
+
+
+def _phases(schedule: Any) -> list[tuple[Any, list[Any]]]:
+    """(start, agents) of every phase."""
+    found, what = [], "a pair (start, agents)"
+    for k, phase in enumerate(_several("schedule", schedule, "a list of pairs (start, agents)")):
+        pair = _several(f"schedule[{k}]", phase, what)
+        if len(pair) != 2:
+            raise refusal(f"schedule[{k}]", shown(phase), what)
+        found.append((pair[0], _several(f"schedule[{k}][1]", pair[1])))
+    return found
 
 
 @hinted

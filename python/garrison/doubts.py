@@ -39,6 +39,15 @@ def of_conditions(model: _core.Model, network: _core.Network, filter: _core.Filt
     ]
 
 
+def of_attacks(attacks: list[_core.Attack], samples: int) -> list[str]:
+    """One line per attack that starts after the last sample."""
+    return [
+        f"the attack {attack.name} starts at sample {attack.start}, after the last one ({samples}): nothing is attacked"
+        for attack in attacks
+        if attack.start > samples >= 0
+    ]
+
+
 def of_divergence(model: _core.Model, estimate: Array | None, error: Array | None, quiet_from: int) -> list[str]:
     """A line when errors (or, without truth, estimates) grow without bound, beyond the plant's own growth.
 

@@ -63,6 +63,7 @@ def _run(
     run = Run(data, model, network, filter)
     if conditions:
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
+    run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
     quiet = max((a.start for a in attacks), default=0)
     run.warnings += refuted.of_bounds(model, filter, run.measurements)
     run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
@@ -213,11 +214,17 @@ def central_kalman(
     *,
     start: ArrayLike | None = None,
     start_variance: float = 1.0,
+    gate: float | None = None,
+    huber: float | None = None,
 ) -> Array:
     """Estimates (samples + 1, n) of a central Kalman filter that sees all measurements (samples, outputs).
 
-    The unprotected ideal that distributed filters are compared with. Needs the model's covariances; nan or masked =
-    missing. A pandas table with columns named as the model's outputs is matched by name.
+    Unprotected it is the ideal that distributed filters are compared with; two protections are those in use today.
+    gate: probability, 0..1, at which an honest output is left out by a chi-square test of its own innovation. huber:
+    deviations, > 0 (1.345 is usual), from which on a larger residual pulls no harder (M-estimation by iterated weights,
+    Durovic and Kovacevic 1999). At most one of them; neither has a bound.
+    Needs the model's covariances; nan or masked = missing. A pandas table with columns named as the model's outputs is
+    matched by name.
     """
     if not isinstance(model, _core.Model):
         raise refusal("central_kalman: model", f"a {type(model).__name__}", "a garrison.Model")
@@ -226,4 +233,8 @@ def central_kalman(
     if y.ndim != 2 or x0.shape != (model.states,):
         got = f"measurements {y.shape} and start {x0.shape}"
         raise refusal("central_kalman", got, f"(samples, {model.outputs}) and ({model.states},)")
-    return _core.central_kalman(model, y, x0, arguments.number("start_variance", start_variance))
+    screen = {
+        "gate": 0.0 if gate is None else arguments.number("gate", gate),
+        "huber": np.inf if huber is None else arguments.number("huber", huber),
+    }
+    return _core.central_kalman(model, y, x0, arguments.number("start_variance", start_variance), **screen)

@@ -89,29 +89,30 @@ def run_scenario(scenario: Scenario, progress: Progress | None = None, condition
     progress(label, done, total) is called at most once per percent of a run. conditions: as in `simulate`.
     """
     rows: list[Row] = []
-    attacked_y: Array | None = None
     for attacked in [True, False] if scenario.attacks else [False]:
+        log: Run | None = None  # of the main filter
         for label, filter in scenario.filters:
             if filter is None:
-                rows.append(_kalman_row(scenario, label, attacked, attacked_y))
+                rows.append(_kalman_row(scenario, label, attacked, log))
                 continue
             name = f"{label}{', attacked' if attacked else ''}"
             run = _run(scenario, filter, attacked, _labelled(progress, name), conditions)
-            if attacked and attacked_y is None and run.measurements is not None:
-                attacked_y = run.measurements[0]
+            log = log or run
             rows.append(Row(scenario, label, attacked, run, run.error, _distance(run.estimate, scenario.robust)))
     return rows
 
 
 def rehearse(scenario: Scenario) -> None:
     """Let every filter run for a single sample, so that everything a run would refuse is refused now."""
-    for _, filter in scenario.filters:
+    for label, filter in scenario.filters:
         if filter is not None:
             keep = _options(scenario, filter, True)["keep"]
             require_room(scenario.model, filter, keep, scenario.run.get("trials", 1), scenario.steps)
             _run(scenario, filter, True, None, conditions=False, rehearsal=True)
-        elif scenario.measurements is not None:
-            central_kalman(scenario.model, scenario.measurements[:1])
+        else:
+            y = scenario.measurements
+            y = np.zeros((1, scenario.model.outputs)) if y is None else y[:1]
+            central_kalman(scenario.model, y, **scenario.screens[label])
 
 
 def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], None] | None:
@@ -159,20 +160,25 @@ def _run(
     return simulate(*parts, steps=1 if rehearsal else scenario.steps, noise=scenario.noise, **options)
 
 
-def _kalman_row(scenario: Scenario, label: str, attacked: bool, attacked_y: Array | None) -> Row:
-    y = attacked_y if attacked else scenario.measurements
-    if y is None or scenario.truth is None:
+def _kalman_row(scenario: Scenario, label: str, attacked: bool, log: Run | None) -> Row:
+    """The central Kalman filter on what the main filter's sensors said; agents with plants of their own have none."""
+    if log is None or log.measurements is None or family_of(log.filter).own_plants:
         return Row(scenario, label, attacked, None, None)
-    estimate = central_kalman(scenario.model, y)[None, :, None]
-    errors = _distance(estimate, scenario.truth), _distance(estimate, scenario.robust)
-    return Row(scenario, label, attacked, None, *errors)
+    simulated = scenario.measurements is None
+    logs = log.measurements if simulated else log.measurements[:1]
+    truth = log.truth if simulated else scenario.truth
+    start = np.asarray(scenario.run.get("start", np.zeros(scenario.model.states)))
+    first = start.ravel() if start.size == scenario.model.states else np.zeros(scenario.model.states)
+    screen = scenario.screens[label]
+    estimate = np.stack([central_kalman(scenario.model, y, start=first, **screen) for y in logs])[:, :, None]
+    return Row(scenario, label, attacked, None, _distance(estimate, truth), _distance(estimate, scenario.robust))
 
 
 def _distance(estimate: Array | None, states: Array | None) -> Array | None:
-    """Lengths (trial, time, agent) of the differences of estimates to states (time, n)."""
+    """Lengths (trial, time, agent) of the differences of estimates to states ([trial,] time, n)."""
     if estimate is None or states is None:
         return None
-    return np.asarray(np.linalg.norm(estimate - states[None, :, None], axis=3))
+    return np.asarray(np.linalg.norm(estimate - np.expand_dims(states, -2), axis=3))
 
 
 def signal_size(scenario: Scenario) -> float | None:

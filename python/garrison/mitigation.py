@@ -1,6 +1,6 @@
 """Detection and mitigation in one run: Algorithm 1 of the structural paper goes on through the switch of sensors."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, filters
 from garrison._core import structure
-from garrison.arguments import whole
+from garrison.arguments import entries, whole
 from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.record import Run
-from garrison.words import hinted, refusal, shown
+from garrison.words import hinted, refusal
 
 Array = NDArray[np.float64]
 
@@ -62,9 +62,7 @@ def _shaped(which: str, value: Any, *shapes: tuple[int, ...]) -> Array:
 def _sensors(measured: Any, n: int, N: int) -> list[int | None]:
     """The state that each agent measures, None for a relay."""
     expected = f"{N} entries, one per agent: the state it measures, in 0..{n - 1}, or None"
-    if isinstance(measured, (str, bytes)) or not isinstance(measured, Iterable):
-        raise refusal("measured", shown(measured), expected)
-    found = list(measured)
+    found = entries("measured", measured, expected)
     if len(found) != N:
         raise refusal("measured", f"{len(found)} entries", expected)
     return [None if s is None else whole(f"measured[{i}]", s, 0, n - 1) for i, s in enumerate(found)]

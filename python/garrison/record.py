@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.alarms import Alarm, intervals
+from garrison.arguments import alone, entries, read, whole, write
 from garrison.arguments import path as path_of
-from garrison.arguments import read, whole, write
 from garrison.bound_kind import BoundKind
 from garrison.families import family_of
 from garrison.notebook import of_run
@@ -195,9 +195,8 @@ class Run:
         """
         from garrison.figures import run_figure, string_figure
 
-        if not isinstance(compare, Iterable):
-            raise refusal("plot: compare", f"a {type(compare).__name__}", "other runs")
-        trial, chosen, others = self._trial(trial), self._agents(agents), list(compare)
+        trial, chosen = self._trial(trial), self._agents(agents)
+        others = entries("plot: compare", compare, "other runs")
         for other in others:
             if not isinstance(other, Run):
                 raise refusal("plot: compare", f"a {type(other).__name__}", "other runs")
@@ -213,15 +212,16 @@ class Run:
             return None
         names, last = list(self.network.names), self.network.agents - 1
         found = []
-        if not isinstance(given, (int, str, Iterable)):
-            raise refusal("agents", f"a {type(given).__name__}", "numbers or names of agents")
-        for one in [given] if isinstance(given, (int, str)) else given:
+        listed = [given] if isinstance(given, str) or alone(given) else given
+        for one in entries("agents", listed, "numbers or names of agents"):
             if isinstance(one, str):
                 if one not in names:
                     raise refusal("agents", repr(one), "names of the network", near(one, names))
                 found.append(names.index(one))
             else:
                 found.append(whole("agents", one, 0, last))
+        if not found:
+            raise refusal("agents", "nobody", "agents to be shown, or None for all of them")
         return found
 
     def animate(self, path: str | Path, trial: int = 0) -> None:

@@ -25,6 +25,8 @@ def pack(document: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> bytes:
 
 def unpack(data: bytes, name: str) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """Document and arrays of an archive. Raises IoError when the bytes are none, or of another version."""
+    if not zipfile.is_zipfile(io.BytesIO(data)):
+        raise _core.IoError(f"{name}: got a file that is no archive of arrays, expected a run written by Run.save")
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
             found = {key: archive[key] for key in archive.files}

@@ -47,7 +47,8 @@ def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:
     known = list(known)
     for name in names:
         if name not in known:
-            raise refusal(where, f"the unknown key {name!r}", f"one of {', '.join(known)}", near(name, known))
+            words = f"one of {', '.join(known)}" if known else "none"
+            raise refusal(where, f"the unknown key {name!r}", words, near(name, known))
 
 
 def hinted(function: Callable[P, T]) -> Callable[P, T]:
@@ -91,12 +92,17 @@ def require_plant(function: str, model: object, network: object) -> None:
         raise refusal(function, f"({type(model).__name__}, {type(network).__name__}, ..)", "(model, network, ..)")
 
 
+def _kind(value: object) -> str:
+    """What was given in place of an object of garrison."""
+    return f"the class {value.__name__}, not made yet" if isinstance(value, type) else f"a {type(value).__name__}"
+
+
 def require_order(function: str, model: object, network: object, filter: object) -> None:
     """Refuse arguments in another order than (model, network, filter), the only one in garrison."""
     kinds = (("model", _core.Model), ("network", _core.Network), ("filter", _core.Filter))
     given = (model, network, filter)
     if all(isinstance(value, kind) for value, (_, kind) in zip(given, kinds, strict=True)):
         return
-    got = [next((name for name, kind in kinds if isinstance(v, kind)), f"a {type(v).__name__}") for v in given]
+    got = [next((name for name, kind in kinds if isinstance(v, kind)), _kind(v)) for v in given]
     old = "; the order changed: it is the same everywhere now" if sorted(got) == ["filter", "model", "network"] else ""
     raise _core.InvalidInput(f"{function}: got ({', '.join(got)}), expected (model, network, filter){old}")

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/solvers.hpp"
+#include "garrison/certificate/quantiles.hpp"
 
 namespace garrison {
 namespace {
@@ -74,10 +75,50 @@ struct Estimate {
   }
 };
 
+/// Outputs with an innovation that a Gaussian one exceeds `level` deviations to be nan.
+Matrix gated(const Estimate& prior, const Matrix& C, const Vector& R, const Matrix& y, double level) {
+  const Matrix CS = C * prior.S;
+  Matrix kept = y;
+  for (Index k = 0; k < C.rows(); ++k)
+    if (std::abs(y(k) - C.row(k).dot(prior.x)) > level * std::sqrt(CS.row(k).squaredNorm() + R(k)))
+      kept(k) = kNaN;
+  return kept;
+}
+
+/// Corrects with weights that solve Huber's problem.
+void correct_robustly(Estimate& now, const Matrix& C, const Vector& R, const Matrix& y, double huber) {
+  constexpr int kMost = 1000;
+  constexpr double kSettled = 1e-12;
+  const Estimate prior = now;
+  Vector weight = Vector::Ones(R.size());
+  for (int k = 0; k < kMost; ++k) {
+    now = prior;
+    now.correct(C, R.cwiseQuotient(weight), y);
+    Vector next = Vector::Ones(R.size());
+    for (Index r = 0; r < R.size(); ++r) {
+      const double residual = std::abs(y(r) - C.row(r).dot(now.x));
+      if (std::isfinite(residual) && R(r) > 0.0 && residual > huber * std::sqrt(R(r)))
+        next(r) = huber * std::sqrt(R(r)) / residual;
+    }
+    const double change = (next - weight).cwiseQuotient(weight).cwiseAbs().maxCoeff();
+    if (!(change > kSettled)) return;
+    weight = std::move(next);
+  }
+}
+
+void require_screen(const Screen& screen) {
+  if (!(screen.gate >= 0.0 && screen.gate < 1.0))
+    refuse("gate", text(screen.gate), "a probability in (0, 1), or 0 for none");
+  if (!(screen.huber > 0.0)) refuse("huber", text(screen.huber), "a number of deviations > 0, such as 1.345");
+  if (screen.gate > 0.0 && !std::isinf(screen.huber))
+    refuse("central_kalman", "gate and huber", "one of them");
+}
+
 }  // namespace
 
 Matrix central_kalman(const Model& model, const MatrixRef& measurements, const VectorRef& x0,
-                      double start_variance) {
+                      double start_variance, const Screen& screen) {
+  require_screen(screen);
   const auto n = model.states();
   const Noise& noise = model.noise();
   if (noise.process_covariance.size() == 0 || noise.measurement_covariance.empty())
@@ -101,9 +142,15 @@ Matrix central_kalman(const Model& model, const MatrixRef& measurements, const V
   Matrix estimates(measurements.rows() + 1, n);
   Estimate now{x0, std::sqrt(start_variance) * Matrix::Identity(n, n)};
   estimates.row(0) = now.x;
+  const double level = screen.gate > 0.0 ? certificate::two_sided(screen.gate) : kInfinity;
   for (Index t = 0; t < measurements.rows(); ++t) {
     now.predict(model.A(), process_root);
-    now.correct(C, R, measurements.row(t));
+    if (screen.gate > 0.0)
+      now.correct(C, R, gated(now, C, R, measurements.row(t), level));
+    else if (std::isinf(screen.huber))
+      now.correct(C, R, measurements.row(t));
+    else
+      correct_robustly(now, C, R, measurements.row(t), screen.huber);
     estimates.row(t + 1) = now.x;
   }
   return estimates;

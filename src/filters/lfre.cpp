@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/lfre.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/solvers.hpp"
 #include "garrison/analysis/lyapunov.hpp"
 #include "garrison/analysis/observability.hpp"
+#include "garrison/analysis/poles.hpp"
 #include "garrison/engine/filter_of.hpp"
 
 namespace garrison {
@@ -28,17 +30,6 @@ std::vector<double> spaced_poles(double first, int n) {
   return poles;
 }
 
-/// Ackermann: the unique H with eig(A - H c) = poles, for an observable pair (A, c).
-Vector ackermann(const Matrix& A, const Matrix& c, const std::vector<double>& poles) {
-  const auto n = A.rows();
-  Matrix polynomial = Matrix::Identity(n, n);
-  for (const double pole : poles) polynomial *= A - pole * Matrix::Identity(n, n);
-  Matrix O(n, n);
-  O.row(0) = c;
-  for (Eigen::Index k = 1; k < n; ++k) O.row(k) = O.row(k - 1) * A;
-  return polynomial * O.partialPivLu().solve(Vector::Unit(n, n - 1));
-}
-
 /// tr X, X = M X M' + F: inf where it grows, or is too sensitive to be computed.
 double steady_trace(const Matrix& M, const Matrix& F) {
   try {
@@ -48,20 +39,20 @@ double steady_trace(const Matrix& M, const Matrix& F) {
   }
 }
 
-/// Variances of agent i's first output and of w, per state: the covariances, else what bounds allow, else 1
-/// and 0.
+/// Covariances of agent i's outputs and of w, per state: the given ones, else what bounds allow, else 1 and
+/// 0.
 struct NoiseOf {
-  double measurement;
+  Matrix measurement;
   Matrix process;
 };
 NoiseOf noise_of(const Model& model, int i) {
   const Noise& noise = model.noise();
-  const auto k = static_cast<std::size_t>(i);
-  NoiseOf of{1.0, Matrix::Zero(model.states(), model.states())};
+  const int m = model.outputs(i);
+  NoiseOf of{Matrix::Identity(m, m), Matrix::Zero(model.states(), model.states())};
   if (!noise.measurement_covariance.empty())
-    of.measurement = noise.measurement_covariance[k](0, 0);
+    of.measurement = noise.measurement_covariance[static_cast<std::size_t>(i)];
   else if (noise.measurement_bound.size() > 0)
-    of.measurement = std::pow(noise.measurement_bound(i), 2) / 3.0;  // uniform within the bound
+    of.measurement *= std::pow(noise.measurement_bound(i), 2) / 3.0;  // uniform within the bound
   if (noise.process_covariance.size() > 0)
     of.process = noise.process_covariance;
   else if (!std::isnan(noise.process_bound))
@@ -69,20 +60,54 @@ NoiseOf noise_of(const Model& model, int i) {
   return of;
 }
 
-/// The observer whose steady mean square error is least, over default poles from fast to slow.
-Vector quietest(const Matrix& A, const Matrix& c, const NoiseOf& noise) {
-  constexpr int kChoices = 11;
-  Vector best;
-  double least = kInfinity;
-  for (int k = 0; k < kChoices; ++k) {
-    const double first = kFastest + (kSlowest - kFastest) * k / (kChoices - 1);
-    const Vector H = ackermann(A, c, spaced_poles(first, static_cast<int>(A.rows())));
-    const Matrix F = noise.process + noise.measurement * H * H.transpose();
-    const double error = steady_trace(A - H * c, F);
-    if (best.size() > 0 && !(error < least)) continue;
-    least = error;
-    best = H;
+/// L^-1 with R = L L', so that H of least norm for the rows L^-1 C weighs outputs by their noise; I where R
+/// is singular.
+Matrix whitening(const Matrix& R) {
+  const Eigen::LLT<Matrix> llt(R);
+  const Matrix I = Matrix::Identity(R.rows(), R.rows());
+  if (llt.info() != Eigen::Success) return I;
+  const Matrix found = llt.matrixL().solve(I);
+  return found.allFinite() ? found : I;
+}
+
+bool distinct(std::vector<double> poles) {
+  std::sort(poles.begin(), poles.end());
+  return std::adjacent_find(poles.begin(), poles.end()) == poles.end();
+}
+
+/// Gains that place the poles: with each output alone that sees the whole state, and with all of them.
+std::vector<Matrix> gains_for(const Matrix& A, const Matrix& C, const Matrix& R,
+                              const std::vector<double>& poles) {
+  std::vector<Matrix> found;
+  for (Eigen::Index r = 0; r < C.rows(); ++r) {
+    if (!observable(A, C.row(r))) continue;
+    found.push_back(Matrix::Zero(A.rows(), C.rows()));
+    found.back().col(r) = place_poles(A, C.row(r), poles);
   }
+  if (C.rows() > 1 && (found.empty() || distinct(poles))) {
+    const Matrix whiten = whitening(R);
+    found.push_back(place_poles(A, whiten * C, poles) * whiten);
+  }
+  return found;
+}
+
+/// The observer whose steady mean square error is least: given poles, or default ones from fast to slow.
+Matrix quietest(const Lfre::Params& params, const Matrix& A, const Matrix& C, const NoiseOf& noise) {
+  constexpr int kChoices = 11;
+  std::vector<std::vector<double>> choices;
+  if (!params.poles.empty()) choices.push_back(params.poles);
+  for (int k = 0; k < kChoices && params.poles.empty(); ++k)
+    choices.push_back(
+        spaced_poles(kFastest + (kSlowest - kFastest) * k / (kChoices - 1), static_cast<int>(A.rows())));
+  Matrix best;
+  double least = kInfinity;
+  for (const auto& poles : choices)
+    for (const Matrix& H : gains_for(A, C, noise.measurement, poles)) {
+      const double error = steady_trace(A - H * C, noise.process + H * noise.measurement * H.transpose());
+      if (best.size() > 0 && !(error < least)) continue;
+      least = error;
+      best = H;
+    }
   return best;
 }
 
@@ -96,12 +121,9 @@ Lfre::Gains Lfre::design(const Params& params, const Model& model, const Network
   std::vector<int> distance(static_cast<std::size_t>(N), -1);
   std::vector<int> queue;
   for (int i = 0; i < N; ++i) {
-    const bool source = model.outputs(i) > 0 && observable(model.A(), model.C(i).topRows(1));
-    Vector& H = g.observer.emplace_back();
-    if (!source) continue;
-    const Matrix c = model.C(i).topRows(1);
-    H = params.poles.empty() ? quietest(model.A(), c, noise_of(model, i))
-                             : ackermann(model.A(), c, params.poles);
+    Matrix& H = g.observer.emplace_back();
+    if (model.outputs(i) == 0 || !observable(model.A(), model.C(i))) continue;
+    H = quietest(params, model.A(), model.C(i), noise_of(model, i));
     distance[static_cast<std::size_t>(i)] = 0;
     queue.push_back(i);
   }
@@ -143,8 +165,7 @@ Check Lfre::check(const Params& params, const Model& model, const Network& netwo
       continue;
     }
     sources += 1.0;
-    const Matrix one = model.C(static_cast<int>(i)).topRows(1);
-    const Matrix closed = model.A() - g.observer[i] * one;
+    const Matrix closed = model.A() - g.observer[i] * model.C(static_cast<int>(i));
     slowest =
         std::max(slowest, Eigen::EigenSolver<Matrix>(closed, false).eigenvalues().cwiseAbs().maxCoeff());
     // Steady error per unit of measurement noise: sqrt(tr X), X = (A - H c) X (A - H c)' + H H'.

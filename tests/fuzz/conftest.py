@@ -1,4 +1,4 @@
-"""Figures of the fuzz, printed at the end of `make fuzz`."""
+"""Figures of the fuzz, printed at the end of `make fuzz`, and its seed."""
 
 from pathlib import Path
 from typing import Any
@@ -6,6 +6,18 @@ from typing import Any
 import pytest
 
 _LINES: list[str] = []
+
+
+def pytest_addoption(parser: Any) -> None:
+    """`--fuzz-seed`."""
+    parser.addoption("--fuzz-seed", type=int, default=0, help="another seed makes other calls and mutants")
+
+
+@pytest.fixture(scope="session")
+def seed(request: pytest.FixtureRequest) -> int:
+    """What everything random starts from."""
+    found: int = request.config.getoption("--fuzz-seed")
+    return found
 
 
 @pytest.fixture(scope="session")

@@ -216,8 +216,8 @@ def counted(what: str, codes: list[int]) -> str:
     return f"{what}: {len(codes)} mutated, {ends}; no traceback, no bug"
 
 
-def test_mutated_scenarios(folder: Path, figures: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    rng = random.Random(SEED)
+def test_mutated_scenarios(folder: Path, figures: list[str], seed: int, capsys: pytest.CaptureFixture[str]) -> None:
+    rng = random.Random(SEED + seed)
     path = folder / "mutant.toml"
     codes = []
     for _ in range(SCENARIOS):
@@ -229,11 +229,11 @@ def test_mutated_scenarios(folder: Path, figures: list[str], capsys: pytest.Capt
 
 
 def test_what_check_accepts_runs(
-    folder: Path, figures: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    folder: Path, figures: list[str], seed: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`check` looks at everything that `run` will look at."""
     monkeypatch.setattr("garrison._commands.run._write_pictures", lambda *a: None)  # slow, and tested elsewhere
-    rng = random.Random(SEED + 1)
+    rng = random.Random(SEED + seed + 1)
     path, out = folder / "twice.toml", folder / "twice"
     codes = []
     for _ in range(60):
@@ -246,8 +246,10 @@ def test_what_check_accepts_runs(
     figures.append(counted("scenarios, checked and run alike", codes))
 
 
-def test_mutated_tables(folder: Path, wind: Path, figures: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    rng = random.Random(SEED + 2)
+def test_mutated_tables(
+    folder: Path, wind: Path, figures: list[str], seed: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rng = random.Random(SEED + seed + 2)
     records, stations = (folder / "wind.csv").read_text(), (folder / "stations.csv").read_text()
     square = "\n".join(",".join(str(int(i == j or i + 1 == j)) for j in range(6)) for i in range(6))
     path, scenario = folder / "m.csv", folder / "m.toml"

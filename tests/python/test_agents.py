@@ -208,7 +208,7 @@ def test_links_may_fail_by_schedule_or_by_record() -> None:
         model, net, filt, steps=6, noise="normal", link={"cuts": [(None, 2, 3, 5)], "lost": [(6, 0, 1, 0)]}
     )
     assert run.counters["lost"] == 2 * 2 * 1 * filt.params["rounds"] + 1
-    with pytest.raises(gr.InvalidInput, match="rows of 4"):
+    with pytest.raises(gr.InvalidInput, match="expected 4 whole numbers"):
         gr.simulate(model, net, filt, steps=6, link={"cuts": [(1, 2)]})
     with pytest.raises(gr.InvalidInput, match="agent 9"):
         gr.simulate(model, net, filt, steps=6, noise="normal", link={"lost": [(6, 0, 9, 0)]})

@@ -34,6 +34,49 @@ def require_ours(call: Callable[[], object]) -> None:
 DRIVERS = ("attack", "trials", "seed", "start", "link", "keep", "threads", "progress", "conditions")
 
 
+def test_arrays_are_lists_and_numbers_alone_are_none(parts: tuple[gr.Model, gr.Network, gr.Filter]) -> None:
+    run = gr.simulate(*parts, steps=3, link={"cuts": np.array([[0, 1, 1, 2]])})
+    assert np.array_equal(run.estimate, gr.simulate(*parts, steps=3, link={"cuts": [(0, 1, 1, 2)]}).estimate)
+    for which in ([0, 1], np.arange(2)):
+        assert gr.compare(*parts[:2], which, steps=4, start=2, trials=1, filters={}, baselines=False).attacked == [0, 1]
+    titles = [run.plot(agents=agents).get_suptitle() for agents in (np.array([0, 2]), [0, 2], (0, np.int8(2)))]
+    assert "agents 0, 2" in titles[0] and titles.count(titles[0]) == 3
+    lone = np.array(1.0)  # iterable by its class, but not in fact
+    calls: dict[str, Callable[[], object]] = {
+        r"attacked\[0\]: got": lambda: gr.compare(*parts[:2], lone),
+        "link.cuts: got": lambda: gr.simulate(*parts, steps=3, link={"cuts": lone}),
+        "agents: got": lambda: run.plot(agents=lone),
+        "plot: compare: got": lambda: run.plot(compare=lone),
+        "measured: got": lambda: gr.replay_mitigated(
+            parts[1],
+            A=[[0.9]],
+            process_covariance=[[1.0]],
+            measurement_variance=1.0,
+            measured=lone,
+            truth=np.zeros((4, 1)),
+            noise=np.zeros((3, 6)),
+            attack=np.zeros((3, 6)),
+        ),
+        "names: got 1 name": lambda: gr.analyze(*parts[:2], names="x"),
+    }
+    for words, call in calls.items():
+        with pytest.raises(gr.InvalidInput, match=words):
+            call()
+
+
+def test_what_a_progress_function_raises_is_its_own(parts: tuple[gr.Model, gr.Network, gr.Filter]) -> None:
+    def fails(done: int, total: int) -> None:
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        gr.simulate(*parts, steps=3, progress=fails)
+    for other in (len, lambda done: None):  # cannot be called with two arguments
+        with pytest.raises(
+            gr.InvalidInput, match=r"progress: got .*which fails.* expected a function of \(done, total\)"
+        ):
+            gr.simulate(*parts, steps=3, progress=other)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("name", ["steps", "x0", "start_error", "noise", *DRIVERS])
 def test_simulate(parts: tuple[gr.Model, gr.Network, gr.Filter], name: str) -> None:
     for value in NASTY:
@@ -48,7 +91,7 @@ def test_replay(parts: tuple[gr.Model, gr.Network, gr.Filter], name: str) -> Non
         require_ours(lambda given=given: gr.replay(*parts, **given))  # type: ignore[misc]
 
 
-@pytest.mark.parametrize("name", ["model", "measurements", "start", "start_variance"])
+@pytest.mark.parametrize("name", ["model", "measurements", "start", "start_variance", "gate", "huber"])
 def test_central_kalman(parts: tuple[gr.Model, gr.Network, gr.Filter], name: str) -> None:
     for value in NASTY:
         given: dict[str, Any] = {"model": parts[0], "measurements": np.zeros((3, 6))} | {name: value}

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from garrison.comparison import baselines
+from garrison.comparison.run import KALMAN
 
 
 def plant(agents=7, attacked=(2,)):
@@ -72,13 +73,23 @@ def test_robust_baselines_stand_a_liar_that_breaks_the_others():
         assert worst(name) < 0.2 * broken
 
 
+def test_protected_kalman_filters_stand_a_liar_that_breaks_the_plain_one():
+    model, network, attacked = plant()
+    run = measured(model, network, gr.attacks.Bias(attacked, value=50.0, start=10))
+    errors = [
+        np.linalg.norm(gr.central_kalman(model, run.measurements[0], **screen) - run.truth[0], axis=1)[20:].max()
+        for screen in KALMAN.values()
+    ]
+    assert errors[1] < 0.2 * errors[0] and errors[2] < 0.5 * errors[0]
+
+
 def test_every_family_and_baseline_has_a_row_for_every_attack():
     model, network, attacked = plant()
     seen = []
     found = gr.compare(model, network, attacked, steps=30, start=10, trials=3, progress=lambda *what: seen.append(what))
     filters, attacks, numbers = found.table()
     assert attacks[0] == "none"
-    assert set(baselines.BASELINES) | {"central Kalman filter", "saturation", "rdkf", "dkf"} <= set(filters)
+    assert set(baselines.BASELINES) | {*KALMAN, "saturation", "rdkf", "dkf"} <= set(filters)
     assert len(found.rows) == len(filters) * len(attacks)
     assert seen[-1][1] == seen[-1][2]
     for row in found.rows:

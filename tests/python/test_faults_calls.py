@@ -29,6 +29,7 @@ PARTS = (MODEL, NET, FILTER)
         (lambda: gr.attacks.worst_covariance(*PARTS, energy=1.0), "worst_covariance: got no agents"),
         (lambda: gr.resilience_per_byte(NET, MODEL, [0], gain=0.1, energy=1.0), "resilience_per_byte: got (Network"),
         (lambda: gr.replay_mitigated(NET), "replay_mitigated: got no A"),
+        (lambda: gr.simulate(MODEL, NET, gr.filters.Dkf, steps=2), "network, the class Dkf, not made yet)"),  # type: ignore[arg-type]
         (lambda: gr.fit(3), "fit.records: got 3, expected Records"),
         (lambda: gr.simulate(*PARTS, steps=2, seed=2**64), f"seed: got {2**64}, expected a whole number in 0.."),
         (lambda: gr.simulate(*PARTS, steps=2, trials=2**31), f"trials: got {2**31}, expected a whole number in 1.."),
@@ -68,6 +69,22 @@ def test_files_that_cannot_be_used(tmp_path: Path) -> None:
         for call in calls:
             with pytest.raises(gr.IoError, match=r"got .*, expected"):
                 call(where)
+
+
+def test_a_file_of_something_else_is_no_run() -> None:
+    with pytest.raises(gr.IoError, match=r"no archive of arrays, expected a run written by Run\.save"):
+        gr.Run.load(__file__)
+
+
+def test_an_attack_after_the_end_is_said_aloud() -> None:
+    late = gr.attacks.Bias([0], value=1.0, start=7)
+    for steps, told in ((6, True), (7, False)):
+        runs = (
+            gr.simulate(*PARTS, steps=steps, attack=late),
+            gr.replay(*PARTS, measurements=np.zeros((steps, 3)), attack=late),
+        )
+        for run in runs:
+            assert any("bias starts at sample 7, after the last one (6)" in w for w in run.warnings) == told
 
 
 def test_damaged_runs_are_refused(tmp_path: Path) -> None:
@@ -118,6 +135,13 @@ def test_two_rows_that_mean_an_edge_list_are_no_matrix() -> None:
             gr.Network(unclear)
     with pytest.raises(gr.InvalidInput, match=r"adjacency\[1, 1\]: got 2, expected 0 or 1"):
         gr.Network(pd.DataFrame({"u": [0, 1], "v": [1, 2]}))
+
+
+def test_a_table_of_two_columns_is_a_list_of_edges() -> None:
+    edges = pd.DataFrame({"from": [0, 1, 2], "to": [1, 2, 3]})
+    assert gr.Network(edges) == gr.Network([(0, 1), (1, 2), (2, 3)])
+    named = pd.DataFrame({"from": ["B"], "to": ["A"]})
+    assert gr.Network(named, names=["A", "B"]).edges == [(0, 1)]
 
 
 def test_rows_of_an_adjacency_table_are_matched_by_name() -> None:

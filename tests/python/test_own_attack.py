@@ -112,6 +112,9 @@ def test_bad_arguments_and_copies() -> None:
         gr.attacks.custom(shifted)
     with pytest.raises(gr.InvalidInput, match="start and schedule"):
         gr.attacks.custom(shifted, schedule=[(1, [2])], start=3)
+    for schedule, which in ((True, r"schedule\[0\]"), ([(1, [2]), 3], r"schedule\[1\]"), ([(1, "DUB")], r"\[0\]\[1\]")):
+        with pytest.raises(gr.InvalidInput, match=f"{which}: got .*, expected a"):
+            gr.attacks.custom(shifted, schedule=schedule)  # type: ignore[arg-type]
     attack = gr.attacks.custom(shifted, 3, start=2, stop=9)
     assert pickle.loads(pickle.dumps(attack)) == attack and attack.own
     assert (attack.name, attack.target, attack.agents, attack.params) == (

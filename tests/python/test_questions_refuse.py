@@ -1,4 +1,4 @@
-"""Bad arguments of the functions that take seconds to answer (the fuzz of all callables leaves them out)."""
+"""Bad arguments of the functions that answer a question: each is refused by its name."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -24,7 +24,7 @@ CASES: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
             "names": BAD,
             "title": BAD,
             "seconds": (0, float("nan"), "x", None),
-            "progress": (1, "x"),
+            "progress": (1, "x", len),
         },
     ),
     "compare": (
@@ -43,7 +43,7 @@ CASES: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, 
             "seed": (-1, "x"),
             "size": ("x",),
             "title": BAD,
-            "progress": (1, "x"),
+            "progress": (1, "x", len),
         },
     ),
     "design": (

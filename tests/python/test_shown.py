@@ -108,6 +108,7 @@ def test_plot_of_some_agents_and_other_runs(run: gr.Run) -> None:
     for wrong, words in (
         ({"agents": ["b"]}, "got 'b'"),
         ({"agents": [7]}, r"0\.\.2"),
+        ({"agents": []}, "got nobody"),
         ({"compare": [3]}, "other runs"),
     ):
         with pytest.raises(gr.InvalidInput, match=words):

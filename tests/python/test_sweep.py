@@ -115,6 +115,12 @@ def test_what_is_there_is_not_run_again_and_other_sweeps_are_refused(scenario: P
     (strange / "diary.txt").write_text("dear diary", encoding="utf-8")
     with pytest.raises(gr.InvalidInput, match="something else"):
         gr.sweep(scenario, out=strange)
+    (strange / "sweep.json").write_text("[]", encoding="utf-8")
+    with pytest.raises(gr.InvalidInput, match="something else"):
+        gr.sweep(scenario, out=strange)
+    for no_folder in (scenario, scenario / "below", "\0"):
+        with pytest.raises(gr.IoError, match="expected the name of a folder"):
+            gr.sweep(scenario, out=no_folder)
 
 
 def test_a_refused_point_is_a_row_and_the_others_go_on(scenario: Path, tmp_path: Path) -> None:

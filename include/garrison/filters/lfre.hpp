@@ -22,8 +22,9 @@ namespace garrison {
 /// The saturation paper only cites this filter; our definition, docs/filters/baselines.md#lfre:
 /// all modes form one group.
 /// An agent that can observe the whole state alone is a source and runs a Luenberger observer,
-///   xhat_i(t) = A xhat_i(t-1) + H_i (y_i(t-1) - C_i xhat_i(t-1)),  xhat_i(1) = A xhat_i(0),
-/// with the first of its outputs alone; where that one is missing it predicts, whatever the others say.
+///   xhat_i(t) = A xhat_i(t-1) + H_i (y_i(t-1) - C_i xhat_i(t-1)),  xhat_i(1) = A xhat_i(0);
+/// an output that is missing corrects nothing. H_i places the poles with all of its outputs, or with one of
+/// them alone where that gives the smaller steady error.
 /// Every other one averages, entry by entry, its parents' xhat(t-1) without the f largest and f smallest, and
 /// predicts: xhat_i(t) = A mean. Parents are the neighbours closer to a source, or all neighbours when fewer
 /// than 2f + 1 are. Missing neighbours are left out; with none left the agent predicts from its own estimate.
@@ -60,7 +61,7 @@ struct GARRISON_EXPORT Lfre {
 
   struct Gains {
     int faulty = 1;
-    std::vector<Vector> observer;           ///< H_i per agent; empty = not a source
+    std::vector<Matrix> observer;           ///< H_i per agent, n x outputs; empty = not a source
     std::vector<std::vector<int>> parents;  ///< sorted ids; of a source: all neighbours, unused
 
     template <class V>
@@ -73,7 +74,7 @@ struct GARRISON_EXPORT Lfre {
   /// What agent `id` needs of them.
   static Gains part(const Gains& all, int id, std::span<const int>) {
     const auto i = static_cast<std::size_t>(id);
-    Gains g{all.faulty, std::vector<Vector>(all.observer.size()),
+    Gains g{all.faulty, std::vector<Matrix>(all.observer.size()),
             std::vector<std::vector<int>>(all.parents.size())};
     g.observer[i] = all.observer[i];
     g.parents[i] = all.parents[i];
@@ -84,8 +85,8 @@ struct GARRISON_EXPORT Lfre {
   struct State {
     Vec<n> x;
     Vec<n> mean;
-    double y_before = kNaN;  // y(t-1), what the observer uses at t
-    double y_now = kNaN;
+    std::vector<double> y_before;  // y(t-1), what the observer uses at t
+    std::vector<double> y_now;
     std::vector<double> column;
     AgentSet nobody;
 
@@ -116,14 +117,17 @@ struct GARRISON_EXPORT Lfre {
     State<n> fresh;
     fresh.x = fresh.mean = m.x = x0;
     fresh.column.resize(static_cast<std::size_t>(l.degree));
+    fresh.y_before.assign(static_cast<std::size_t>(l.outputs), kNaN);
+    fresh.y_now = fresh.y_before;
     s = std::move(fresh);
   }
 
   template <int n>
   static void sense(const Local& l, const Gains&, State<n>& s, const double* y, std::int64_t,
                     Message<n>& m) noexcept {
-    s.y_before = s.y_now;
-    s.y_now = l.outputs > 0 && std::abs(y[0]) < kHuge ? y[0] : kNaN;
+    std::swap(s.y_before, s.y_now);
+    for (int r = 0; r < l.outputs; ++r)
+      s.y_now[static_cast<std::size_t>(r)] = std::abs(y[r]) < kHuge ? y[r] : kNaN;
     m.x = s.x;
   }
 
@@ -131,22 +135,13 @@ struct GARRISON_EXPORT Lfre {
   static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
                    Message<n>& m) noexcept {
     const int nn = dimension<n>(l);
-    const Vector& H = g.observer[static_cast<std::size_t>(l.id)];
-    double innovation = 0.0;
-    if (H.size() != 0) {
+    const bool source = is_source(l, g);
+    if (source)
       s.mean = s.x;
-      if (!std::isnan(s.y_before)) {
-        innovation = s.y_before;
-        for (int k = 0; k < nn; ++k) innovation -= l.C[k] * s.x[k];
-      }
-    } else {
+    else
       trimmed_mean(g.parents[static_cast<std::size_t>(l.id)], g.faulty, inbox, nn, s);
-    }
-    for (int i = 0; i < nn; ++i) {
-      double next = 0.0;
-      for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * s.mean[k];
-      s.x[i] = H.size() != 0 ? next + H[i] * innovation : next;
-    }
+    multiply<n>(l.A, s.mean.data(), s.x.data(), nn);
+    if (source) correct(l, g.observer[static_cast<std::size_t>(l.id)], nn, s);
     m.x = s.x;
   }
 
@@ -154,7 +149,7 @@ struct GARRISON_EXPORT Lfre {
   template <int n>
   static void rejoin(const Local& l, const Gains&, const Inbox<Message<n>>& inbox, std::int64_t,
                      State<n>& s) noexcept {
-    s.y_before = kNaN;
+    std::fill(s.y_before.begin(), s.y_before.end(), kNaN);
     if (inbox.size() > 0) {
       median_into<n>(inbox.size(), [&](std::size_t k) { return inbox[k].x.data(); }, s.mean);
       multiply<n>(l.A, s.mean.data(), s.x.data(), dimension<n>(l));
@@ -164,9 +159,9 @@ struct GARRISON_EXPORT Lfre {
 
   template <int n>
   static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept {
-    const bool listens = g.observer[static_cast<std::size_t>(l.id)].size() == 0;
+    const bool lost = std::all_of(s.y_now.begin(), s.y_now.end(), [](double y) { return std::isnan(y); });
     Report r;
-    r.verdict = listens || std::isnan(s.y_now) ? Verdict::silent : Verdict::not_tested;
+    r.verdict = lost || !is_source(l, g) ? Verdict::silent : Verdict::not_tested;
     return r;
   }
   template <int n>
@@ -189,10 +184,24 @@ struct GARRISON_EXPORT Lfre {
   static std::vector<std::string> signal_names() { return {"source"}; }
   template <int n>
   static void signals(const Local& l, const Gains& g, const State<n>&, double* out) noexcept {
-    out[0] = g.observer[static_cast<std::size_t>(l.id)].size() != 0 ? 1.0 : 0.0;
+    out[0] = is_source(l, g) ? 1.0 : 0.0;
   }
 
  private:
+  static bool is_source(const Local& l, const Gains& g) noexcept {
+    const Matrix& H = g.observer[static_cast<std::size_t>(l.id)];
+    return H.size() != 0 && H.rows() == l.states && H.cols() == l.outputs;
+  }
+  /// Adds H (y(t-1) - C mean) for the outputs that are there.
+  template <int n>
+  static void correct(const Local& l, const Matrix& H, int nn, State<n>& s) noexcept {
+    for (int r = 0; r < l.outputs; ++r) {
+      double innovation = s.y_before[static_cast<std::size_t>(r)];
+      if (std::isnan(innovation)) continue;
+      for (int k = 0; k < nn; ++k) innovation -= l.C[static_cast<std::ptrdiff_t>(r) * nn + k] * s.mean[k];
+      for (int i = 0; i < nn; ++i) s.x[i] += H(i, r) * innovation;
+    }
+  }
   template <int n>
   static void trimmed_mean(const std::vector<int>& parents, int faulty, const Inbox<Message<n>>& inbox,
                            int nn, State<n>& s) noexcept {

@@ -2,6 +2,7 @@
 
 import argparse
 
+from garrison._commands.setting import add_set, settings
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, print_warnings
 from garrison.checks import check, verdict
 from garrison.jobs import certificate_of, rehearse
@@ -16,13 +17,14 @@ def add(commands: Commands) -> None:
         allow_abbrev=False,
     )
     command.add_argument("scenario", help="scenario file (TOML)")
+    add_set(command)
     command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(do=do)
 
 
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
-    scenario = read_scenario(args.scenario)
+    scenario = read_scenario(args.scenario, settings(args.set))
     label, filter = scenario.filters[0]
     assert filter is not None  # the main filter is never the central one
     found = check(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))

@@ -6,13 +6,18 @@ from typing import Any
 
 from garrison import _core
 from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table
+from garrison.scenario.schema import schema
 from garrison.words import near, refusal
 
 
 def add(commands: Commands) -> None:
     """Declare the command."""
     command = commands.add_parser("list", help="list the filters and attacks with their parameters", allow_abbrev=False)
-    command.add_argument("what", nargs="?", help="filters, attacks, or the name of one (default: all)")
+    command.add_argument(
+        "what",
+        nargs="?",
+        help="filters, attacks, the name of one (default: all), or schema: the JSON schema of scenarios",
+    )
     command.add_argument("--json", action="store_true", help="print JSON")
     command.set_defaults(do=do)
 
@@ -45,13 +50,16 @@ def _wanted(what: str | None) -> dict[str, list[dict[str, Any]]]:
     named = {kind: [info for info in infos if info["name"] == what] for kind, infos in kinds.items()}
     found = {kind: infos for kind, infos in named.items() if infos}
     if not found:
-        known = [*kinds, *(info["name"] for infos in kinds.values() for info in infos)]
-        raise refusal("list", repr(what), "filters, attacks, or the name of one", near(what, known))
+        known = [*kinds, "schema", *(info["name"] for infos in kinds.values() for info in infos)]
+        raise refusal("list", repr(what), "filters, attacks, the name of one, or schema", near(what, known))
     return found
 
 
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
+    if args.what == "schema":
+        print_json(schema())
+        return OK
     wanted = _wanted(args.what)
     if args.json:
         print_json(wanted)

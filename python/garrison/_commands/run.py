@@ -14,6 +14,7 @@ import numpy as np
 
 from garrison import _core
 from garrison._commands.output import output_folder
+from garrison._commands.setting import add_set, settings
 from garrison._commands.terminal import OK, Commands, clean, console_for, print_json, print_table, print_warnings
 from garrison.bound_kind import BoundKind
 from garrison.jobs import Row, run_scenario, signal_size
@@ -35,6 +36,7 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("scenario", help="scenario file (TOML)")
     command.add_argument("-o", "--output", required=True, help="folder to write to; must be new or empty")
+    add_set(command)
     command.add_argument("--force", action="store_true", help="replace the output of an earlier run")
     command.add_argument("--npz", action="store_true", help="write the whole main run (Run.load) instead of a CSV file")
     command.add_argument("--all-estimates", action="store_true", help="write the estimates of all filters, not of one")
@@ -45,12 +47,13 @@ def add(commands: Commands) -> None:
 
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
-    scenario = read_scenario(args.scenario)
+    given = settings(args.set)
+    scenario = read_scenario(args.scenario, given)
     console = console_for(stderr=args.json)
     doubt: Exception | None = None
     with output_folder(Path(args.output), args.force) as folder:
         rows = _run_with_progress(scenario, console, not args.no_conditions)
-        summary = _summary(scenario, rows)
+        summary = _summary(scenario, rows) | ({"set": given} if given else {})
         (folder / "summary.json").write_text(json.dumps(clean(summary), indent=1), encoding="utf-8")
         for name, row in _estimate_names(rows if args.all_estimates else rows[:1]).items():
             _write_estimates(folder / name, scenario, row, args.npz)

@@ -805,6 +805,8 @@ def central_kalman(
     measurements: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     x0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     start_variance: typing.SupportsFloat | typing.SupportsIndex,
+    gate: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    huber: typing.SupportsFloat | typing.SupportsIndex = ...,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
     """
     Estimates (T + 1, n) of a central Kalman filter.

@@ -119,8 +119,13 @@ def analyze(
     require_plant("analyze", model, network)
     if filter is not None and not isinstance(filter, _core.Filter):
         raise refusal("filter", shown(filter), "a filter of garrison.filters, or None")
-    title, progress = arguments.text("title", title), arguments.callback("progress", progress)
+    title, progress = (
+        arguments.text("title", title),
+        arguments.callback("progress", progress, "(question, done, total)"),
+    )
     names = None if names is None else arguments.texts("names", names)
+    if names and len(names) != model.agents:
+        raise refusal("names", count(len(names), "name"), f"{model.agents}, one per agent")
     seconds = arguments.number("seconds", seconds)
     if not seconds > 0:
         raise refusal("seconds", str(seconds), "a time > 0")

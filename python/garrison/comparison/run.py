@@ -27,7 +27,12 @@ Progress = Callable[[str, int, int], None]
 Row = dict[str, Any]
 
 NONE = "none"
-CENTRAL = "central Kalman filter"
+#: central Kalman filters, with what protects them
+KALMAN: dict[str, dict[str, float]] = {
+    "central Kalman filter": {},
+    "gated Kalman filter (central)": {"gate": 1e-3},
+    "Huber Kalman filter (central)": {"huber": 1.345},
+}
 #: columns of the table after filter and attack
 COLUMNS = (
     "q50", "q95", "q99", "detection_delay", "false_alarms", "bound_share", "inside_bound", "bytes_per_sample",
@@ -125,15 +130,15 @@ def compare(
     attacked: agents that lie. filters: label -> filter, default every family that fits the plant, with plain
     parameters; attacks: label -> attack, default every one of garrison.attacks that can be set up alone, from sample
     `start` on. size: of the lies, unit of the measurement, default ten times the noise. baselines: also covariance
-    intersection, median and trimmed mean of estimates, W-MSR, a central L1 decoder and subset search, and the central
-    Kalman filter; they get the measurements of the first filter's run, in at most five trials (they are slow), and no
-    lies in messages. progress(filter, done, total) is called before every run. What a filter refuses is a row with
-    the reason. Raises InvalidInput when an argument does not fit.
+    intersection, median and trimmed mean of estimates, W-MSR, a central L1 decoder and subset search, and central
+    Kalman filters (plain, gated at 1e-3, Huber's with 1.345); they get the measurements of the first filter's run, in
+    at most five trials (they are slow), and no lies in messages. progress(filter, done, total) is called before every
+    run. What a filter refuses is a row with the reason. Raises InvalidInput when an argument does not fit.
     """
     require_plant("compare", model, network)
     given = arguments.whole_numbers("attacked", attacked)
     liars = sorted({arguments.whole("attacked", a, 0, model.agents - 1) for a in given})
-    title, progress = arguments.text("title", title), arguments.callback("progress", progress)
+    title, progress = arguments.text("title", title), arguments.callback("progress", progress, "(filter, done, total)")
     own = None if filters is None else arguments.labelled("filters", filters, _core.Filter, "filters")
     theirs = None if attacks is None else arguments.labelled("attacks", attacks, _core.Attack, "attacks")
     if not liars:
@@ -146,7 +151,7 @@ def compare(
     against = attacks_for(liars, model.states, start, size) if theirs is None else theirs
     job = _Job(model, network, liars, steps, start, trials, arguments.whole("seed", seed, 0, 2**63 - 1), x0)
     conditions: list[tuple[str, _core.Attack | None]] = [(NONE, None), *against.items()]
-    extra = [*BASELINES, CENTRAL] if arguments.flag("baselines", baselines) else []
+    extra = [*BASELINES, *KALMAN] if arguments.flag("baselines", baselines) else []
     total, done = (len(chosen) + len(extra)) * len(conditions), 0
     rows: list[Row] = []
     logs: dict[str, Run] = {}
@@ -225,13 +230,13 @@ class _Job:
         return row
 
     def _estimate(self, label: str, plant: Plant, y: Array) -> Array:
-        if label != CENTRAL:
+        if label not in KALMAN:
             return BASELINES[label](plant, y)
         R = self.model.measurement_covariance
         model = self.model
         if R is None or model.process_covariance is None:
             model = _core.Model(plant.A, plant.C, process_covariance=plant.Q, measurement_covariance=plant.R)
-        return np.repeat(central_kalman(model, y)[:, None], plant.agents, axis=1)
+        return np.repeat(central_kalman(model, y, **KALMAN[label])[:, None], plant.agents, axis=1)
 
     def _errors(self, error: Array | None) -> Row:
         if error is None:

@@ -11,7 +11,7 @@ from garrison.tables import Records
 from garrison.tables.clock import seconds_of
 from garrison.words import near, refusal, shown
 
-_COMMON = ["kind", "agents", "start", "stop", "schedule", "probability"]
+COMMON = ["kind", "agents", "start", "stop", "schedule", "probability"]
 
 
 def read_attack(section: Section, names: list[str], records: Records | None, samples: int) -> _core.Attack:
@@ -21,8 +21,8 @@ def read_attack(section: Section, names: list[str], records: Records | None, sam
     if not isinstance(kind, str) or kind not in infos:
         advice = near(kind, infos) if isinstance(kind, str) else ""
         raise refusal(section.place("kind"), shown(kind), f"one of {', '.join(infos)}", advice)
-    section.only([*_COMMON, *(p["name"] for p in infos[kind]["params"])])
-    own = {k: v for k, v in section.table.items() if k not in _COMMON}
+    section.only([*COMMON, *(p["name"] for p in infos[kind]["params"])])
+    own = {k: v for k, v in section.table.items() if k not in COMMON}
     arguments = cleaned(section.where, infos[kind]["params"], own)
     if "probability" in section:
         arguments["probability"] = section.number("probability", 1.0)

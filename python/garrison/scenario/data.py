@@ -17,6 +17,9 @@ from garrison.words import refusal
 Array = NDArray[np.float64]
 
 
+KEYS = ["file", "from", "to"]
+
+
 @dataclass
 class Recording:
     """Measurements (samples, outputs); reference (samples + 1, n): what errors are measured from, or None."""
@@ -30,7 +33,7 @@ class Recording:
 
 def read_data(section: Section, model: _core.Model, fitted: Fit | None, names: list[str]) -> Recording:
     """The recording of a scenario; names: of the agents."""
-    section.only(["file", "from", "to"])
+    section.only(KEYS)
     section.require("file", "a CSV file with recorded measurements")
     if fitted is not None:
         return _of_fit(section, fitted)

@@ -6,10 +6,12 @@ from typing import Any
 from garrison import _core, filters
 from garrison.parameters import cleaned
 from garrison.scenario.section import Section, tables_of
-from garrison.words import near, refusal, shown
+from garrison.words import count, near, refusal, shown
 
 #: name of the baseline that is no distributed filter
 CENTRAL_KALMAN = "central_kalman"
+#: what protects it: garrison.central_kalman
+SCREENS = ["gate", "huber"]
 
 
 def read_filters(document: dict[str, Any], folder: Path) -> list[tuple[str, _core.Filter | None]]:
@@ -19,7 +21,7 @@ def read_filters(document: dict[str, Any], folder: Path) -> list[tuple[str, _cor
         raise refusal("scenario", "no [filter]", f"one with name = one of {', '.join(names)}")
     main = document["filter"]
     if isinstance(main, list):
-        raise refusal("[filter]", f"{len(main)} tables [[filter]]", "one [filter]; others are [[compare]]")
+        raise refusal("[filter]", f"{count(len(main), 'table')} [[filter]]", "one [filter]; others are [[compare]]")
     sections = [Section("[filter]", main, folder), *tables_of("compare", document.get("compare", []), folder)]
     found: list[tuple[str, _core.Filter | None]] = []
     for k, section in enumerate(sections):
@@ -27,6 +29,16 @@ def read_filters(document: dict[str, Any], folder: Path) -> list[tuple[str, _cor
         label, filter = _filter(section, known)
         found.append((_unused(label, [old for old, _ in found]), filter))
     return found
+
+
+def read_screens(document: dict[str, Any], folder: Path, labels: list[str]) -> dict[str, dict[str, float]]:
+    """What protects the central Kalman filters, by label. labels: of [filter] and all [[compare]] in order."""
+    sections = tables_of("compare", document.get("compare", []), folder)
+    return {
+        label: {key: section.number(key, 0.0) for key in SCREENS if key in section}
+        for label, section in zip(labels[1:], sections, strict=True)
+        if section.table["name"] == CENTRAL_KALMAN
+    }
 
 
 def _filter(section: Section, known: list[str]) -> tuple[str, _core.Filter | None]:
@@ -39,7 +51,7 @@ def _filter(section: Section, known: list[str]) -> tuple[str, _core.Filter | Non
         raise refusal(section.place("label"), shown(label), "a string")
     params = {k: v for k, v in section.table.items() if k not in ("name", "label")}
     if name == CENTRAL_KALMAN:
-        section.only(["name", "label"])
+        section.only(["name", "label", *SCREENS])
         return str(label), None
     info = next(i for i in _core.filter_infos() if i["name"] == name)
     return str(label), filters.make_filter(name, cleaned(name, info["params"], params))

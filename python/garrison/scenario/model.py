@@ -16,6 +16,8 @@ from garrison.words import refusal, shown
 _FIT_KEYS = ["fit", "from", "to", "factors", "harmonics", "period", "root", "factor"]
 _MATRIX_KEYS = ["A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_covariance"]
 _VEHICLE_KEYS = ["vehicles", "period", "inputs"]
+_FILE_KEYS = ["file"]
+KEYS = [_MATRIX_KEYS, _FIT_KEYS, _VEHICLE_KEYS, _FILE_KEYS]
 
 
 def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | None]:
@@ -28,7 +30,7 @@ def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | N
         section.only(_VEHICLE_KEYS)
         return _vehicles(section), None, None
     if "file" in section:
-        section.only(["file"])
+        section.only(_FILE_KEYS)
         model, names = _from_file(section)
         return model, None, names
     section.only([*_MATRIX_KEYS, "fit", "vehicles", "file"])

@@ -17,7 +17,10 @@ from garrison.words import near, refusal, shown
 
 Array = NDArray[np.float64]
 _EARTH_KM = 111.2 * 180 / math.pi  # per radian
-_GENERATORS = {
+_EDGE_KEYS = ["edges", "agents", "directed"]
+_STATION_KEYS = ["stations", "radius_km"]
+KEYS = [_EDGE_KEYS, _STATION_KEYS]
+GENERATORS = {
     "band": ["agents", "range"],
     "ring": ["agents"],
     "path": ["agents"],
@@ -52,7 +55,7 @@ def read_network(section: Section, names: list[str] | None, agents: int) -> Grou
         return _near_stations(section, names, agents)
     if "kind" in section:
         return Ground(_generated(section, agents))
-    section.only(["edges", "agents", "directed", "stations", "kind"])
+    section.only([*_EDGE_KEYS, "stations", "kind"])
     if "edges" not in section:
         raise refusal(section.where, "no edges", "edges, kind or stations")
     count = _count(section, agents)
@@ -108,11 +111,11 @@ def agent_number(where: str, value: Any, names: list[str]) -> int:
 
 
 def _generated(section: Section, agents: int) -> _core.Network:
-    kind = section.choice("kind", "", list(_GENERATORS))
+    kind = section.choice("kind", "", list(GENERATORS))
     section = Section(f"[network] kind = {kind!r}", section.table, section.folder)
-    section.only(["kind", *_GENERATORS[kind]])
+    section.only(["kind", *GENERATORS[kind]])
     arguments: dict[str, Any] = {}
-    for key in _GENERATORS[kind]:
+    for key in GENERATORS[kind]:
         if key == "agents":
             arguments["agents"] = _count(section, agents)
         elif key in ("radius", "probability"):
@@ -132,7 +135,7 @@ def _generated(section: Section, agents: int) -> _core.Network:
 
 
 def _near_stations(section: Section, names: list[str] | None, agents: int) -> Ground:
-    section.only(["stations", "radius_km"])
+    section.only(_STATION_KEYS)
     codes, places, degrees = _stations(section, names)
     if len(codes) != agents:
         raise refusal(

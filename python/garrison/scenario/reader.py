@@ -15,7 +15,7 @@ from garrison.numeric import numbers
 from garrison.objects import named
 from garrison.scenario.attacks import read_attack
 from garrison.scenario.data import Recording, read_data
-from garrison.scenario.filters import CENTRAL_KALMAN, read_filters
+from garrison.scenario.filters import CENTRAL_KALMAN, read_filters, read_screens
 from garrison.scenario.model import read_model
 from garrison.scenario.network import read_network
 from garrison.scenario.overrides import overridden
@@ -23,12 +23,15 @@ from garrison.scenario.section import Section, tables_of, whole
 from garrison.tables import Records
 from garrison.tables.clock import Moment
 from garrison.tables.text import decoded
-from garrison.words import only, refusal, shown
+from garrison.words import count, only, refusal, shown
 
 Array = NDArray[np.float64]
 
-_TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run", "certificate"]
-_RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error"]
+TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run", "certificate"]
+RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error"]
+LINK_KEYS = ["drop", "delay", "delay_rounds"]
+NOISE_KEYS = ["law"]
+CERTIFICATE_KEYS = ["spread", "failure", "attacked"]
 
 
 @dataclass
@@ -44,6 +47,7 @@ class Scenario:
     link: dict[str, float]
     run: dict[str, Any]
     noise: str
+    screens: dict[str, dict[str, float]]  # of the central Kalman filters, by label: arguments of central_kalman
     certificate: dict[str, Any]  # arguments of garrison.prepare; empty = none
     names: list[str]  # of the agents
     positions: Array | None = None  # (agents, 2), kilometres east and north
@@ -91,13 +95,13 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
     """
     path = Path(path)
     document = overridden(read_document(path), set or {})
-    only("scenario", document, ["title", *_TABLES])
+    only("scenario", document, ["title", *TABLES])
     folder = path.parent
 
     def section(name: str) -> Section:
         value = document.get(name, {})
         if isinstance(value, list):
-            raise refusal(f"[{name}]", f"{len(value)} tables [[{name}]]", f"one table: a line [{name}]")
+            raise refusal(f"[{name}]", f"{count(len(value), 'table')} [[{name}]]", f"one table: a line [{name}]")
         return Section(f"[{name}]", value, folder)
 
     model, fitted, names = read_model(section("model"))
@@ -106,12 +110,14 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
     names = known or [str(i) for i in range(model.agents)]
     recording = read_data(section("data"), model, fitted, names) if "data" in document else None
     run = _run(section("run"), model, recording is not None)
+    filters = read_filters(document, folder)
     scenario = Scenario(
         path=path,
         title=_title(document.get("title", path.stem)),
         model=model,
         network=named(ground.network, known),
-        filters=read_filters(document, folder),
+        filters=filters,
+        screens=read_screens(document, folder, [label for label, _ in filters]),
         attacks=[],
         link=_link(section("link")),
         run=run,
@@ -149,7 +155,7 @@ def _title(value: Any) -> str:
 
 
 def _run(section: Section, model: _core.Model, recorded: bool) -> dict[str, Any]:
-    section.only(_RUN_KEYS)
+    section.only(RUN_KEYS)
     out: dict[str, Any] = {}
     for key, least in (("steps", 1), ("trials", 1), ("threads", 0)):
         if key in section:
@@ -174,7 +180,7 @@ def _run(section: Section, model: _core.Model, recorded: bool) -> dict[str, Any]
 
 
 def _link(section: Section) -> dict[str, float]:
-    section.only(["drop", "delay", "delay_rounds"])
+    section.only(LINK_KEYS)
     out: dict[str, float] = {}
     for key in ("drop", "delay"):
         if key in section:
@@ -188,7 +194,7 @@ def _link(section: Section) -> dict[str, float]:
 
 def _certificate(section: Section) -> dict[str, Any]:
     """What to certify; the filters' own `attacked` where the section does not say."""
-    section.only(["spread", "failure", "attacked"])
+    section.only(CERTIFICATE_KEYS)
     if not section.table:
         return {}
     out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": section.number("failure", 1e-6)}
@@ -202,7 +208,7 @@ def _certificate(section: Section) -> dict[str, Any]:
 
 
 def _noise(section: Section, recording: Recording | None) -> str:
-    section.only(["law"])
+    section.only(NOISE_KEYS)
     if recording is not None and section.table:
         raise refusal(section.where, "a law together with [data]", "none", "records carry their own noise")
     return section.text("law", "auto")  # the laws are the plant's; a rehearsal of the run refuses others

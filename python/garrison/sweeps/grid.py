@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from garrison.words import refusal, shown
+from garrison.arguments import entries
+from garrison.words import refusal
 
 Point = dict[str, Any]
 
@@ -17,9 +18,7 @@ def points_of(values: Mapping[str, Iterable[Any]]) -> list[Point]:
     """Every combination; the last key changes fastest. No keys: one point that changes nothing."""
     lists = []
     for key, given in values.items():
-        if isinstance(given, (str, bytes)) or not isinstance(given, Iterable):
-            raise refusal(f"set[{key!r}]", shown(given), "a list of values")
-        found = [_plain(v) for v in given]
+        found = [_plain(v) for v in entries(f"set[{key!r}]", given, "a list of values")]
         if not found:
             raise refusal(f"set[{key!r}]", "no values", "one at least")
         lists.append(found)

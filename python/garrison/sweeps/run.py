@@ -149,13 +149,15 @@ def _named(job: Task, hashed: str) -> Task:
 
 def _claimed(folder: Path, plan: dict[str, Any], path: Path) -> int | None:
     """Make the folder, or see that it holds the same sweep; its block where it does."""
-    manifest = folder / MANIFEST
-    if not folder.exists() or not any(folder.iterdir()):
-        (folder / "parts").mkdir(parents=True, exist_ok=True)
+    inside = arguments.folder("out", folder)
+    parts = folder / "parts"
+    if not inside or inside == [parts]:  # ended before its manifest was written
+        arguments.folder("out", parts)
         return None
     try:
-        found = json.loads(manifest.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        found = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        block = int(found["block"])
+    except (OSError, ValueError, TypeError, KeyError):
         raise refusal(
             "out", f"{folder}, which holds something else", "a new folder, or one of the same sweep"
         ) from None
@@ -164,8 +166,8 @@ def _claimed(folder: Path, plan: dict[str, Any], path: Path) -> int | None:
         if found.get(key) != value:
             what = f"{folder} with a sweep of another {key}"
             raise refusal("out", what, "a new folder, or the same sweep", f"it was made from {found.get('path', path)}")
-    (folder / "parts").mkdir(exist_ok=True)
-    return int(found["block"])
+    arguments.folder("out", parts)
+    return block
 
 
 def _write_manifest(folder: Path, plan: dict[str, Any], block: int, path: Path) -> None:

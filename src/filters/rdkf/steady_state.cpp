@@ -234,6 +234,32 @@ bool newton(const Setting& given, SteadyState& out) {
   return true;
 }
 
+/// The rest of the way from a P near the solution, where modes need more samples than there were sweeps:
+/// Newton's method in units in which the diagonal of P is about 1, so that no state is lost in the rounding
+/// of another. Its start need not be an upper bound, but only so good that the gains at it are stable.
+bool finish(const Setting& given, SteadyState& out) {
+  Vector largest = Vector::Zero(given.A.rows());
+  for (const Matrix& P : out.P) largest = largest.cwiseMax(P.diagonal());
+  if (!(largest.minCoeff() > 0.0)) return false;
+  const Vector unit =
+      largest.unaryExpr([](double variance) { return std::exp2(std::round(0.5 * std::log2(variance))); });
+  const Setting s = in_units(given, unit);
+  const Vector back = unit.cwiseInverse();
+  std::vector<Matrix> P;
+  for (const Matrix& one : out.P) P.push_back(1.01 * (back.asDiagonal() * one * back.asDiagonal()));
+  const std::vector<Matrix> seen = measured(s);
+  Fusion fusion(s, seen);
+  const auto found = detail::policy_iteration(fusion, std::move(P));
+  out.sweeps += found.steps;
+  if (!found.converged) return false;
+  for (const Matrix& one : found.P)
+    if (Eigen::LLT<Matrix>(one).info() != Eigen::Success) return false;
+  for (std::size_t i = 0; i < found.P.size(); ++i)
+    out.P[i] = unit.asDiagonal() * found.P[i] * unit.asDiagonal();
+  out.change = found.change;
+  return true;
+}
+
 void require_start(const Setting& s, const std::vector<Matrix>& P) {
   if (static_cast<int>(P.size()) != s.agents())
     refuse("P", std::to_string(P.size()) + " matrices", std::to_string(s.agents()) + ", one per agent");
@@ -258,13 +284,16 @@ SteadyState steady_state(const Setting& s, const SteadyOptions& options) {
   out.P = options.start.empty() ? std::vector<Matrix>(s.C.size(), Matrix::Zero(n, n)) : options.start;
   require_start(s, out.P);
   if (!settle(s, seen, options.tolerance, std::min(kQuickSweeps, options.most_sweeps), out) &&
-      !newton(s, out) && !settle(s, seen, options.tolerance, options.most_sweeps - out.sweeps, out))
-    refuse("model",
-           "covariances that still change by " + text(out.change) + " after " + std::to_string(out.sweeps) +
-               " sweeps",
-           "a pair (A, C) that is detectable with some margin, and process noise of at least about 1e-14 of "
-           "what the measurements tell",
-           "raise process_covariance, or leave out what is hardly seen");
+      !newton(s, out) && !settle(s, seen, options.tolerance, options.most_sweeps - out.sweeps, out) &&
+      !finish(s, out))
+    refuse(
+        "model",
+        "covariances that still change by " + text(out.change) + " after " + std::to_string(out.sweeps) +
+            " sweeps",
+        "a pair (A, C) that is detectable with some margin within so many samples, and process noise of at "
+        "least about 1e-14 of what the measurements tell",
+        "take a longer period where states integrate each other, raise process_covariance where it is "
+        "small, or leave out what is hardly seen");
   for (std::size_t j = 0; j < s.C.size(); ++j) out.Pbar.push_back(predicted(s, j, out.P[j]));
   out.Q = fused(s, out.P);
   return out;

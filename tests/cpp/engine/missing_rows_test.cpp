@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One missing output of several: every family still uses the others. saturation and scalar_gain take the step
 // of a sensor without its row; partial_sharing, whose gains are designed for all rows, takes it for met
-// exactly. rdkf and dkf: filters/rdkf/missing_rows_test.cpp. lfre reads the first output of an agent only.
+// exactly. rdkf and dkf: filters/rdkf/missing_rows_test.cpp; lfre: filters/lfre_test.cpp.
 #include <doctest/doctest.h>
 
 #include <set>

@@ -158,3 +158,47 @@ TEST_CASE("outputs without noise and states without variance are followed exactl
   CHECK((still.row(2).transpose() - Vector{{1.0, 2.0}}).norm() == 0.0);
   CHECK_THROWS_AS(central_kalman(model, y, Vector{{1.0, 2.0}}, kInfinity), InvalidInput);
 }
+
+TEST_CASE("a Huber filter: a wild sensor pulls by k deviations, no more") {
+  // One state, prior N(0, p): x minimises x^2 / 2p + rho((y - x) / sigma), so x = p k / sigma beyond the
+  // corner.
+  const Model model(Matrix{{1.0}}, {Matrix{{1.0}}}, {kNaN, {}, Matrix{{0.5}}, {Matrix{{0.25}}}});
+  const double p = 2.0 + 0.5;
+  const double k = 1.345;
+  const Screen screen{0.0, k};
+  for (const double y : {5.0, 100.0, -1e6, 1e100})
+    CHECK(
+        central_kalman(model, Matrix{{y}}, Vector::Zero(1), 2.0, screen)(1, 0) ==
+        doctest::Approx(std::copysign(std::min(p * k / 0.5, p / (p + 0.25) * std::abs(y)), y)).epsilon(1e-9));
+  test::Rng rng(3);
+  const Matrix quiet = 0.1 * test::normal_matrix(rng, 50, 1);  // residuals stay small
+  CHECK(central_kalman(model, quiet, Vector::Zero(1), 2.0, screen) ==
+        central_kalman(model, quiet, Vector::Zero(1), 2.0));
+}
+
+TEST_CASE("a gated filter leaves out what is beyond its level, and only that") {
+  const Model model(Matrix{{1.0}}, {Matrix{{1.0}}, Matrix{{1.0}}},
+                    {kNaN, {}, Matrix{{0.5}}, {Matrix{{0.25}}, Matrix{{0.25}}}});
+  const double limit = 2.5758293035489004 * std::sqrt(2.0 + 0.5 + 0.25);  // 1 % of a Gaussian is beyond
+  const Screen screen{0.01, kInfinity};
+  const auto at = [&](double a, double b, const Screen& with) {
+    return central_kalman(model, Matrix{{a, b}}, Vector::Zero(1), 2.0, with)(1, 0);
+  };
+  CHECK(at(limit * 0.999, 0.3, screen) == at(limit * 0.999, 0.3, {}));
+  CHECK(at(limit * 1.001, 0.3, screen) == at(kNaN, 0.3, {}));
+  CHECK(at(-1e200, 1e200, screen) == 0.0);
+}
+
+TEST_CASE("screens that mean nothing are refused") {
+  const Model model = Plant().model();
+  const auto says = [&](const Screen& screen, const char* words) {
+    CHECK_THROWS_WITH_AS(central_kalman(model, Matrix::Zero(1, 3), Vector::Zero(2), 1.0, screen),
+                         doctest::Contains(words), InvalidInput);
+  };
+  says({1.0, kInfinity}, "gate: got 1");
+  says({-0.1, kInfinity}, "gate: got -0.1");
+  says({kNaN, kInfinity}, "gate: got nan");
+  says({0.0, 0.0}, "huber: got 0");
+  says({0.0, kNaN}, "huber: got nan");
+  says({0.1, 1.0}, "expected one of them");
+}

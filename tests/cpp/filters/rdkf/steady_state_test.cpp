@@ -81,6 +81,19 @@ TEST_CASE("slow modes: integrators at a small period in any units, and very smal
   }
 }
 
+TEST_CASE("chains of integrators that take more samples than there are sweeps") {
+  // Variances of x(t) by doubling with 80 digits.
+  const Vector right{{1.62782170507856, 3761.65230828906, 17769.9196031768, 28986.9169923024,
+                      17710.6932161599, 3736.16868650233}};
+  Matrix A = Matrix::Identity(6, 6);
+  A.diagonal(1).setConstant(1e-3);
+  const Setting s = alone(A, Matrix{{1.0, 0.0, 0.0, 0.0, 0.0, 0.0}}, 1.0);
+  CHECK((steady_state(s).Pbar[0].diagonal() - right).cwiseQuotient(right).cwiseAbs().maxCoeff() < 1e-12);
+  A.diagonal(1).setConstant(1e-5);
+  CHECK_THROWS_WITH_AS(steady_state(alone(A, Matrix{{1.0, 0.0, 0.0, 0.0, 0.0, 0.0}}, 1.0)),
+                       doctest::Contains("take a longer period"), InvalidInput);
+}
+
 TEST_CASE("a network of slow modes keeps (5), and more noise never gives less error") {
   Rng rng(9);
   const Model model = covariance_model(rng, 2, 4, 0.9);
