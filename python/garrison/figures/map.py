@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from garrison.families import family_of
 from garrison.figures.errors import error_figure
 from garrison.figures.style import LOOKS, plain
 from garrison.jobs import Row
@@ -16,7 +17,7 @@ from garrison.verdict import Verdict
 def final_verdicts(run: Run) -> list[Verdict]:
     """Per agent: what the network says of it at the end of the first trial."""
     assert run.verdict is not None
-    accused = run.first_accused()
+    accused = run.first_accused() if family_of(run.filter).proves else {}  # a proof holds for ever, an alarm does not
     return [Verdict.ATTACKED if i in accused else Verdict(int(v)) for i, v in enumerate(run.verdict[0, -1])]
 
 
@@ -31,6 +32,17 @@ def overview_figure(scenario: Scenario, rows: list[Row], signal: float | None) -
         error_figure(scenario, rows, signal, right)
     figure.suptitle(plain(scenario.title), fontsize=13)
     return figure
+
+
+#: where the name of an agent stands
+_BELOW = {"xytext": (0, -19), "textcoords": "offset points", "ha": "center", "va": "top"}
+
+
+def _outside(place: Any) -> dict[str, Any]:
+    """Beside an agent on the circle, away from its lines."""
+    side = "center" if abs(place[0]) < 0.3 else "left" if place[0] > 0 else "right"
+    level = "center" if abs(place[1]) < 0.3 else "bottom" if place[1] > 0 else "top"
+    return {"xytext": tuple(13.0 * place), "textcoords": "offset points", "ha": side, "va": level}
 
 
 def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
@@ -53,7 +65,7 @@ def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
         ax.scatter(*place[ring].T, s=520, zorder=2, label="actually attacked", **look)
     for i, name in enumerate(scenario.names):
         full = plain(scenario.places[i] if scenario.places else name)
-        spot = {"xytext": (0, -19), "textcoords": "offset points", "ha": "center", "va": "top"}
+        spot = _outside(place[i]) if scenario.positions is None else _BELOW
         ax.annotate(full, place[i], fontsize=9, zorder=4, **spot)
     if scenario.positions is None:
         ax.set_axis_off()
@@ -62,6 +74,6 @@ def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
         ax.set_ylabel("kilometres north of the centre")
         ax.spines[["top", "right"]].set_visible(False)
     ax.set_aspect("equal")
-    ax.margins(0.12)
+    ax.margins(0.12 if scenario.positions is not None else 0.22)
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9)
     return figure
