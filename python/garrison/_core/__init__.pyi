@@ -572,7 +572,7 @@ class Agent:
     @property
     def accused(self) -> list[int]:
         """
-        Agents that this one believes to be attacked.
+        Agents that this one has accused.
         """
     @property
     def bound(self) -> float: ...

@@ -49,11 +49,11 @@ def label_ends(ax: Any) -> None:
     ends = []
     for line in lines:
         if _is_vertical(line):
-            place, level = line.get_xdata()[0], ax.get_xaxis_transform()
+            place, level = line.get_xdata(orig=False)[0], ax.get_xaxis_transform()
             look = {"xytext": (3, -2), "textcoords": "offset points", "va": "top", "fontsize": 8}
             ax.annotate(line.get_label(), (place, 1.0), xycoords=level, color=line.get_color(), **look)
             continue
-        y = np.asarray(line.get_ydata(), dtype=float)
+        y = np.asarray(line.get_ydata(orig=False), dtype=float)
         known = y[np.isfinite(y)]
         if len(known):
             at = ax.transAxes.inverted().transform(ax.transData.transform((0.0, known[-1])))[1]
@@ -66,7 +66,7 @@ def label_ends(ax: Any) -> None:
 
 
 def _is_vertical(line: Any) -> bool:
-    x = line.get_xdata()
+    x = line.get_xdata(orig=False)
     return len(x) == 2 and x[0] == x[1]
 
 

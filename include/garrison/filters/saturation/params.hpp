@@ -12,7 +12,7 @@ inline auto Saturation::Params::fields() {
           field(&Params::threshold, {.name = "threshold",
                                      .symbol = "beta",
                                      .unit = "measurement",
-                                     .doc = "largest innovation that is used in full; inf = never saturate. "
+                                     .doc = "innovations above this are clipped; inf = never. "
                                             "May be left out with adaptive = true",
                                      .least = 0.0,
                                      .open = true})),
