@@ -10,8 +10,8 @@ ROOT = Path(__file__).parents[2]
 SCRIPTS = ROOT / "examples" / "gallery"
 _HEAD = """# Gallery
 
-Every picture is made by the code above it when this page is built; the scripts are in `examples/gallery` and run from the root
-of the source tree. [Examples](../examples.md) lists the larger ones.
+Every picture is made by the code above it when this page is built; the scripts are in `examples/gallery` and run from
+the root of the source tree. [Examples](../examples.md) lists the larger ones.
 """
 
 

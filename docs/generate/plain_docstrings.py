@@ -25,9 +25,11 @@ def _split(lines: list[str]) -> tuple[list[str], list[tuple[str, list[str]]]]:
         for k, line in enumerate(lines[:-1])
         if line in _SECTIONS and lines[k + 1].strip() and not lines[k + 1].strip("-")
     ]
+    if not heads:
+        return lines, []
     ends = [*heads[1:], len(lines)]
     sections = [(lines[k], lines[k + 2 : end]) for k, end in zip(heads, ends, strict=True)]
-    return (lines[: heads[0]] if heads else lines), sections
+    return lines[: heads[0]], sections
 
 
 def _definitions(body: list[str]) -> list[str]:

@@ -10,6 +10,8 @@ import pytest
 from conftest import ROOT
 
 FUNCTIONS = [name for name in gr.__all__ if inspect.isfunction(getattr(gr, name))]
+#: classes of the core that everybody makes
+CLASSES = {"Model": gr.Model, "Network": gr.Network}
 
 
 def section(function: Callable[..., Any], name: str) -> list[str]:
@@ -53,6 +55,13 @@ def test_results_and_refusals_are_documented(name: str) -> None:
             assert issubclass(getattr(gr, line), Exception)
 
 
+@pytest.mark.parametrize("name", CLASSES)
+def test_constructors_are_documented(name: str) -> None:
+    taken = [p for p in inspect.signature(CLASSES[name].__init__).parameters if p != "self"]
+    assert list(documented(CLASSES[name])) == taken
+    assert section(CLASSES[name], "Raises")
+
+
 def test_a_missing_parameter_is_seen() -> None:
     def function(a: int, b: int) -> None:
         """One.
@@ -88,3 +97,6 @@ def test_the_site_shows_sections_as_lists(monkeypatch: pytest.MonkeyPatch) -> No
     assert "**Parameters**\n\n**x0** : (n,) array\n   Start\\_value." in text
     assert "**InvalidInput**\n   It does not fit." in text
     assert "-----" not in text
+    plain = ["One.", "", "Two."]
+    plain_docstrings.process(None, "", "", None, None, plain)
+    assert plain == ["One.", "", "Two.", ""]
