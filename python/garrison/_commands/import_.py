@@ -158,7 +158,7 @@ def _pandapower(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentP
         "--units", type=whole_number, metavar="COUNT", help="phasor units, at the buses with most lines"
     )
     chosen.add_argument("--at", nargs="+", metavar="BUS", help="buses with a phasor unit; default all")
-    own.add_argument("--steps", type=whole_number, default=50, help="samples to simulate (50)")
+    own.add_argument("--steps", type=whole_number, help="samples to simulate (50; 10 from 200 buses on)")
     own.add_argument("--angle-noise", type=number, default=0.002, help="standard deviation, rad (0.002)")
     own.add_argument("--flow-noise", type=number, default=0.02, help="standard deviation, per unit (0.02)")
     own.add_argument("--wander", type=number, default=0.001, help="of an angle per sample, rad (0.001)")

@@ -34,6 +34,8 @@ def overview_figure(scenario: Scenario, rows: list[Row], signal: float | None) -
     return figure
 
 
+#: most agents whose names can be read
+_READABLE = 40
 #: where the name of an agent stands
 _BELOW = {"xytext": (0, -19), "textcoords": "offset points", "ha": "center", "va": "top"}
 
@@ -53,17 +55,26 @@ def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
     if place is None:
         angle = 2 * np.pi * np.arange(len(scenario.names)) / len(scenario.names)
         place = np.column_stack([np.sin(angle), np.cos(angle)])
+    scale = min(1.0, _READABLE / len(scenario.names))  # of marks and lines: many agents are small
     for i, j in scenario.network.edges:
-        ax.plot(*place[[i, j]].T, color="#bbbbbb", linewidth=1, zorder=1)
+        ax.plot(*place[[i, j]].T, color="#bbbbbb", linewidth=max(scale, 0.25), zorder=1)
     verdicts = final_verdicts(run)
     for verdict, (marker, colour, label) in LOOKS.items():
         group = [i for i, v in enumerate(verdicts) if v == verdict]
         if group:
-            ax.scatter(*place[group].T, s=170, marker=marker, color=colour, edgecolor="white", zorder=3, label=label)
+            ax.scatter(
+                *place[group].T,
+                s=max(170 * scale, 5),
+                marker=marker,
+                color=colour,
+                edgecolor="white" if scale == 1.0 else "none",
+                zorder=3,
+                label=label,
+            )
     if ring := scenario.hit:
         look = {"facecolor": "none", "edgecolor": "black", "linewidth": 1.4}
-        ax.scatter(*place[ring].T, s=520, zorder=2, label="actually attacked", **look)
-    for i, name in enumerate(scenario.names):
+        ax.scatter(*place[ring].T, s=max(520 * scale, 16), zorder=2, label="actually attacked", **look)
+    for i, name in enumerate(scenario.names if len(scenario.names) <= _READABLE else []):
         full = plain(scenario.places[i] if scenario.places else name)
         spot = _outside(place[i]) if scenario.positions is None else _BELOW
         ax.annotate(full, place[i], fontsize=9, zorder=4, **spot)
@@ -75,5 +86,7 @@ def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
         ax.spines[["top", "right"]].set_visible(False)
     ax.set_aspect("equal")
     ax.margins(0.12 if scenario.positions is not None else 0.22)
-    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9)
+    ax.legend(
+        loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9, markerscale=scale**-0.5
+    )
     return figure

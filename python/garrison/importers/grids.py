@@ -25,6 +25,8 @@ SOURCE = (
 )
 #: up to here every bus is an agent; up to the second number areas are, whose filter is designed for all states
 _SMALL, _MIDDLE, _AREAS = 40, 200, 8
+#: standard deviations of an innovation that are usual
+_SIGMAS = 3.0
 _NOTES = [
     "a grid file holds no recordings: the run is simulated, from the angles of the linear (DC) power flow; recordings "
     "go into [data] file, one column per measurement in the order of outputs in model.json",
@@ -36,13 +38,14 @@ _NOTES = [
 class Assumptions:
     """angle, flow: standard deviations of phasor units, rad and per unit. wander: of an angle per sample, rad.
 
-    steps: samples to simulate. areas: agents that the buses are divided among; None: by the size of the grid.
+    steps: samples to simulate; None: 50, or 10 of a large grid, whose estimates take room. areas: agents that the buses
+    are divided among; None: by the size of the grid.
     """
 
     angle: float = 0.002
     flow: float = 0.02
     wander: float = 0.001
-    steps: int = 50
+    steps: int | None = None
     areas: int | None = None
 
 
@@ -79,8 +82,8 @@ def import_pandapower(
         "title": f"{grid.title}: {n} buses, {count(sum(map(len, members)), 'phasor unit')}",
         "model": {"file": "model.json"},
         "network": {"edges": [list(e) for e in links_of(grid, members)]},
-        "filter": _filter(n, assumed),
-        "run": {"steps": assumed.steps, "x0": angles, "start": angles},
+        "filter": _filter(n, max(map(len, C))),
+        "run": {"steps": assumed.steps or (50 if n <= _MIDDLE else 10), "x0": angles, "start": angles},
     }
     unseen = [grid.names[b] for b in np.flatnonzero(~np.any([(c != 0).any(axis=0) for c in C], axis=0))]
     facts = [
@@ -92,9 +95,11 @@ def import_pandapower(
     return Bundle(tables, SOURCE, None, model, facts, _NOTES)
 
 
-def _filter(n: int, assumed: Assumptions) -> dict[str, Any]:
+def _filter(n: int, rows: int) -> dict[str, Any]:
+    """The filter of n buses; rows: measurements of the largest agent, whose whole innovation is clipped at once."""
     if n <= _MIDDLE:
-        return {"name": "rdkf", "label": "resilient Kalman", "penalty": "huber"}
+        weight = round(_SIGMAS * float(np.sqrt(rows)), 1)
+        return {"name": "rdkf", "label": "resilient Kalman", "penalty": "huber", "weight": weight}
     return {"name": "scalar_gain", "label": "consensus, unprotected", "rounds": 5}
 
 

@@ -46,6 +46,9 @@ def import_bag(paths: Sequence[Path], topics: Sequence[str] = (), assumed: Assum
 
     Raises IoError or InvalidInput where there is nothing to use.
     """
+    alone = paths[0].suffix == ".mcap" and not (paths[0].parent / "metadata.yaml").exists()
+    if alone and len(paths) == 1:
+        return import_mcap(paths[0], topics, assumed)
     return _bundle(str(paths[0]), bag_messages(paths, set(KINDS)), topics, assumed or Assumptions())
 
 
