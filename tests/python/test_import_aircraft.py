@@ -144,6 +144,7 @@ def test_old_positions_and_repeated_velocities_are_missing(tmp_path: Path) -> No
         ('{"icao24": "a", "path": []}', "without speeds"),
         ('{"icao": "a", "trace": [[0, 1]], "timestamp": 5}', "a list that starts with"),
         ('{"icao": "a", "trace": []}', "without timestamp"),
+        ('{"icao": "a", "trace": [[null, 1, 2, 3, 4, 5, 0]], "timestamp": 5}', "as its first value"),
         ("time,lat,lon,velocity,heading\n1,x,8,200,90\n2,47,8,200,90\n", "the latitude 'x'"),
         ("time,lat,lon,velocity,heading\n1,97,8,200,90\n2,47,8,200,90\n", "the position 97, 8"),
         ("time,icao24,lat,lon,velocity,heading\n1,a,47,8,200,90\n2,b,47,8,200,90\n", "choose with --aircraft"),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import ROOT
 from garrison import _core
 from garrison.cli import main
 from garrison.importers.bundle import model_file, sparse
@@ -114,3 +115,27 @@ def test_toml_documents_are_read_back() -> None:
 
     tables = {"title": 'a "b" \\ é', "model": {"A": [[1.0, 0.5]], "ok": True}, "attack": [{"k": 1e-6}, {"k": 2}]}
     assert tomllib.loads(document(tables, ["two\nlines"])) == tables
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        ("adsb adsb_sample.json.gz --period 0", "--period: got 0, expected a finite number > 0"),
+        ("adsb adsb_sample.json.gz --position-noise -1", "--position-noise: got -1"),
+        ("adsb adsb_sample.json.gz --false-alarm 1", "--false-alarm: got 1, expected a probability"),
+        ("openacc openacc_sample.csv --measurement-noise nan", "--measurement-noise: got nan"),
+        ("openacc openacc_sample.csv --from 1000", "--from, --to: got 0 samples, expected at least two"),
+        ("mcap robot_sample_ros2/robot_sample_ros2.mcap --period inf", "--period: got inf"),
+        ("rosbag robot_sample.bag --heading-noise 0", "--heading-noise: got 0"),
+        ("csv openacc_sample.csv --factors 0", "--factors: got 0, expected a whole number >= 1"),
+        ("pandapower case14 --steps 0", "--steps: got 0, expected a whole number >= 1"),
+    ],
+)
+def test_options_without_sense_are_refused(
+    tmp_path: Path, command: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    kind, file, *options = command.split()
+    source = file if kind == "pandapower" else str(ROOT / "examples" / "import" / file)
+    assert main(["import", kind, source, *options, "-o", str(tmp_path / "out")]) == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

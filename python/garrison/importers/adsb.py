@@ -11,6 +11,7 @@ from garrison import _core
 from garrison.importers.adsb_files import Track, read_track
 from garrison.importers.bundle import Bundle, Measurements, model_file
 from garrison.importers.earth import Plane
+from garrison.importers.limits import require_positive, require_probability
 from garrison.words import refusal
 
 Array = NDArray[np.float64]
@@ -42,6 +43,11 @@ class Assumptions:
     velocity: float = 3.0
     manoeuvre: float = 3.0
     false_alarm: float = 1e-6
+
+    def __post_init__(self) -> None:
+        require_positive(period=self.period, oldest=self.oldest, manoeuvre=self.manoeuvre)
+        require_positive(position_noise=self.position, velocity_noise=self.velocity)
+        require_probability("false-alarm", self.false_alarm)
 
 
 def import_adsb(path: Path, aircraft: str | None = None, assumed: Assumptions | None = None) -> Bundle:

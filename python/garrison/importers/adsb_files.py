@@ -247,7 +247,10 @@ def _of_trace(path: Path, plain: dict[str, Any]) -> list[list[Any]]:
         if not isinstance(point, list) or len(point) < len(_TRACE):
             raise refusal(str(path), f"the point {shown(point)}", f"a list that starts with {', '.join(_TRACE)}")
         values: dict[str, Any] = dict(zip(_TRACE, point, strict=False))
-        t = first + float(values["offset"])
+        offset = real(values["offset"])
+        if offset is None:
+            raise refusal(str(path), f"the point {shown(point)}", "seconds after the timestamp, as its first value")
+        t = first + offset
         rows.append([t, *(values[n] for n in ("lat", "lon", "alt", "gs", "track")), t])
     who = str(plain.get("icao", path.name.partition(".")[0]))
     head = ["time", "lat", "lon", "alt", "gs", "track", "last_position"]

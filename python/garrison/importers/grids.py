@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from garrison.importers.areas import areas_of, links_of
 from garrison.importers.bundle import Bundle, model_file
 from garrison.importers.grid_files import Grid, read_grid_case
+from garrison.importers.limits import require_positive
 from garrison.sizes import require_memory
 from garrison.words import count, refusal
 
@@ -47,6 +48,11 @@ class Assumptions:
     wander: float = 0.001
     steps: int | None = None
     areas: int | None = None
+
+    def __post_init__(self) -> None:
+        require_positive(angle_noise=self.angle, flow_noise=self.flow, wander=self.wander)
+        if self.steps is not None and self.steps < 1:
+            raise refusal("--steps", str(self.steps), "a whole number >= 1")
 
 
 def import_pandapower(

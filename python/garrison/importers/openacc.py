@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison.importers.bundle import Bundle, Measurements
+from garrison.importers.limits import require_positive
 from garrison.importers.openacc_files import Convoy, read_convoy
 from garrison.words import count, refusal
 
@@ -34,6 +35,9 @@ class Noise:
     measurement: float = 2.0
     initial: float = 20.0
     attacked: int = 1
+
+    def __post_init__(self) -> None:
+        require_positive(process_noise=self.process, measurement_noise=self.measurement, initial_error=self.initial)
 
 
 def import_openacc(

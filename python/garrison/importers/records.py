@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from garrison.importers.bundle import Bundle
+from garrison.importers.limits import require_positive, require_probability
 from garrison.tables import Records, read_records
 from garrison.tables.clock import Moment
 from garrison.words import count, refusal
@@ -29,6 +30,15 @@ class Choice:
     stations: Path | None = None
     radius: float | None = None
     false_alarm: float = 1e-4
+
+    def __post_init__(self) -> None:
+        require_probability("false-alarm", self.false_alarm)
+        if self.factors < 1:
+            raise refusal("--factors", str(self.factors), "a whole number >= 1")
+        if self.harmonics is not None and self.harmonics < 0:
+            raise refusal("--harmonics", str(self.harmonics), "a whole number >= 0")
+        if self.radius is not None:
+            require_positive(radius=self.radius)
 
 
 @dataclass

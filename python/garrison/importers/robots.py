@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.importers.bundle import Bundle, Measurements, model_file
+from garrison.importers.limits import require_positive, require_probability
 from garrison.importers.robot_files import Message, bag_messages, mcap_messages
 from garrison.importers.robot_frames import Signal, in_one_frame
 from garrison.importers.robot_signals import KINDS, read_topics
@@ -39,6 +40,12 @@ class Assumptions:
     noise: dict[str, float] = field(
         default_factory=lambda: {"x": 0.5, "y": 0.5, "heading": 0.1, "vx": 0.3, "vy": 0.3, "rate": 0.1}
     )
+
+    def __post_init__(self) -> None:
+        require_positive(period=self.period, align=self.window, acceleration=self.acceleration)
+        require_positive(position_noise=min(self.noise["x"], self.noise["y"]), heading_noise=self.noise["heading"])
+        require_positive(velocity_noise=min(self.noise["vx"], self.noise["vy"]), rate_noise=self.noise["rate"])
+        require_probability("false-alarm", self.false_alarm)
 
 
 def import_bag(paths: Sequence[Path], topics: Sequence[str] = (), assumed: Assumptions | None = None) -> Bundle:
