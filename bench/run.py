@@ -49,6 +49,18 @@ def show(console: Console, title: str, rows: list[dict[str, Any]]) -> None:
     console.print(table)
 
 
+def machine() -> str:
+    """Processor and system, as the system tells them."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return (
+        f"{names[0] if names else platform.processor() or platform.machine()}, {platform.system()} {platform.release()}"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=9)
@@ -63,6 +75,7 @@ def main() -> None:
             "scipy": scipy.__version__,
             "python": platform.python_version(),
         },
+        "machine": machine(),
         "load": os.getloadavg(),
         "cores": os.cpu_count(),
         "limits": limits(),

@@ -349,8 +349,7 @@ void bind_agent(py::module_& m) {
           },
           "(n,)")
       .def_property_readonly(
-          "accused", [](const PyAgent& a) { return a->accused(); },
-          "Agents that this one believes to be attacked.")
+          "accused", [](const PyAgent& a) { return a->accused(); }, "Agents that this one has accused.")
       .def_property_readonly(
           "control", [](const PyAgent& a) { return a->control(); },
           "Control input applied until the next sample; nan if the family has none.")

@@ -205,23 +205,40 @@ Model model_from(const py::dict& given) {
 }  // namespace
 
 void bind_model(py::module_& m) {
-  py::class_<Model> model(
-      m, "Model",
-      "The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.\n\n"
-      "A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.\n"
-      "process_bound: ||w|| <= it, >= 0, None or nan = not known. measurement_bound: |v_i| <= it, a number "
-      "or\n"
-      "one per agent. process_covariance: (n, n), a number (times the identity), or (N, n, n) where each "
-      "agent\n"
-      "takes another one for w (no noise is simulated from those). measurement_covariance: a number, or one\n"
-      "(m_i, m_i) array or number per agent.\n"
-      "states: n names (default x1, x2, ..). outputs: one name per measurement of the whole network, agent "
-      "by\n"
-      "agent. sources: who can falsify each measurement; several outputs of one receiver have one source.\n"
-      "units: a dict from names of states and outputs to units, or one unit for all. exposed: per agent, "
-      "how\n"
-      "many of its first outputs an attacker can reach (default: all).\n"
-      "Raises InvalidInput when shapes or names do not fit or a number is not finite.");
+  py::class_<Model> model(m, "Model",
+                          R"(The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.
+
+Parameters
+----------
+A : (n, n) array
+    Of the plant.
+C : sequence of (m_i, n) arrays, or (N, n) array
+    One per agent (m_i = 0: a relay), or rows.
+process_bound : float, optional
+    ||w|| <= it, >= 0; None or nan = not known.
+measurement_bound : float or (N,) array, optional
+    |v_i| <= it; one for all, or one per agent.
+process_covariance : (n, n) array, float or (N, n, n) array, optional
+    A number is times the identity; N of them where each agent takes another one for w (no noise is simulated from
+    those).
+measurement_covariance : float, or one (m_i, m_i) array or number per agent, optional
+    Of v_i.
+states : n names, optional
+    Default x1, x2, ..
+outputs : names, optional
+    One per measurement of the whole network, agent by agent.
+sources : names, optional
+    Who can falsify each measurement; several outputs of one receiver have one source.
+units : dict or str, optional
+    From names of states and outputs to units, or one unit for all.
+exposed : sequence of int, optional
+    Per agent, how many of its first outputs an attacker can reach; default all.
+
+Raises
+------
+InvalidInput
+    Shapes or names do not fit, or a number is not finite.
+)");
   model
       .def(py::init(&make_model), py::arg("A"), py::arg("C"), py::kw_only(),
            py::arg("process_bound") = py::none(), py::arg("measurement_bound") = py::none(),

@@ -75,17 +75,26 @@ void bind_matrices(Class& network) {
 
 void bind_network(py::module_& m) {
   py::class_<Network> network(m, "Network",
-                              "Who hears whom. Immutable.\n\n"
-                              "edges: (sender, receiver) pairs of numbers or names, a networkx graph, or an "
-                              "adjacency matrix (sparse,\n"
-                              "or dense with more than two rows; see from_adjacency). agents: needed when "
-                              "the last ones have no edge.\n"
-                              "names: one per agent. Of a graph, labels 0..N-1 are the numbers of the "
-                              "agents; other whole numbers are\n"
-                              "sorted, other labels keep their order, and the labels become the names.\n"
-                              "Pairs given twice count once. Raises InvalidInput on a self-loop, a weight, "
-                              "an unknown name or an index\n"
-                              "out of range.");
+                              R"(Who hears whom. Immutable.
+
+Parameters
+----------
+edges : sequence of pairs, networkx graph, or square matrix
+    (sender, receiver) pairs of numbers or names, a graph, or an adjacency matrix (sparse, or dense with more than two
+    rows; see from_adjacency). Pairs given twice count once.
+agents : int, optional
+    Needed when the last ones have no edge.
+directed : bool
+    A pair is one way; else both ways.
+names : names, optional
+    One per agent. Of a graph, labels 0..N-1 are the numbers of the agents; other whole numbers are sorted, other labels
+    keep their order, and the labels become the names.
+
+Raises
+------
+InvalidInput
+    A self-loop, a weight, an unknown name, or an index out of range.
+)");
   network
       .def(py::init(&networks::make_network), py::arg("edges"), py::arg("agents") = py::none(),
            py::arg("directed") = false, py::arg("names") = py::none())

@@ -182,9 +182,9 @@ bool flag(const std::string& which, py::handle given) {
 }
 
 std::string words(const std::string& which, py::handle given) {
-  if (!PyUnicode_Check(given.ptr())) refuse(which, shown(given), "a text");
+  if (!PyUnicode_Check(given.ptr())) refuse(which, shown(given), "a string");
   const py::object bytes = attempt([&] { return py::object(given.attr("encode")("utf-8")); });
-  if (!bytes) refuse(which, "a text that is not valid Unicode", "a text");
+  if (!bytes) refuse(which, "a string that is not valid Unicode", "a string");
   return bytes.cast<std::string>();
 }
 

@@ -52,7 +52,7 @@ std::vector<py::object> sorted_values(const Front& front, const Call& call) {
     const Argument& argument = front.takes[k];
     const bool self = front.method && k == 0;
     const std::string which = front.name + "." + argument.name;
-    if (!values[k] && argument.required) refuse(which, "nothing", argument.type.expected());
+    if (!values[k] && argument.required) refuse(which, "no value", argument.type.expected());
     if (!values[k]) continue;
     all[k] = self && front.name.find('.') == std::string::npos  // a constructor: the object is still empty
                  ? py::reinterpret_borrow<py::object>(values[k])

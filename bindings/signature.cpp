@@ -122,7 +122,7 @@ std::string ArgumentType::expected() const {
       case Kind::flag:
         return "True or False";
       case Kind::text:
-        return "a text";
+        return "a string";
       case Kind::array:
         return "an array of numbers";
       case Kind::matrix:

@@ -16,7 +16,7 @@ def page() -> str:
     versions = ", ".join(f"{name} {version}" for name, version in found["versions"].items())
     parts = [
         "# Benchmarks\n",
-        f"Measured on {newest.stem} on a machine with {found['cores']} cores under a load of "
+        f"Measured on {newest.stem} on a machine with {found['cores']} cores{_machine(found)} under a load of "
         f"{found['load'][0]:.1f}; {versions}. `make bench` measures anew and writes `bench/results`. "
         "Figures of one table were measured in turns: `ratio` is to the first row (more is slower), `spread` its range "
         "over the repetitions; ratios are steadier than times.\n",
@@ -27,6 +27,10 @@ def page() -> str:
         if isinstance(rows, list) and rows and isinstance(rows[0], dict):
             parts.append(f"## {cell(title)}\n\n{_rows(rows)}")
     return "\n".join(parts)
+
+
+def _machine(found: dict[str, Any]) -> str:
+    return f" ({cell(found['machine'])})" if "machine" in found else ""
 
 
 def _rows(rows: list[dict[str, Any]]) -> str:

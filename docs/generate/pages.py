@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from generate import benchmarks, commands, parameters, python_api, scenario
+from generate import benchmarks, commands, gallery, parameters, python_api, scenario
 
 
 def write(folder: Path) -> None:
@@ -13,6 +13,7 @@ def write(folder: Path) -> None:
     texts = {
         "scenario.md": scenario.page(),
         "commands.md": commands.page(),
+        "gallery.md": gallery.page(folder),
         "attacks.md": parameters.attacks_page(),
         "benchmarks.md": benchmarks.page(),
         "python_rest.md": python_api.rest(),

@@ -34,8 +34,9 @@ MEANINGS = {
         "root": "true: work with square roots of the records (wind speeds are then close to Gaussian)",
         "factor": "multiplies every record first, to change units",
         "vehicles": "number of vehicles in a string: position (m) and velocity (m/s) each",
+        "names": "with `vehicles`: their names, for tables and pictures",
         "inputs": "true: recorded control inputs are part of the data",
-        "file": "a model file that `garrison fit -o model.json` wrote",
+        "file": "a [model file](../files.md#model-json): `garrison fit -o model.json` and `garrison import` write them",
     },
     "network": {
         "edges": "pairs of agents, by number (from 0) or by name",

@@ -155,7 +155,7 @@ def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any) ->
         attacked = filter.params.get("attacked")
     if attacked is None:
         advice = "say how many sources may be attacked at a time"
-        raise refusal("attacked", f"nothing, with certificate {name!r}", "a whole number >= 0", advice)
+        raise refusal("attacked", f"no value, with certificate {name!r}", "a whole number >= 0", advice)
     return {
         "certificate": name,
         "failure": number("failure", failure),

@@ -62,10 +62,31 @@ def calibrate(
 ) -> Calibration:
     """Set a filter's nominal false-alarm rate so that the rate asked for is what clean records give.
 
-    measurements: (samples, outputs) of records without attacks that the model was NOT fitted to, nan = missing.
-    attacked: most sensors attacked, for the certificates' levels. The nominal rate is the one at which the empirical
-    quantile of statistic / threshold over all sensors and samples is 1 (split conformal). Raises InvalidInput when the
-    filter has no false_alarm, or for fewer than 1/false_alarm tests.
+    The nominal rate is the one at which the empirical quantile of statistic / threshold over all sensors and samples is
+    1 (split conformal).
+
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    filter : Filter
+        With a parameter false_alarm.
+    measurements : (samples, outputs) array
+        Of records without attacks that the model was NOT fitted to, nan = missing.
+    attacked : int
+        Most sensors attacked, for the certificates' levels.
+
+    Returns
+    -------
+    Calibration
+        What to set, and what was got before and after.
+
+    Raises
+    ------
+    InvalidInput
+        The filter has no false_alarm, there are fewer than 1/false_alarm tests, or something does not fit.
     """
     require_order("calibrate", model, network, filter)
     y = numbers("measurements", measurements)

@@ -82,12 +82,35 @@ def check(
 ) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
 
-    After `seconds` (> 0) searches end with a certified interval and say so; computations that have no partial result
-    raise InvalidInput. Ctrl-C ends both. Without `seconds`, searches end after about a second of work, with the same
-    result on every machine. certificate, failure, attacked: as in `prepare`; the bounds to expect are then among the
-    quantities.
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    filter : Filter
+        One of garrison.filters, or a filter of your own.
+    seconds : float
+        > 0. After it searches end with a certified interval and say so; computations that have no partial result
+        raise InvalidInput. Without it, searches end after about a second of work, with the same result on every
+        machine. Ctrl-C ends both.
+    certificate : {"none", "local", "flooded"}
+        What to certify at run time, see `prepare`.
+    failure : float
+        Probability in [0, 1), per agent and sample, that a certified bound is wrong; 0 = never, with bounded
+        noise.
+    attacked : int, optional
+        Most sources that lie, >= 0; default the filter's parameter of that name.
 
-    Raises InvalidInput when parameters, model and network do not fit together.
+    Returns
+    -------
+    Check
+        conditions, quantities, and `holds`: every required condition is met.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
     """
     require_order("check", model, network, filter)
     conditions, quantities = _core.check(model, network, filter, number("seconds", seconds))

@@ -19,6 +19,7 @@ from garrison._commands import (
     design,
     design_file,
     fit,
+    import_,
     init,
     run,
     structure,
@@ -28,7 +29,22 @@ from garrison._commands import (
 from garrison._commands import list as list_
 from garrison._commands.terminal import BUG, INTERRUPTED, OK, REFUSED
 
-COMMANDS = (init, run, sweep, compare, check, analyze, design, list_, verify, fit, calibrate, structure, design_file)
+COMMANDS = (
+    init,
+    run,
+    sweep,
+    compare,
+    check,
+    analyze,
+    design,
+    list_,
+    verify,
+    fit,
+    import_,
+    calibrate,
+    structure,
+    design_file,
+)
 #: environment variable that shows where a bug was met
 _DEBUG = "GARRISON_DEBUG"
 

@@ -83,13 +83,41 @@ def design(
 ) -> Designed:
     """The parameters of a filter that reach a goal, from its theorems.
 
-    goal: "error", the smallest certified error; "bytes", the fewest rounds whose certified error is at most
-    `error_at_most` (default: any); "liars", the smallest certified error with the most liars for which one exists.
-    attacked: liars to stand, >= 0 (not with "liars"). initial_error: bound on the distance of the common start from the
-    state, > 0. Rounds 1..most_rounds, Chebyshev-filtered or plain. Families: saturation, the one with a design in
-    closed form; the minimum is global.
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    family : str
+        "saturation", the one with a design in closed form; the minimum is global.
+    attacked : int, optional
+        Liars to stand, >= 0 (not with the goal "liars").
+    initial_error : float
+        Bound on the distance of the common start from the state, > 0.
+    goal : {"error", "bytes", "liars"}
+        "error": the smallest certified error; "bytes": the fewest rounds whose certified error is at most
+        `error_at_most`; "liars": the smallest certified error with the most liars for which one exists.
+    error_at_most : float, optional
+        With "bytes"; default any.
+    chebyshev : bool
+        Chebyshev-filtered rounds, or plain ones.
+    most_rounds : int
+        Rounds 1..most_rounds are tried.
+    curve : bool
+        Also the trade-off of rounds against error.
 
-    Raises InvalidInput when something does not fit, DesignInfeasible when no parameters exist; it says what would help.
+    Returns
+    -------
+    Designed
+        The filter, what it promises, and the curve.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit.
+    DesignInfeasible
+        No parameters exist; the message says what would help.
     """
     require_plant("design", model, network)
     family, goal, curve = arguments.text("family", family), arguments.text("goal", goal), arguments.flag("curve", curve)

@@ -104,22 +104,69 @@ def simulate(
 ) -> Run:
     """Simulate the plant, attack it, filter it.
 
-    steps: samples >= 1. attack: one or more, applied in order. x0: (n,) true initial state, default 0. start: (n,)
-    common initial estimate, or (N, n) one per agent, default 0; start_error moves it by a random vector of at most
-    that length per trial. noise: "uniform" within the model's bounds, "extreme" at them, "normal", "none", "auto";
-    families whose agents drive plants of their own have laws of their own, x0 (N, n), default: where they should be,
-    and take recorded disturbances, one row per time 0..steps, in place of a law (garrison.platoon).
-    first_trial: trial k of this run has the bits of trial first_trial + k of a run from 0, so that a run can be had in
-    parts; first_trial + trials <= 2^24.
-    link: drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says), cuts: a
-    list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of (sample,
-    round, sender, receiver). keep: of "estimate", "report", "signals", "measurements",
-    "details" (lists such as sets). threads: 0 = all cores it may use; the result does not depend on it; filters and
-    attacks of your own (garrison.Filter, garrison.attacks.custom) always run in one.
-    progress(done, total) is called at most once per percent. conditions: evaluate the filter's conditions first, and
-    put the required ones that are not met into the run's `warnings`. certificate, failure, attacked: what to certify at
-    run time (see garrison.prepare). design: made before of these very three (garrison.prepare does that).
-    Deterministic: equal arguments give bit-identical results. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    filter : Filter
+        One of garrison.filters, or a filter of your own.
+    steps : int
+        Samples, >= 1.
+    attack : Attack or sequence of them
+        Applied in order.
+    trials : int
+        Independent repetitions, >= 1.
+    first_trial : int
+        Trial k of this run has the bits of trial first_trial + k of a run from 0, so that a run can be had in
+        parts; first_trial + trials <= 2^24.
+    x0 : (n,) array, optional
+        True initial state, default 0; (N, n) in families whose agents drive plants of their own, default: where
+        they should be.
+    start : (n,) or (N, n) array, optional
+        Initial estimate, common or one per agent, default 0.
+    start_error : float
+        Moves `start` by a random vector of at most that length per trial, >= 0.
+    noise : {"auto", "uniform", "extreme", "normal", "none"} or array
+        "uniform" within the model's bounds, "extreme" at them. Families whose agents drive plants of their own
+        have laws of their own, and take recorded disturbances, one row per time 0..steps, in place of a law
+        (garrison.platoon).
+    seed : int
+        Of noise, attacks and links, >= 0. Equal arguments give bit-identical results.
+    link : dict, optional
+        drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says); cuts:
+        a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
+        (sample, round, sender, receiver).
+    keep : iterable of str
+        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets).
+    threads : int
+        0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
+        (garrison.Filter, garrison.attacks.custom) always run in one.
+    progress : callable, optional
+        progress(done, total) is called at most once per percent.
+    conditions : bool
+        Evaluate the filter's conditions first, and put the required ones that are not met into the run's
+        `warnings`.
+    certificate : {"none", "local", "flooded"}
+        What to certify at run time, see `prepare`.
+    failure : float
+        Probability in [0, 1), per agent and sample, that a certified bound is wrong; 0 = never, with bounded
+        noise.
+    attacked : int, optional
+        Most sources that lie, >= 0; default the filter's parameter of that name.
+    design : Design, optional
+        Made before of these very three (`prepare` does that).
+
+    Returns
+    -------
+    Run
+        Arrays (trial, time, agent, ..), time 0..steps.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
     """
     require_order("simulate", model, network, filter)
     steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
@@ -177,12 +224,66 @@ def replay(
     attacked: int | None = None,
     design: _core.Design | None = None,
 ) -> Run:
-    """Feed recorded measurements, (samples, outputs), nan or masked = missing; row r belongs to time r + 1.
+    """Feed recorded measurements to a filter.
 
-    A pandas table with columns named as the network's agents (or the model's outputs) is matched by name.
-    In families with a sample at the start (platoon) row r belongs to time r, and truth is (samples, N, n).
-    truth: (samples + 1, n), from time 0, or None. Both may have a leading axis of trials, one log per trial;
-    otherwise the one log serves all `trials` (default 1). Attacks come on top of the log. The rest as in simulate.
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    filter : Filter
+        One of garrison.filters, or a filter of your own.
+    measurements : (samples, outputs) array
+        nan or masked = missing; row r belongs to time r + 1. A pandas table with columns named as the network's
+        agents (or the model's outputs) is matched by name. In families with a sample at the start (platoon) row r
+        belongs to time r. A leading axis of trials is allowed, one log per trial; otherwise the one log serves
+        all trials.
+    truth : (samples + 1, n) array, optional
+        From time 0; (samples, N, n) in families with a sample at the start. May have a leading axis of trials.
+    start : (n,) or (N, n) array, optional
+        Initial estimate, common or one per agent, default 0.
+    attack : Attack or sequence of them
+        On top of the log, in order.
+    trials : int, optional
+        Repetitions, default one per log.
+    first_trial : int
+        As in `simulate`.
+    seed : int
+        Of noise, attacks and links, >= 0. Equal arguments give bit-identical results.
+    link : dict, optional
+        drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says); cuts:
+        a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
+        (sample, round, sender, receiver).
+    keep : iterable of str
+        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets).
+    threads : int
+        0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
+        (garrison.Filter, garrison.attacks.custom) always run in one.
+    progress : callable, optional
+        progress(done, total) is called at most once per percent.
+    conditions : bool
+        Evaluate the filter's conditions first, and put the required ones that are not met into the run's
+        `warnings`.
+    certificate : {"none", "local", "flooded"}
+        What to certify at run time, see `prepare`.
+    failure : float
+        Probability in [0, 1), per agent and sample, that a certified bound is wrong; 0 = never, with bounded
+        noise.
+    attacked : int, optional
+        Most sources that lie, >= 0; default the filter's parameter of that name.
+    design : Design, optional
+        Made before of these very three (`prepare` does that).
+
+    Returns
+    -------
+    Run
+        Arrays (trial, time, agent, ..).
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
     """
     require_order("replay", model, network, filter)
     y = numbers("measurements", matched("measurements", measurements, output_names(model, network)))
@@ -217,14 +318,36 @@ def central_kalman(
     gate: float | None = None,
     huber: float | None = None,
 ) -> Array:
-    """Estimates (samples + 1, n) of a central Kalman filter that sees all measurements (samples, outputs).
+    """Estimates of a central Kalman filter that sees all measurements.
 
-    Unprotected it is the ideal that distributed filters are compared with; two protections are those in use today.
-    gate: probability, 0..1, at which an honest output is left out by a chi-square test of its own innovation. huber:
-    deviations, > 0 (1.345 is usual), from which on a larger residual pulls no harder (M-estimation by iterated weights,
-    Durovic and Kovacevic 1999). At most one of them; neither has a bound.
-    Needs the model's covariances; nan or masked = missing. A pandas table with columns named as the model's outputs is
-    matched by name.
+    Unprotected it is the ideal that distributed filters are compared with; `gate` and `huber` are the protections
+    in use today. At most one of them; neither has a bound.
+
+    Parameters
+    ----------
+    model : Model
+        With covariances.
+    measurements : (samples, outputs) array
+        nan or masked = missing. A pandas table with columns named as the model's outputs is matched by name.
+    start : (n,) array, optional
+        Initial estimate, default 0.
+    start_variance : float
+        Variance of every entry of `start`, >= 0.
+    gate : float, optional
+        Probability, 0..1, at which an honest output is left out by a chi-square test of its own innovation.
+    huber : float, optional
+        Deviations, > 0 (1.345 is usual), from which on a larger residual pulls no harder (M-estimation by iterated
+        weights, Durovic and Kovacevic 1999).
+
+    Returns
+    -------
+    (samples + 1, n) array
+        Estimates from time 0.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
     """
     if not isinstance(model, _core.Model):
         raise refusal("central_kalman: model", f"a {type(model).__name__}", "a garrison.Model")

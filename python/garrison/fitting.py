@@ -211,9 +211,23 @@ def _by_name(message: str, records: Records) -> str:
 def fit(records: Records, **options: Any) -> Fit:
     """Identify seasonal cycle, factors, A, C, noise levels and bounds from clean records.
 
-    options: factors (state dimension, default 2), harmonics (2), period (of the cycle in samples, default a year), root
-    (False: True works on square roots), factor (1: unit conversion). Raises InvalidInput when the records do not
-    suffice.
+    Parameters
+    ----------
+    records : Records
+        Of garrison.tables.read_records.
+    **options
+        factors (state dimension, default 2), harmonics (2), period (of the cycle in samples, default a year),
+        root (False: True works on square roots), factor (1: unit conversion).
+
+    Returns
+    -------
+    Fit
+        The model, and what brings records into its coordinates.
+
+    Raises
+    ------
+    InvalidInput
+        The records do not suffice.
     """
     if not isinstance(records, Records):
         raise refusal("fit.records", shown(records), "Records, as garrison.tables.read_records returns them")

@@ -154,7 +154,8 @@ def _run(
     if scenario.measurements is not None:
         y, truth = scenario.measurements, scenario.truth
         if rehearsal:
-            y, truth = y[:1], None if truth is None else truth[:2]
+            rows = 2 if family_of(filter).own_plants else 1  # of vehicles, the first row is the start
+            y, truth = y[:rows], None if truth is None else truth[:2]
         return replay(*parts, measurements=y, truth=truth, **options)
     options |= {k: scenario.run[k] for k in ("x0", "start_error") if k in scenario.run}
     return simulate(*parts, steps=1 if rehearsal else scenario.steps, noise=scenario.noise, **options)

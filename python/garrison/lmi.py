@@ -30,20 +30,28 @@ def lmi_gains(setting: structural.Setting, *, iterations: int = 20, margin: floa
     (8) is bilinear in X and K. With Y for the inverse of X the iteration minimises tr(Y_k X + X_k Y) subject to
     [X, Ahat'; Ahat, Y] >= margin I and [X, I; I, Y] >= 0, from X_0 = Y_0 = I, and stops as soon as rho(Ahat) < 1: any
     stable gain, not a good one. Only K_i on the span of the rows that agent i hears matters, the rest is zero.
-
-    Args:
-        setting: A (n, n), C (N, n), W, U (N, N), from `structural.setting` or `structural.Setting`.
-        iterations: most convex programs to be solved, >= 1; each takes about (N n)^6 operations.
-        margin: least eigenvalue of the first matrix, > 0.
-
-    Returns:
-        N gains of (n, n).
-
-    Raises:
-        DesignInfeasible: no stable gain within `iterations`; says the radius reached.
-        Error: cvxpy is not installed.
-
     Source: Doostmohammadian et al., IEEE TNSE 2022, (8).
+
+    Parameters
+    ----------
+    setting : structural.Setting
+        A (n, n), C (N, n), W, U (N, N), from `structural.setting` or `structural.Setting`.
+    iterations : int
+        Most convex programs to be solved, >= 1; each takes about (N n)^6 operations.
+    margin : float
+        Least eigenvalue of the first matrix, > 0.
+
+    Returns
+    -------
+    list of (n, n) arrays
+        One gain per agent.
+
+    Raises
+    ------
+    DesignInfeasible
+        No stable gain within `iterations`; says the radius reached.
+    Error
+        cvxpy is not installed.
     """
     cp = _cvxpy()
     A, C, W, U = (np.asarray(M) for M in (setting.A, setting.C, setting.W, setting.U))

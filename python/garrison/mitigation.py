@@ -86,11 +86,42 @@ def replay_mitigated(
 ) -> Mitigated:
     """Run the structural filter; whenever an agent raises an alarm, replace its sensor, redesign and go on.
 
-    measured: state that each agent measures (None: a relay). truth: (samples + 1, n). noise and attack: (samples, N);
-    an attack sits on the first sensor of its agent and is left behind with it. choice: "exact" (any substitute that
-    keeps the system observable, the cheapest by `cost`, agents x states) or "class" (Algorithm 1 as published). params:
-    of the Structural filter, without weights, sharing and gain, which are designed for every segment.
-    Raises DesignInfeasible when no stabilising gain is left, InvalidInput when something does not fit.
+    Parameters
+    ----------
+    network : Network
+        Who hears whom.
+    A : (n, n) array
+        Of the plant.
+    process_covariance : (n, n) array
+        Of the plant's noise.
+    measurement_variance : (N,) array or float
+        Of the sensors' noise.
+    measured : sequence of int or None
+        State that each agent measures; None: a relay.
+    truth : (samples + 1, n) array
+        States from time 0.
+    noise, attack : (samples, N) arrays
+        Of the measurements; an attack sits on the first sensor of its agent and is left behind with it.
+    start : (n,) array, optional
+        Initial estimate, default 0.
+    choice : {"exact", "class"}
+        Any substitute that keeps the system observable, the cheapest by `cost`; or Algorithm 1 as published.
+    cost : (N, n) array, optional
+        Of letting an agent measure a state.
+    **params
+        Of the Structural filter, without weights, sharing and gain, which are designed for every segment.
+
+    Returns
+    -------
+    Mitigated
+        Estimates, errors, and what was replaced when.
+
+    Raises
+    ------
+    DesignInfeasible
+        No stabilising gain is left.
+    InvalidInput
+        Something does not fit.
     """
     if not isinstance(network, _core.Network):
         raise refusal("network", f"a {type(network).__name__}", "a garrison.Network")

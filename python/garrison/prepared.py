@@ -118,14 +118,37 @@ def prepare(
 ) -> Prepared:
     """Design the filter for this model and network, once.
 
-    certificate: what every agent proves of its error at run time, whatever filter it runs, whatever at most `attacked`
-    sources send (docs/certificates.md). "local": from its own measurement and its neighbours'; "flooded": from all
-    that the rounds of a sample bring, with larger messages; "none": the filter's own bound alone, no byte more.
-    failure: probability, per agent and sample, that such a bound is wrong, for the model's covariances; 0 = never, for
-    noise within its bounds. attacked: default the filter's parameter of that name. A source is an agent, or what the
-    model names as source. What is lost on the way makes a bound larger, never wrong.
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    filter : Filter
+        One of garrison.filters, or a filter of your own.
+    certificate : {"none", "local", "flooded"}
+        What every agent proves of its error at run time, whatever filter it runs, whatever at most `attacked`
+        sources send (docs/certificates.md). "local": from its own measurement and its neighbours'; "flooded":
+        from all that the rounds of a sample bring, with larger messages; "none": the filter's own bound alone, no
+        byte more. What is lost on the way makes a bound larger, never wrong.
+    failure : float
+        Probability in [0, 1), per agent and sample, that such a bound is wrong, for the model's covariances; 0 =
+        never, for noise within its bounds.
+    attacked : int, optional
+        Most sources that lie, >= 0; default the filter's parameter of that name. A source is an agent, or what
+        the model names as source.
 
-    Raises InvalidInput when parameters, model and network do not fit together, DesignInfeasible when no gains exist.
+    Returns
+    -------
+    Prepared
+        For any number of runs and agents; can be saved.
+
+    Raises
+    ------
+    InvalidInput
+        Parameters, model and network do not fit together.
+    DesignInfeasible
+        No gains exist.
     """
     require_order("prepare", model, network, filter)
     wanted = arguments.certificate(filter, certificate, failure, attacked)

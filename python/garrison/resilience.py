@@ -40,10 +40,34 @@ def resilience_per_byte(
     shared: Iterable[int] | None = None,
     **params: Any,
 ) -> list[Resilience]:
-    """Bytes per sample, MSE, and MSE under the worst attack of `agents` (trace of its covariance <= energy), over l.
+    """Bytes per sample, MSE, and MSE under the worst attack of some agents, over the number of shared entries.
 
-    shared: the l to try, default 1..states; params: others of filters.PartialSharing. Raises InvalidInput when an agent
-    cannot detect the state alone, or something does not fit.
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    agents : iterable of int
+        The attackers.
+    gain : float
+        Of filters.PartialSharing, > 0.
+    energy : float
+        Largest trace of the covariance of the attack.
+    shared : iterable of int, optional
+        Numbers of shared entries to try, default 1..n.
+    **params
+        Others of filters.PartialSharing.
+
+    Returns
+    -------
+    list of Resilience
+        One per number of shared entries.
+
+    Raises
+    ------
+    InvalidInput
+        An agent cannot detect the state alone, or something does not fit.
     """
     if not isinstance(model, _core.Model) or not isinstance(network, _core.Network):
         got = f"({type(model).__name__}, {type(network).__name__})"

@@ -19,7 +19,7 @@ def refusal(which: str, got: str, expected: str, advice: str = "") -> _core.Inva
 def shown(value: Any, most: int = 60) -> str:
     """A value as it may stand in a message: its kind where that matters, one line, not too long."""
     if value is None:
-        return "nothing"
+        return "no value"
     text = repr(value) if isinstance(value, str) else str(value)
     text = " ".join(text.split())
     text = text if len(text) <= most else f"{text[: most - 3]}..."

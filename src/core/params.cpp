@@ -29,7 +29,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::string type_name(const ParamValue& value) {
-  constexpr const char* names[] = {"true or false", "a whole number", "a number", "a text",
+  constexpr const char* names[] = {"true or false", "a whole number", "a number", "a string",
                                    "a list of numbers"};
   return names[value.index()];
 }
@@ -91,7 +91,7 @@ void check_param(const std::string& owner, const ParamInfo& info, const ParamVal
                             : static_cast<double>(std::get<std::int64_t>(value));
   if (std::isnan(number)) {
     const bool may_be_absent = std::isnan(std::get<double>(info.initial)) && !info.required;
-    if (!may_be_absent) refuse(which, info.required ? "nothing" : "nan", range(info), info.doc);
+    if (!may_be_absent) refuse(which, info.required ? "no value" : "nan", range(info), info.doc);
     return;
   }
   const bool low = info.open ? number <= info.least : number < info.least;

@@ -18,7 +18,7 @@ LAYERS = (
     ("drivers", "fitting", "calibration", "certificate"),
     ("prepared", "designing"),
     ("resilience", "mitigation", "lmi", "scenario", "answers"),
-    ("jobs", "anatomy", "sweeps", "comparison"),
+    ("jobs", "anatomy", "sweeps", "comparison", "importers"),
     ("figures", "report", "verify"),
     ("_commands",),
     ("cli",),

@@ -276,7 +276,7 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: gr.Network.erdos_renyi(3, 0.5, -1), r"seed: got -1, expected a whole number >= 0"),
     (lambda: gr.attacks.Bias(agents=[True], value=1.0), r"Bias.agents\[0\]: got True, expected a whole number"),
     (lambda: gr.attacks.Bias([0], valu=1.0), r'unknown argument "valu".*did you mean "value"'),
-    (lambda: gr.attacks.Bias([0]), r"Bias.value: got nothing, expected a number"),
+    (lambda: gr.attacks.Bias([0]), r"Bias.value: got no value, expected a number"),
     (lambda: gr.attacks.Bias(value=1.0), r"attack bias: got neither agents nor schedule"),
     (lambda: gr.attacks.make("bais", [0]), r'attack: got unknown name "bais".*mean "bias"'),
     (lambda: gr.filters.Saturation(threshold=1j), r"Saturation.threshold: got 1j, expected a real number"),

@@ -240,7 +240,8 @@ def test_every_panel_of_a_figure_says_what_it_shows(tmp_path: Path) -> None:
     for figure in (run.plot(), error_figure(scenario, rows, 1.0)):
         for ax in figure.axes:
             assert ax.get_ylabel() and ax.get_xlabel()
-            shown = {text.get_text() for text in ax.get_legend().get_texts()}
+            legend = ax.get_legend().get_texts() if ax.get_legend() else ax.texts  # or beside the lines
+            shown = {text.get_text() for text in legend}
             assert shown == {line.get_label() for line in ax.get_lines() if not line.get_label().startswith("_")}
     few = innovation_figure(scenario, run)
     assert few.get_supylabel() and few.get_supxlabel()

@@ -105,7 +105,7 @@ def test_designs_agents_and_runs_keep_it(tmp_path: Path) -> None:
 
 
 def test_slips_are_refused_by_name() -> None:
-    with pytest.raises(gr.InvalidInput, match="attacked: got nothing, with certificate 'local'"):
+    with pytest.raises(gr.InvalidInput, match="attacked: got no value, with certificate 'local'"):
         gr.prepare(*parts(), certificate="local")
     with pytest.raises(gr.InvalidInput, match=r"certificate.*floded.*flooded"):
         gr.prepare(*parts(), certificate="floded", attacked=1)

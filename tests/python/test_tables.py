@@ -51,7 +51,7 @@ def test_one_table_in_many_forms(tmp_path: Path, kind: str, encoding: str) -> No
     assert found.stations == ["A", "B"]
     if kind == "slashes, day first":  # the 13th says which is the day
         assert found.dates[0] == dt.date(2024, 1, 1) and found.dates[-1] == dt.date(2024, 1, 13)
-        assert np.isnan(found.values[2:12]).all() and "10 missing row(s)" in found.notes[0]
+        assert np.isnan(found.values[2:12]).all() and "10 missing rows" in found.notes[0]
         found = type(found)(DAYS, found.stations, found.values[[0, 1, 12]])
     assert found.dates == DAYS
     np.testing.assert_array_equal(found.values, [[1.5, 2], [2.5, 3], [nan, 4]])
@@ -94,7 +94,7 @@ def test_gaps_become_missing_records(tmp_path: Path) -> None:
     found = read_records(write(tmp_path, "time,A\n2024-01-01,1\n2024-01-02,2\n2024-01-05,3\n"))
     np.testing.assert_array_equal(found.values.ravel(), [1, 2, nan, nan, 3])
     assert found.dates[3] == dt.date(2024, 1, 4)
-    assert found.notes == ["x.csv: 2 missing row(s) between the first and the last one, read as missing records"]
+    assert found.notes == ["x.csv: 2 missing rows between the first and the last one, read as missing records"]
 
 
 def test_units_are_kept_and_are_no_part_of_the_name(tmp_path: Path) -> None:
@@ -112,7 +112,7 @@ REFUSED = {
     "irregular": ("date,A\n2024-01-01,1\n2024-01-03,2\n2024-01-06,2\n", ["line 4", "whole number of periods of 2 day"]),
     "mixed zones": ("t,A\n2024-01-01T00:00Z,1\n2024-01-01T01:00,2\n", ["line 3", "without a time zone"]),
     "ambiguous": ("date,A\n1/2/2024,1\n1/3/2024,2\n", ["either order", "YYYY-MM-DD"]),
-    "text": ("date,A,B\n2024-01-01,1,2\n2024-01-02,x,y\n", ["line 3, column A", "'x'", "also in column(s) B"]),
+    "text": ("date,A,B\n2024-01-01,1,2\n2024-01-02,x,y\n", ["line 3, column A", "'x'", "also in column B"]),
     "underscore": ("date,A\n2024-01-01,1_0.5\n2024-01-02,1\n", ["line 2, column A", "'1_0.5'"]),
     "thousands": ("date;A\n2024-01-01;1.234,5\n2024-01-02;1\n", ["line 2, column A", "1.234,5"]),
     "decimal comma between commas": ("date,A\n2024-01-01,51,93\n2024-01-02,1\n", ["line 2", "3 columns", "expected 2"]),
@@ -122,7 +122,7 @@ REFUSED = {
     "not a day": ("date,A\n2024-02-30,1\n2024-03-01,2\n", ["line 2", "2024-02-30"]),
     "no header, but dates": ("2024-01-01,1\n2024-01-02,1\n2024-01-03,2\n", ["header"]),
     "no header": ("1,2\n3,4\n5,6\n", ["header"]),
-    "one row": ("date,A\n2024-01-01,1\n", ["1 row(s)", "at least two"]),
+    "one row": ("date,A\n2024-01-01,1\n", ["1 row", "at least two"]),
     "nothing": ("", ["an empty file"]),
     "only the time": ("date\n2024-01-01\n2024-01-02\n", ["no column besides the time"]),
     "few rows, long gap": ("t,A\n0,1\n1,2\n1000000,2\n", ["fewer gaps"]),
@@ -151,7 +151,7 @@ def test_suspicious_constants_are_named(tmp_path: Path, value: float, words: str
     cells[5] = cells[9] = f"{value:g}"
     rows = "".join(f"{k},{c}\n" for k, c in enumerate(cells))
     (note,) = read_records(write(tmp_path, f"t,A\n{rows}")).notes
-    assert "column A: 2 value(s) such as " + words in note and "robust deviations off" in note
+    assert "column A: 2 values such as " + words in note and "robust deviations off" in note
     plain = "".join(f"{k},{10 + k % 7}\n" for k in range(40))
     assert read_records(write(tmp_path, f"t,A\n{plain}")).notes == []
 
@@ -163,7 +163,7 @@ def test_fit_says_so(tmp_path: Path, wind: Path, capsys: pytest.CaptureFixture[s
     lines[50] = lines[50].replace(lines[50].split(",")[1], "-9999", 1)
     path = write(tmp_path, "\n".join(lines))
     assert main(["fit", str(path), "-o", str(tmp_path / "m.json")]) == 0
-    assert "warning: x.csv: column RPT: 1 value(s) such as -9999" in capsys.readouterr().err
+    assert "warning: x.csv: column RPT: 1 value such as -9999" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

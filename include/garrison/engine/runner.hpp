@@ -35,12 +35,12 @@ class GARRISON_EXPORT Runner {
   /// The measurement that `agent` predicts for the next sample, and the deviation it tolerates.
   virtual void expected(int agent, double* out) const = 0;
   virtual double alarm_level(int agent) const = 0;
-  /// What every agent does to its own plant until the next sample, N numbers; families without one write
+  /// The control input of every agent until the next sample, N numbers; families without one write
   /// none.
   virtual void control(double* out) const = 0;
   /// Detail `which` of the family's detail_names, of one agent.
   virtual void detail(int agent, std::size_t which, std::vector<double>& out) const = 0;
-  /// Agents that `agent` believes to be attacked.
+  /// Agents that `agent` has accused.
   /// Valid until the next call.
   virtual const AgentSet& accused(int agent) const = 0;
   /// Samples at which some estimate was not finite, or beyond kHuge (its messages are then withheld).

@@ -46,7 +46,7 @@ def do(args: argparse.Namespace) -> int:
 
 def _all(scenario: Scenario) -> list[tuple[str, Calibration]]:
     if scenario.measurements is None:
-        raise refusal("data", "nothing", "records without attacks", "calibration needs recorded measurements")
+        raise refusal("data", "no table [data]", "records without attacks", "calibration needs recorded measurements")
     chosen = [(label, f) for label, f in scenario.filters if f is not None and "false_alarm" in f.params]
     if not chosen:
         raise refusal("filter", "no filter with a false-alarm rate", "one with a parameter false_alarm")

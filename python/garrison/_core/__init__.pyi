@@ -97,16 +97,36 @@ class Model:
     """
     The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.
 
-    A: (n, n). C: one (m_i, n) array per agent (m_i = 0: a relay), or an (N, n) array of rows.
-    process_bound: ||w|| <= it, >= 0, None or nan = not known. measurement_bound: |v_i| <= it, a number or
-    one per agent. process_covariance: (n, n), a number (times the identity), or (N, n, n) where each agent
-    takes another one for w (no noise is simulated from those). measurement_covariance: a number, or one
-    (m_i, m_i) array or number per agent.
-    states: n names (default x1, x2, ..). outputs: one name per measurement of the whole network, agent by
-    agent. sources: who can falsify each measurement; several outputs of one receiver have one source.
-    units: a dict from names of states and outputs to units, or one unit for all. exposed: per agent, how
-    many of its first outputs an attacker can reach (default: all).
-    Raises InvalidInput when shapes or names do not fit or a number is not finite.
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    C : sequence of (m_i, n) arrays, or (N, n) array
+        One per agent (m_i = 0: a relay), or rows.
+    process_bound : float, optional
+        ||w|| <= it, >= 0; None or nan = not known.
+    measurement_bound : float or (N,) array, optional
+        |v_i| <= it; one for all, or one per agent.
+    process_covariance : (n, n) array, float or (N, n, n) array, optional
+        A number is times the identity; N of them where each agent takes another one for w (no noise is simulated from
+        those).
+    measurement_covariance : float, or one (m_i, m_i) array or number per agent, optional
+        Of v_i.
+    states : n names, optional
+        Default x1, x2, ..
+    outputs : names, optional
+        One per measurement of the whole network, agent by agent.
+    sources : names, optional
+        Who can falsify each measurement; several outputs of one receiver have one source.
+    units : dict or str, optional
+        From names of states and outputs to units, or one unit for all.
+    exposed : sequence of int, optional
+        Per agent, how many of its first outputs an attacker can reach; default all.
+
+    Raises
+    ------
+    InvalidInput
+        Shapes or names do not fit, or a number is not finite.
     """
     @staticmethod
     def from_continuous(
@@ -218,12 +238,23 @@ class Network:
     """
     Who hears whom. Immutable.
 
-    edges: (sender, receiver) pairs of numbers or names, a networkx graph, or an adjacency matrix (sparse,
-    or dense with more than two rows; see from_adjacency). agents: needed when the last ones have no edge.
-    names: one per agent. Of a graph, labels 0..N-1 are the numbers of the agents; other whole numbers are
-    sorted, other labels keep their order, and the labels become the names.
-    Pairs given twice count once. Raises InvalidInput on a self-loop, a weight, an unknown name or an index
-    out of range.
+    Parameters
+    ----------
+    edges : sequence of pairs, networkx graph, or square matrix
+        (sender, receiver) pairs of numbers or names, a graph, or an adjacency matrix (sparse, or dense with more than two
+        rows; see from_adjacency). Pairs given twice count once.
+    agents : int, optional
+        Needed when the last ones have no edge.
+    directed : bool
+        A pair is one way; else both ways.
+    names : names, optional
+        One per agent. Of a graph, labels 0..N-1 are the numbers of the agents; other whole numbers are sorted, other labels
+        keep their order, and the labels become the names.
+
+    Raises
+    ------
+    InvalidInput
+        A self-loop, a weight, an unknown name, or an index out of range.
     """
     @staticmethod
     def band(
@@ -572,7 +603,7 @@ class Agent:
     @property
     def accused(self) -> list[int]:
         """
-        Agents that this one believes to be attacked.
+        Agents that this one has accused.
         """
     @property
     def bound(self) -> float: ...

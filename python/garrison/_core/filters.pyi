@@ -25,7 +25,7 @@ class Saturation(garrison._core.Filter):
 
     Source: He, Ren, Sandberg, Johansson, IEEE TAC 2022, Algorithms 1 and 2
 
-    threshold: largest innovation that is used in full; inf = never saturate. May be left out with adaptive = true [measurement], > 0
+    threshold: innovations above this are clipped; inf = never. May be left out with adaptive = true [measurement], > 0
     rounds: consensus rounds per sample [1], >= 0, <= 1e+06
     step: consensus step; left out: 2/(lambda_2 + lambda_max) [1], >= 0
     chebyshev: Chebyshev-filtered rounds: stronger contraction from the same messages
@@ -105,7 +105,7 @@ class Rdkf(garrison._core.Filter):
 
     weight: lambda of (8), the pull of a measurement at most; its estimate moves by at most half of (10), which is proportional to it; 0 ignores all measurements [1], >= 0, <= 1e+100
     penalty: of the whitened residual: "norm" = the paper's; "huber" = the same pull, but a Kalman step as long as it is not reached; "l1" = sensor by sensor; "group" = the neighbours' measurements too, which then travel
-    solver: of the step: "exact", or "ipopt" as a slow cross-check of penalty "norm" in builds that have it
+    solver: how the step is solved: "exact", or "ipopt" as a slow cross-check of penalty "norm" in builds that have it
     smoothing: penalty "norm" only: lambda sqrt(|r|^2 + epsilon^2); solver "ipopt" takes 1e-6 for 0 [1], >= 0, <= 1e+100
     initial_error: bound on the distance of every initial estimate from the state; giving it asks for run-time error bounds (needs the model's process_bound) [state], >= 0
     """
@@ -248,7 +248,7 @@ class Platoon(garrison._core.Filter):
     neighbours: test (28) for the measurements of all neighbours (not in the paper)
     median: take the median of the reconstructed measurements where its bound is smaller (not in the paper)
     accuse_missing: a missing (NaN) absolute measurement counts as proof of attack
-    prior_attacked: what vehicles are told before the start: pairs vehicle, sensor proved attacked
+    prior_attacked: known before the start: pairs vehicle, sensor proved attacked
     prior_suspected: the same for suspected sensors
     prior_free: the same for sensors that are known to be free
     """

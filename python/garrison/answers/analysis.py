@@ -108,13 +108,39 @@ def analyze(
     seconds: float = 30.0,
     progress: Progress | None = None,
 ) -> Analysis:
-    """How many sensors may lie, which must not fail, who can lie unseen and with what harm, and what to add.
+    """How many sensors may lie, which must not fail, who can drift unseen and with what harm, and what to add.
 
-    filter: asks also how many liars it stands with its own parameters. candidates: (k, n), rows that a new sensor could
-    have, default: every state by itself; costs: (k,), > 0, default 1. names: of the agents, default the network's.
-    seconds: for everything together, > 0; searches that do not end in time leave a certified interval.
-    progress(question, done, total) is called before every question. Ctrl-C ends it within a fraction of a second.
-    Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    filter : Filter, optional
+        Asks also how many liars it stands with its own parameters.
+    candidates : (k, n) array, optional
+        Rows that a new sensor could have, default: every state by itself.
+    costs : (k,) array, optional
+        Of the candidates, > 0, default 1.
+    names : sequence of str, optional
+        Of the agents, default the network's.
+    title : str
+        For tables and pictures.
+    seconds : float
+        For everything together, > 0; searches that do not end in time leave a certified interval. Ctrl-C ends
+        them within a fraction of a second.
+    progress : callable, optional
+        progress(question, done, total) is called before every question.
+
+    Returns
+    -------
+    Analysis
+        Prints in words; `plot()` draws it.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
     """
     require_plant("analyze", model, network)
     if filter is not None and not isinstance(filter, _core.Filter):

@@ -127,13 +127,49 @@ def compare(
 ) -> Comparison:
     """Run filters and baselines on the same plant, noise and attacks.
 
-    attacked: agents that lie. filters: label -> filter, default every family that fits the plant, with plain
-    parameters; attacks: label -> attack, default every one of garrison.attacks that can be set up alone, from sample
-    `start` on. size: of the lies, unit of the measurement, default ten times the noise. baselines: also covariance
-    intersection, median and trimmed mean of estimates, W-MSR, a central L1 decoder and subset search, and central
-    Kalman filters (plain, gated at 1e-3, Huber's with 1.345); they get the measurements of the first filter's run, in
-    at most five trials (they are slow), and no lies in messages. progress(filter, done, total) is called before every
-    run. What a filter refuses is a row with the reason. Raises InvalidInput when an argument does not fit.
+    Parameters
+    ----------
+    model : Model
+        The plant and its sensors.
+    network : Network
+        Who hears whom.
+    attacked : iterable of int
+        Agents that lie.
+    filters : dict, optional
+        Label -> filter, default every family that fits the plant, with plain parameters. What a filter refuses is
+        a row with the reason.
+    attacks : dict, optional
+        Label -> attack, default every one of garrison.attacks that can be set up alone.
+    baselines : bool
+        Also covariance intersection, median and trimmed mean of estimates, W-MSR, a central L1 decoder and subset
+        search, and central Kalman filters (plain, gated at 1e-3, Huber's with 1.345); they get the measurements of the
+        first filter's run, in at most five trials (they are slow), and no lies in messages.
+    size : float, optional
+        Of the lies, in the unit of the measurement, default ten times the noise.
+    steps : int
+        Samples of a trial, >= 1.
+    start : int
+        First attacked sample.
+    trials : int
+        Repetitions, >= 1.
+    seed : int
+        Of noise and attacks, >= 0.
+    x0 : (n,) array, optional
+        True initial state, default 0.
+    title : str
+        For tables and pictures.
+    progress : callable, optional
+        progress(filter, done, total) is called before every run.
+
+    Returns
+    -------
+    Comparison
+        Errors by filter and attack; `plot()` draws them.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
     """
     require_plant("compare", model, network)
     given = arguments.whole_numbers("attacked", attacked)

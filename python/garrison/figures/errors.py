@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.figures.style import LINES, axes, plain, time_label, times
+from garrison.figures.style import LINES, axes, label_ends, plain, time_label, times
 from garrison.jobs import Row
 from garrison.scenario import Scenario
 
@@ -37,7 +37,7 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figu
         ax.set_yscale("log")
     ax.set_ylabel("mean error, log scale")
     ax.set_xlabel(time_label(scenario))
-    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False, fontsize=9)
+    label_ends(ax)
     return figure
 
 

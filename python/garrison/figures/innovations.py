@@ -16,17 +16,20 @@ _MOST_AGENTS = 24
 
 
 def innovation_figure(scenario: Scenario, run: Run, before: int = 30, after: int = 60) -> Figure:
-    """Statistic against threshold, agent by agent, around the start of the attack (first trial)."""
+    """Statistic against threshold, agent by agent, around the first attack, else the first accusation (first trial).
+
+    Without both, over the whole run.
+    """
     assert run.statistic is not None and run.threshold is not None
     samples = run.statistic.shape[1] - 1
-    start = scenario.first_attack
-    low, high = max(1, min(start - before, samples)), min(samples, start + after)
+    hit, accused = set(scenario.hit), run.first_accused()
+    start = scenario.first_attack if scenario.attacks else min(accused.values(), default=None)
+    low, high = (1, samples) if start is None else (max(1, min(start - before, samples)), min(samples, start + after))
     at = np.arange(low, high + 1)
     agents = range(min(run.statistic.shape[2], _MOST_AGENTS))
     columns = 3
     lines = -(-len(agents) // columns)
     figure = Figure(figsize=(9.2, max(1.55 * lines + 0.9, 2.8)), layout="constrained")
-    hit, accused = set(scenario.hit), run.first_accused()
     first = None
     for k in agents:
         ax = figure.add_subplot(lines, columns, k + 1, sharex=first, sharey=first)

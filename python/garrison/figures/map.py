@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from garrison.families import family_of
 from garrison.figures.errors import error_figure
 from garrison.figures.style import LOOKS, plain
 from garrison.jobs import Row
@@ -16,7 +17,7 @@ from garrison.verdict import Verdict
 def final_verdicts(run: Run) -> list[Verdict]:
     """Per agent: what the network says of it at the end of the first trial."""
     assert run.verdict is not None
-    accused = run.first_accused()
+    accused = run.first_accused() if family_of(run.filter).proves else {}  # a proof holds for ever, an alarm does not
     return [Verdict.ATTACKED if i in accused else Verdict(int(v)) for i, v in enumerate(run.verdict[0, -1])]
 
 
@@ -33,6 +34,19 @@ def overview_figure(scenario: Scenario, rows: list[Row], signal: float | None) -
     return figure
 
 
+#: most agents whose names can be read
+_READABLE = 40
+#: where the name of an agent stands
+_BELOW = {"xytext": (0, -19), "textcoords": "offset points", "ha": "center", "va": "top"}
+
+
+def _outside(place: Any) -> dict[str, Any]:
+    """Beside an agent on the circle, away from its lines."""
+    side = "center" if abs(place[0]) < 0.3 else "left" if place[0] > 0 else "right"
+    level = "center" if abs(place[1]) < 0.3 else "bottom" if place[1] > 0 else "top"
+    return {"xytext": tuple(13.0 * place), "textcoords": "offset points", "ha": side, "va": level}
+
+
 def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
     """Who is attacked (ring, where that is declared), and what the network says of everybody (marker)."""
     figure = figure or Figure(figsize=(6.4, 6.2), layout="constrained")
@@ -41,19 +55,28 @@ def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
     if place is None:
         angle = 2 * np.pi * np.arange(len(scenario.names)) / len(scenario.names)
         place = np.column_stack([np.sin(angle), np.cos(angle)])
+    scale = min(1.0, _READABLE / len(scenario.names))  # of marks and lines: many agents are small
     for i, j in scenario.network.edges:
-        ax.plot(*place[[i, j]].T, color="#bbbbbb", linewidth=1, zorder=1)
+        ax.plot(*place[[i, j]].T, color="#bbbbbb", linewidth=max(scale, 0.25), zorder=1)
     verdicts = final_verdicts(run)
     for verdict, (marker, colour, label) in LOOKS.items():
         group = [i for i, v in enumerate(verdicts) if v == verdict]
         if group:
-            ax.scatter(*place[group].T, s=170, marker=marker, color=colour, edgecolor="white", zorder=3, label=label)
+            ax.scatter(
+                *place[group].T,
+                s=max(170 * scale, 5),
+                marker=marker,
+                color=colour,
+                edgecolor="white" if scale == 1.0 else "none",
+                zorder=3,
+                label=label,
+            )
     if ring := scenario.hit:
         look = {"facecolor": "none", "edgecolor": "black", "linewidth": 1.4}
-        ax.scatter(*place[ring].T, s=520, zorder=2, label="actually attacked", **look)
-    for i, name in enumerate(scenario.names):
+        ax.scatter(*place[ring].T, s=max(520 * scale, 16), zorder=2, label="actually attacked", **look)
+    for i, name in enumerate(scenario.names if len(scenario.names) <= _READABLE else []):
         full = plain(scenario.places[i] if scenario.places else name)
-        spot = {"xytext": (0, -19), "textcoords": "offset points", "ha": "center", "va": "top"}
+        spot = _outside(place[i]) if scenario.positions is None else _BELOW
         ax.annotate(full, place[i], fontsize=9, zorder=4, **spot)
     if scenario.positions is None:
         ax.set_axis_off()
@@ -62,6 +85,8 @@ def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
         ax.set_ylabel("kilometres north of the centre")
         ax.spines[["top", "right"]].set_visible(False)
     ax.set_aspect("equal")
-    ax.margins(0.12)
-    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9)
+    ax.margins(0.12 if scenario.positions is not None else 0.22)
+    ax.legend(
+        loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9, markerscale=scale**-0.5
+    )
     return figure

@@ -24,7 +24,7 @@ def run_figure(run: Run, trial: int = 0, agents: list[int] | None = None, compar
         if draw is _errors:
             _others(compare, trial, ax, shown)
         ax.set_xlabel("sample")
-        ax.legend(frameon=False, fontsize=9)
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=8)
     names = list(run.network.names) or [str(i) for i in range(run.network.agents)]
     who = "" if agents is None else f"agents {', '.join(names[i] for i in agents)}"
     words = ": ".join(w for w in (run.filter.name, trial_words(trial, run.shape[0]), who) if w)

@@ -32,6 +32,44 @@ def axes(figure: Any, *place: int) -> Any:
     return ax
 
 
+#: lines that are labelled at their ends; more are told apart in a legend
+_MOST_DIRECT = 9
+_ROW = 0.058  # of the height of the axes, from one label to the next
+
+
+def label_ends(ax: Any) -> None:
+    """Write the label of every line at its right end in its colour, none over another; of vertical ones at the top.
+
+    With more lines than can be read that way: a legend below.
+    """
+    lines = [line for line in ax.get_lines() if not line.get_label().startswith("_") and len(line.get_xdata()) > 0]
+    if len(lines) > _MOST_DIRECT:
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False, fontsize=9)
+        return
+    ends = []
+    for line in lines:
+        if _is_vertical(line):
+            place, level = line.get_xdata(orig=False)[0], ax.get_xaxis_transform()
+            look = {"xytext": (3, -2), "textcoords": "offset points", "va": "top", "fontsize": 8}
+            ax.annotate(line.get_label(), (place, 1.0), xycoords=level, color=line.get_color(), **look)
+            continue
+        y = np.asarray(line.get_ydata(orig=False), dtype=float)
+        known = y[np.isfinite(y)]
+        if len(known):
+            at = ax.transAxes.inverted().transform(ax.transData.transform((0.0, known[-1])))[1]
+            ends.append((float(np.clip(at, 0.0, 1.0)), line))
+    taken = -1.0
+    for at, line in sorted(ends, key=lambda end: end[0]):
+        taken = max(at, taken + _ROW)
+        look = {"xycoords": "axes fraction", "va": "center", "fontsize": 9, "annotation_clip": False}
+        ax.annotate(line.get_label(), (1.01, taken), color=line.get_color(), **look)
+
+
+def _is_vertical(line: Any) -> bool:
+    x = line.get_xdata(orig=False)
+    return len(x) == 2 and x[0] == x[1]
+
+
 def plain(text: str) -> str:
     """Text of a user without mathtext: a dollar is a dollar."""
     return text.replace("$", r"\$")

@@ -24,7 +24,7 @@ def write_report(path: Path, scenario: Scenario, rows: list[Row]) -> None:
         f'<p class="lead">{html.escape(_lead(scenario, rows))}</p>',
         *(f'<p class="doubt">{html.escape(w)}</p>' for w in warnings_of(scenario, rows)),
         "<h2>Results by filter</h2>",
-        table(*table_rows(scenario, rows), 2),
+        table(*table_rows(scenario, rows)),
         f"<p>{html.escape(_table_note(scenario, rows))}</p>",
         *_main_sections(scenario, rows),
         "<h2>Model and reference</h2>",
@@ -103,8 +103,8 @@ def _check_table(scenario: Scenario, filter: _core.Filter) -> str:
     found = check(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
     conditions = [[c["name"], c["meaning"], f"{c['value']:.4g}", c["needed"], verdict(c)] for c in found.conditions]
     quantities = [[q["name"], q["meaning"], f"{q['value']:.4g}"] for q in found.quantities]
-    return table(["condition", "meaning", "value", "needed", "verdict"], conditions, 2) + table(
-        ["quantity", "meaning", "value"], quantities, 2
+    return table(["condition", "meaning", "value", "needed", "verdict"], conditions) + table(
+        ["quantity", "meaning", "value"], quantities
     )
 
 
@@ -116,11 +116,15 @@ _STRING_NOTE = (
 def _table_note(scenario: Scenario, rows: list[Row]) -> str:
     since = "from the start of the attack on" if scenario.attacks else "over all samples"
     parts = [error_note(scenario)] if error_note(scenario) else []
-    parts += [
-        f"Means are over agents, {since}. Samples with a bound: share of agents and samples with a "
-        "certified error bound; median bound: of those. Error "
-        "within bound: how often the error was below it. Accused: who was accused, and when first (first trial)."
-    ]
+    shown = set(table_rows(scenario, rows)[0])
+    meanings = {
+        "mean error": f"Means are over agents, {since}.",
+        "samples with a bound": "Samples with a bound: share of agents and samples with a certified error bound.",
+        "median bound": "Median bound: of those.",
+        "error within bound": "Error within bound: how often the error was below it.",
+        "accused": "Accused: who was accused, and when first (first trial).",
+    }
+    parts += [text for name, text in meanings.items() if name in shown]
     if any("mean_error_robust" in row.summary for row in rows):
         parts.append(
             "The robust reference is the state with the least sum of absolute deviations from all sensors: a minority "
@@ -133,7 +137,7 @@ def _table_note(scenario: Scenario, rows: list[Row]) -> str:
 
 def _map_note(scenario: Scenario) -> str:
     ring = " The ring marks who was actually attacked." if scenario.hit else ""
-    return f"First trial. Lines join agents that exchange messages. The marker is the network's verdict.{ring}"
+    return f"First trial. Lines join agents that exchange messages. The marker is the verdict at the end.{ring}"
 
 
 def _error_note(scenario: Scenario) -> str:

@@ -1,6 +1,5 @@
 """[model]: matrices, a fit to records, or vehicles."""
 
-import json
 from typing import Any
 
 import numpy as np
@@ -8,6 +7,7 @@ import numpy as np
 from garrison import _core
 from garrison.fitting import Fit, fit
 from garrison.numeric import numbers
+from garrison.scenario.model_file import read_model_file
 from garrison.scenario.section import Section, moment, number, renamed
 from garrison.sizes import require_memory
 from garrison.tables import Records, read_records
@@ -15,7 +15,7 @@ from garrison.words import refusal, shown
 
 _FIT_KEYS = ["fit", "from", "to", "factors", "harmonics", "period", "root", "factor"]
 _MATRIX_KEYS = ["A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_covariance"]
-_VEHICLE_KEYS = ["vehicles", "period", "inputs"]
+_VEHICLE_KEYS = ["vehicles", "period", "inputs", "names"]
 _FILE_KEYS = ["file"]
 KEYS = [_MATRIX_KEYS, _FIT_KEYS, _VEHICLE_KEYS, _FILE_KEYS]
 
@@ -28,10 +28,11 @@ def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | N
         return fitted.model, fitted, fitted.records.stations
     if "vehicles" in section:
         section.only(_VEHICLE_KEYS)
-        return _vehicles(section), None, None
+        model = _vehicles(section)
+        return model, None, _vehicle_names(section, model.agents)
     if "file" in section:
         section.only(_FILE_KEYS)
-        model, names = _from_file(section)
+        model, names = read_model_file(section.file("file"))
         return model, None, names
     section.only([*_MATRIX_KEYS, "fit", "vehicles", "file"])
     return _matrices(section), None, None
@@ -67,30 +68,13 @@ def _vehicles(section: Section) -> _core.Model:
     return _core.platoon.model(vehicles, section.number("period", 0.0, positive=True), section.flag("inputs", False))
 
 
-def _from_file(section: Section) -> tuple[_core.Model, list[str] | None]:
-    """A model that `garrison fit` wrote."""
-    path = section.file("file")
-    try:
-        plain = json.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise _core.IoError(f"{path}: got {error.strerror}, expected a model file of garrison fit") from None
-    except ValueError as error:
-        raise refusal(str(path), f"{error}", "a model file of garrison fit (JSON)") from None
-    wanted = ("A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_variance")
-    if not isinstance(plain, dict) or any(key not in plain for key in wanted):
-        raise refusal(str(path), "a file without some of the keys", ", ".join(wanted))
-    values = {key: numbers(f"{path}: {key}", plain[key]) for key in wanted}
-    variances = values.pop("measurement_variance").ravel()
-    model = _core.Model(
-        np.atleast_2d(values["A"]),
-        np.atleast_2d(values["C"]),
-        process_bound=float(values["process_bound"]),
-        measurement_bound=values["measurement_bound"],
-        process_covariance=np.atleast_2d(values["process_covariance"]),
-        measurement_covariance=[[[v]] for v in variances],
-    )
-    names = plain.get("stations")
-    return model, [str(n) for n in names] if isinstance(names, list) and len(names) == model.agents else None
+def _vehicle_names(section: Section, vehicles: int) -> list[str] | None:
+    if "names" not in section:
+        return None
+    given = section.table["names"]
+    if not isinstance(given, list) or len(given) != vehicles or len({str(n) for n in given}) != vehicles:
+        raise refusal(section.place("names"), shown(given), f"{vehicles} different names, one per vehicle")
+    return [str(n) for n in given]
 
 
 def _matrices(section: Section) -> _core.Model:

@@ -75,17 +75,44 @@ def sweep(
 ) -> Sweep:
     """Run the scenario's filters at all combinations of the values in `set`, and sum up every trial.
 
-    set: key of the scenario -> values, as {"filter.threshold": np.linspace(.5, 2, 8), "attack[0].value": [1, 5, 25]};
-    points: a list of such keys and values in place of all combinations. trials: of every point, >= 1. out: folder for
-    the tables; where it holds a part of the same sweep, that is kept and the rest is run. workers: processes on
-    this machine, each with one thread (a script that starts more than one must guard its main code by
-    `if __name__ == "__main__":`); client: a dask.distributed Client in their place, whose workers see the same files.
-    block: trials of a task, default: so many that one lasts a few seconds. independent: another seed at every
-    point; else all points have the same noise. progress(done, total) counts tasks.
+    trials.csv has the same bytes for any workers, client, block and number of restarts, but for its column `seconds`. A
+    point that is refused is a row with the reason; a task whose worker dies three times is a row "lost". Ctrl-C keeps
+    what is done.
 
-    trials.csv has the same bytes for any workers, client, block and number of restarts, but for its column `seconds`.
-    A point that is refused is a row with the reason; a task whose worker dies three times is a row "lost". Ctrl-C
-    keeps what is done. Raises InvalidInput when something does not fit or `out` holds another sweep.
+    Parameters
+    ----------
+    scenario : str or Path
+        Scenario file (TOML).
+    set : dict, optional
+        Key of the scenario -> values, as {"filter.threshold": np.linspace(.5, 2, 8), "attack[0].value": [1, 5,
+        25]}.
+    points : sequence of dict, optional
+        Such keys and values, in place of all combinations.
+    trials : int
+        Of every point, >= 1.
+    out : str or Path
+        Folder for the tables; where it holds a part of the same sweep, that is kept and the rest is run.
+    workers : int
+        Processes on this machine, each with one thread (a script that starts more than one must guard its main
+        code by `if __name__ == "__main__":`).
+    client : dask.distributed.Client, optional
+        In place of workers; its workers see the same files.
+    block : int, optional
+        Trials of a task, default: so many that one lasts a few seconds.
+    independent : bool
+        Another seed at every point; else all points have the same noise.
+    progress : callable, optional
+        progress(done, total) counts tasks.
+
+    Returns
+    -------
+    Sweep
+        The table; `plot()` draws it.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit, or `out` holds another sweep.
     """
     path = arguments.path("scenario", scenario).absolute()
     independent, progress = arguments.flag("independent", independent), arguments.callback("progress", progress)

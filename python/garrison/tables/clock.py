@@ -165,9 +165,9 @@ def _whole(moments: list[Moment], at: list[int], regular: list[Moment]) -> list[
 
 
 def _words(step: float) -> str:
-    for size, unit in ((_DAY, "day(s)"), (3600.0, "hour(s)"), (60.0, "minute(s)")):
+    for size, unit in ((_DAY, "day"), (3600.0, "hour"), (60.0, "minute")):
         if step >= size:
-            return f"{step / size:g} {unit}"
+            return f"{step / size:g} {unit if step == size else unit + 's'}"
     return f"{step:g} s"
 
 

@@ -11,7 +11,7 @@ from garrison import _core
 from garrison.tables.cells import has_decimal_comma, is_missing, number
 from garrison.tables.clock import Clock, looks_like_time, read_clock
 from garrison.tables.text import Rows, read_rows, require_widths
-from garrison.words import refusal
+from garrison.words import count, refusal
 
 Array = NDArray[np.float64]
 _UNIT = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
@@ -73,7 +73,9 @@ def read_table(path: str | Path) -> Table:
         )
     require_widths(rows, 1, len(head))
     if len(rows.cells) < 3:
-        raise refusal(str(rows.path), f"{len(rows.cells) - 1} row(s) of records", "a header and at least two rows")
+        raise refusal(
+            str(rows.path), f"{count(len(rows.cells) - 1, 'row')} of records", "a header and at least two rows"
+        )
     columns = [_column(text) for text in head]
     body = rows.cells[1:]
     timed = _is_timed(columns[0].name, [row[0] for row in body])
@@ -85,7 +87,9 @@ def read_table(path: str | Path) -> Table:
     if clock is not None:
         values, filled = clock.fill(values)
         notes += (
-            [f"{filled} missing row(s) between the first and the last one, read as missing records"] if filled else []
+            [f"{count(filled, 'missing row')} between the first and the last one, read as missing records"]
+            if filled
+            else []
         )
     return Table(rows.path, named, values, clock, [f"{rows.path.name}: {note}" for note in notes])
 
@@ -145,7 +149,7 @@ def _numbers(rows: Rows, first: int, skip: int, names: list[str]) -> Array:
             values[r, c] = value
     if wrong:
         others = list(wrong)[1:]
-        more = f"; also in column(s) {', '.join(others[:8])}" if others else ""
+        more = f"; also in column {', '.join(others[:8])}" if others else ""
         raise _core.InvalidInput(f"{next(iter(wrong.values()))}, expected a number or an empty cell{more}")
     return values
 
@@ -167,7 +171,7 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
                 f"{np.abs(worst - middle) / spread:.0f} robust deviations off" if spread > 0 else "far from all others"
             )
             notes.append(
-                f"column {column.name}: {len(far)} value(s) such as {worst:g}, {how}; "
+                f"column {column.name}: {count(len(far), 'value')} such as {worst:g}, {how}; "
                 "if they mean that there is none, make the cells empty"
             )
     return notes

@@ -89,10 +89,10 @@ Setting make_setting(const PartialSharing::Params& p, const Model& model, const 
   const int N = model.agents();
   const int m = model.states();
   if (model.noise().process_covariance.size() == 0)
-    refuse("process_covariance (Q)", "nothing", "a covariance in the model",
+    refuse("process_covariance (Q)", "no value", "a covariance in the model",
            "the filter's gains follow from it");
   if (model.noise().measurement_covariance.empty())
-    refuse("measurement_covariance (R)", "nothing", "one covariance per agent in the model",
+    refuse("measurement_covariance (R)", "no value", "one covariance per agent in the model",
            "the filter's gains follow from it");
   Setting s;
   s.A = model.A();

@@ -14,7 +14,7 @@ constexpr double kCleanGamma = 1e-14;  // complete graphs: rounding leaves 1e-17
 
 void require_parameters(const Saturation::Params& p, const Model& model) {
   if (std::isnan(p.threshold) && !p.adaptive)
-    refuse("saturation.threshold", "nothing", "a number > 0 (inf = never saturate)",
+    refuse("saturation.threshold", "no value", "a number > 0 (inf = never saturate)",
            "or set adaptive = true");
   if (!std::isnan(p.threshold) && p.adaptive)
     refuse("saturation.threshold", text(p.threshold), "nothing together with adaptive = true",
@@ -26,7 +26,7 @@ void require_parameters(const Saturation::Params& p, const Model& model) {
     refuse("saturation.attacked", std::to_string(p.attacked),
            "at most the number of agents, " + std::to_string(model.agents()));
   if ((p.detector || p.adaptive) && std::isnan(p.initial_error))
-    refuse("saturation.initial_error", "nothing", "a number > 0",
+    refuse("saturation.initial_error", "no value", "a number > 0",
            std::string(p.detector ? "the detector" : "the adaptive threshold") + " needs error bounds");
 }
 

@@ -71,9 +71,9 @@ Check Structural::check(const Params& p, const Model& model, const Network& netw
                           static_cast<double>(modes.unseen.size() + modes.unclear.size()), "= 0",
                           modes.all_seen(),
                           "the system is detectable by all sensors together; " + modes.text()});
-  c.quantities.push_back({"agents that could lie unseen",
-                          static_cast<double>(undetectable_agents(model).size()),
-                          "alone on an unstable mode: no detector of any kind can see them lie"});
+  c.quantities.push_back(
+      {"agents that could drift unseen", static_cast<double>(undetectable_agents(model).size()),
+       "alone on a mode that does not decay: without limit, and no detector of any kind sees it"});
   const structure::Pattern mixing = structure::Pattern::of(s.W);
   const bool strong = structure::strong_components(mixing).count == 1;
   c.conditions.push_back({"estimates reach everybody", strong ? 1.0 : 0.0, "= 1", strong,

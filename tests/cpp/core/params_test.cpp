@@ -62,10 +62,10 @@ TEST_CASE("a wrong value is refused with which, got and expected") {
   says({{"trays", 1e300}}, "expected a whole number");
   says({{"fan", 1.0}}, "oven.fan: got 1, expected true or false");
   says({{"mode", std::string("fry")}}, "oven.mode: got \"fry\", expected one of: bake, grill");
-  says({{"mode", 3.0}}, "expected a text");
+  says({{"mode", 3.0}}, "expected a string");
   says({{"timers", std::vector<double>{0.0, 2.0}}}, "oven.timers: got [0, 2]");
   says({{"timers", std::vector<double>{kNaN}}}, "oven.timers: got [nan]");
-  CHECK_THROWS_WITH_AS(parse_params<Oven>("oven", {}), doctest::Contains("oven.door: got nothing"),
+  CHECK_THROWS_WITH_AS(parse_params<Oven>("oven", {}), doctest::Contains("oven.door: got no value"),
                        InvalidInput);
 }
 

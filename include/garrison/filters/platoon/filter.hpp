@@ -215,7 +215,7 @@ struct GARRISON_EXPORT Platoon {
                 {.name = "prior_attacked",
                  .symbol = "",
                  .unit = "",
-                 .doc = "what vehicles are told before the start: pairs vehicle, sensor proved attacked"}),
+                 .doc = "known before the start: pairs vehicle, sensor proved attacked"}),
           field(
               &Params::prior_suspected,
               {.name = "prior_suspected", .symbol = "", .unit = "", .doc = "the same for suspected sensors"}),

@@ -74,7 +74,7 @@ struct GARRISON_EXPORT Rdkf {
                 {.name = "solver",
                  .symbol = "",
                  .unit = "",
-                 .doc = "of the step: \"exact\", or \"ipopt\" as a slow cross-check of penalty "
+                 .doc = "how the step is solved: \"exact\", or \"ipopt\" as a slow cross-check of penalty "
                         "\"norm\" in builds that have it",
                  .choices = {"exact", "ipopt"}}),
           field(

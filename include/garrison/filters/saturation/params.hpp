@@ -8,14 +8,13 @@ namespace garrison {
 
 inline auto Saturation::Params::fields() {
   return std::tuple_cat(
-      std::make_tuple(
-          field(&Params::threshold, {.name = "threshold",
-                                     .symbol = "beta",
-                                     .unit = "measurement",
-                                     .doc = "largest innovation that is used in full; inf = never saturate. "
-                                            "May be left out with adaptive = true",
-                                     .least = 0.0,
-                                     .open = true})),
+      std::make_tuple(field(&Params::threshold, {.name = "threshold",
+                                                 .symbol = "beta",
+                                                 .unit = "measurement",
+                                                 .doc = "innovations above this are clipped; inf = never. "
+                                                        "May be left out with adaptive = true",
+                                                 .least = 0.0,
+                                                 .open = true})),
       consensus_fields(),
       std::make_tuple(
           field(&Params::attacked,

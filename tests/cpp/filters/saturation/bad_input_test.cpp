@@ -33,7 +33,7 @@ TEST_CASE("the saturation filter refuses with which, got, expected") {
                        doctest::Contains("directed"), InvalidInput);
   CHECK_THROWS_WITH_AS(prepare(kBounded, kModel, Network::path(4)), doctest::Contains("4 agents"),
                        InvalidInput);
-  CHECK_THROWS_WITH_AS(prepare({}), doctest::Contains("saturation.threshold: got nothing"), InvalidInput);
+  CHECK_THROWS_WITH_AS(prepare({}), doctest::Contains("saturation.threshold: got no value"), InvalidInput);
   CHECK_THROWS_WITH_AS(prepare(with(kBounded, "threshold", 0.0)),
                        doctest::Contains("got 0, expected a number > 0"), InvalidInput);
   CHECK_THROWS_WITH_AS(prepare(with(kBounded, "attacked", std::int64_t{4})),

@@ -1,0 +1,48 @@
+"""The gallery: every script of examples/gallery is run, and shown with its figure."""
+
+import ast
+import os
+import runpy
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[2]
+SCRIPTS = ROOT / "examples" / "gallery"
+_HEAD = """# Gallery
+
+Every picture is made by the code above it when this page is built; the scripts are in `examples/gallery` and run from
+the root of the source tree. [Examples](../examples.md) lists the larger ones.
+"""
+
+
+def scripts() -> list[Path]:
+    """The scripts in the order of the page."""
+    return sorted(SCRIPTS.glob("*.py"))
+
+
+def figure_of(script: Path) -> Any:
+    """Run a script, from the root of the tree, and take its `figure`."""
+    before = Path.cwd()
+    os.chdir(ROOT)
+    try:
+        return runpy.run_path(str(script))["figure"]
+    finally:
+        os.chdir(before)
+
+
+def page(folder: Path) -> str:
+    """The page; pictures are written to `folder`."""
+    parts = [_HEAD]
+    for script in scripts():
+        source = script.read_text(encoding="utf-8")
+        title, text = _words(source)
+        picture = folder / f"gallery_{script.stem}.svg"
+        figure_of(script).savefig(picture)
+        code = "\n".join(source.splitlines()[ast.parse(source).body[0].end_lineno :]).strip()
+        parts.append(f"## {title}\n\n{text}\n\n```python\n{code}\n```\n\n![{title}]({picture.name})\n")
+    return "\n".join(parts)
+
+
+def _words(source: str) -> tuple[str, str]:
+    title, _, text = (ast.get_docstring(ast.parse(source)) or "").partition("\n")
+    return title, text.strip()

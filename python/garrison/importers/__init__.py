@@ -1,0 +1,1 @@
+"""Recordings and cases of others as scenarios: cars, aircraft, grids, robots, tables."""

@@ -1,0 +1,116 @@
+"""Records of several sensors (CSV) as a scenario: a model fitted to a clean part, a network, a replay of the rest."""
+
+import datetime as dt
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from garrison.importers.bundle import Bundle
+from garrison.importers.limits import require_positive, require_probability
+from garrison.tables import Records, read_records
+from garrison.tables.clock import Moment
+from garrison.words import count, refusal
+
+SOURCE = "records of your own, copied unchanged to records.csv; their licence is that of their publisher."
+_YEARS = 2.0
+_FEWEST = 20
+
+
+@dataclass(frozen=True)
+class Choice:
+    """clean: last moment of the part that the model is fitted to; None: the first half of the records.
+
+    factors: states of the model. harmonics: of a yearly season; None: 2 where the clean part has two years, else 0.
+    stations: CSV with places; radius: km, of neighbours. attacked: sensors that may be wrong.
+    """
+
+    clean: Moment | None = None
+    factors: int = 1
+    harmonics: int | None = None
+    stations: Path | None = None
+    radius: float | None = None
+    false_alarm: float = 1e-4
+
+    def __post_init__(self) -> None:
+        require_probability("false-alarm", self.false_alarm)
+        if self.factors < 1:
+            raise refusal("--factors", str(self.factors), "a whole number >= 1")
+        if self.harmonics is not None and self.harmonics < 0:
+            raise refusal("--harmonics", str(self.harmonics), "a whole number >= 0")
+        if self.radius is not None:
+            require_positive(radius=self.radius)
+
+
+@dataclass
+class RecordsBundle(Bundle):
+    """A bundle with the files that the scenario reads beside it."""
+
+    copies: dict[str, Path] | None = None
+
+    def write(self, folder: Path) -> None:
+        """As every bundle, and copies of the user's files."""
+        super().write(folder)
+        for name, path in (self.copies or {}).items():
+            shutil.copyfile(path, folder / name)
+
+
+def import_csv(path: Path, choice: Choice | None = None) -> Bundle:
+    """A column of times and a column per sensor. Raises IoError or InvalidInput with the line where it is none."""
+    choice = choice or Choice()
+    records = read_records(path)
+    sensors = len(records.stations)
+    if sensors < 3:
+        raise refusal(str(path), count(sensors, "sensor"), "at least 3, which measure related things")
+    if len(records.dates) < 2 * _FEWEST:
+        raise refusal(
+            str(path), count(len(records.dates), "record"), f"at least {2 * _FEWEST}: half of them for the fit"
+        )
+    if (choice.stations is None) != (choice.radius is None):
+        raise refusal("--stations, --radius", "one of them", "both or none")
+    last, rest = _split(records, choice.clean)
+    years = records.between(None, last).step * len(records.between(None, last).dates) / (365.25 * 86400.0)
+    harmonics = choice.harmonics if choice.harmonics is not None else 2 if years >= _YEARS else 0
+    copies = {"records.csv": path} | ({"stations.csv": choice.stations} if choice.stations else {})
+    tables = {
+        "title": f"{path.stem}: {sensors} sensors",
+        "model": {"fit": "records.csv", "to": _shown(last), "factors": choice.factors, "harmonics": harmonics},
+        "network": _network(sensors, choice),
+        "data": {"file": "records.csv", "from": _shown(rest)},
+        "filter": {"name": "structural", "false_alarm": choice.false_alarm, "isolate": True},
+    }
+    facts = [
+        ("sensors", f"{sensors}: {', '.join(records.stations[:12])}{', ..' if sensors > 12 else ''}"),
+        ("records", f"{len(records.dates)}, every {records.step:g} s, {records.dates[0]} to {records.dates[-1]}"),
+        ("model", f"fitted up to {last}: {count(choice.factors, 'state')}, {count(harmonics, 'harmonic')} of a year"),
+    ]
+    notes = [
+        *records.notes,
+        "the records up to the end of the fit are taken as right; --to chooses another end",
+        "a model that was fitted alarms more often than asked: garrison calibrate finds what to ask for",
+    ]
+    return RecordsBundle(tables, SOURCE, None, None, facts, notes, copies)
+
+
+def _split(records: Records, clean: Moment | None) -> tuple[Moment, Moment]:
+    """Last record of the fit, first record after it."""
+    k = len(records.dates) // 2 if clean is None else records.index("--to", clean) + 1
+    if not _FEWEST <= k <= len(records.dates) - 2:
+        span = f"{records.dates[_FEWEST - 1]} to {records.dates[-3]}"
+        raise refusal("--to", str(clean), f"a moment from {span}, so that there are records for the fit and after it")
+    return records.dates[k - 1], records.dates[k]
+
+
+def _shown(moment: Moment) -> str | float:
+    return (
+        moment.isoformat(sep=" ")
+        if isinstance(moment, dt.datetime)
+        else str(moment)
+        if isinstance(moment, dt.date)
+        else moment
+    )
+
+
+def _network(sensors: int, choice: Choice) -> dict[str, object]:
+    if choice.stations is not None:
+        return {"stations": "stations.csv", "radius_km": choice.radius}
+    return {"kind": "complete", "agents": sensors}

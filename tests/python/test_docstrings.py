@@ -1,0 +1,107 @@
+"""Public functions say in numpydoc form what they take, give and raise; the site shows it."""
+
+import ast
+import inspect
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import garrison as gr
+import pytest
+from conftest import ROOT
+
+FUNCTIONS = [name for name in gr.__all__ if inspect.isfunction(getattr(gr, name))]
+#: classes of the core that everybody makes
+CLASSES = {"Model": gr.Model, "Network": gr.Network}
+
+
+def section(function: Callable[..., Any], name: str) -> list[str]:
+    """The lines of one section of a docstring; empty where there is none."""
+    doc = inspect.getdoc(function) or ""
+    found = re.search(rf"^{name}\n{'-' * len(name)}\n(.*?)(?=^\w+\n-+\n|\Z)", doc, re.DOTALL | re.MULTILINE)
+    return found[1].splitlines() if found else []
+
+
+def documented(function: Callable[..., Any]) -> dict[str, list[str]]:
+    """Name of each documented parameter -> the lines about it."""
+    out: dict[str, list[str]] = {}
+    names: list[str] = []
+    for line in section(function, "Parameters"):
+        if line and not line.startswith(" "):
+            names = [name.strip().lstrip("*") for name in line.partition(" : ")[0].split(",")]
+            out |= {name: [] for name in names}
+        elif line.strip():
+            for name in names:
+                out[name].append(line)
+    return out
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_parameter_is_documented_in_its_order(name: str) -> None:
+    function = getattr(gr, name)
+    taken = list(inspect.signature(function).parameters)
+    found = documented(function)
+    assert set(found) == set(taken)
+    assert all(found.values()), f"parameters without a text: {[k for k, lines in found.items() if not lines]}"
+    positional = [p.name for p in inspect.signature(function).parameters.values() if p.kind is p.POSITIONAL_OR_KEYWORD]
+    assert list(found)[: len(positional)] == positional
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_results_and_refusals_are_documented(name: str) -> None:
+    function = getattr(gr, name)
+    assert section(function, "Returns") and section(function, "Raises")
+    for line in section(function, "Raises"):
+        if line and not line.startswith(" "):
+            assert issubclass(getattr(gr, line), Exception)
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_constructors_are_documented(name: str) -> None:
+    stub = ast.parse((Path(gr.__file__).parent / "_core" / "__init__.pyi").read_text(encoding="utf-8"))
+    body = next(node.body for node in stub.body if isinstance(node, ast.ClassDef) and node.name == name)
+    made = next(node for node in body if isinstance(node, ast.FunctionDef) and node.name == "__init__")
+    taken = [a.arg for a in (*made.args.args, *made.args.kwonlyargs) if a.arg != "self"]
+    assert list(documented(CLASSES[name])) == taken
+    assert section(CLASSES[name], "Raises")
+
+
+def test_a_missing_parameter_is_seen() -> None:
+    def function(a: int, b: int) -> None:
+        """One.
+
+        Parameters
+        ----------
+        a : int
+            The first.
+        """
+
+    assert documented(function) == {"a": ["    The first."]}
+
+
+def test_the_site_shows_sections_as_lists(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "docs"))
+    from generate import plain_docstrings
+
+    lines = [
+        "One *star*.",
+        "",
+        "Parameters",
+        "----------",
+        "x0 : (n,) array",
+        "    Start_value.",
+        "",
+        "Raises",
+        "------",
+    ]
+    lines += ["InvalidInput", "    It does not fit."]
+    plain_docstrings.process(None, "", "", None, None, lines)
+    text = "\n".join(lines)
+    assert "One \\*star\\*." in text
+    assert "**Parameters**\n\n**x0** : (n,) array\n   Start\\_value." in text
+    assert "**InvalidInput**\n   It does not fit." in text
+    assert "-----" not in text
+    plain = ["One.", "", "Two."]
+    plain_docstrings.process(None, "", "", None, None, plain)
+    assert plain == ["One.", "", "Two.", ""]
