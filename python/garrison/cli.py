@@ -19,6 +19,7 @@ from garrison._commands import (
     design,
     design_file,
     fit,
+    replay,
     run,
     structure,
     sweep,
@@ -27,7 +28,7 @@ from garrison._commands import (
 from garrison._commands import list as list_
 from garrison._commands.terminal import BUG, INTERRUPTED, OK, REFUSED
 
-COMMANDS = (run, sweep, compare, check, analyze, design, list_, verify, fit, calibrate, structure, design_file)
+COMMANDS = (run, sweep, compare, check, analyze, design, list_, verify, fit, calibrate, structure, design_file, replay)
 #: environment variable that shows where a bug was met
 _DEBUG = "GARRISON_DEBUG"
 
