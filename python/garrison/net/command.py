@@ -1,0 +1,124 @@
+"""The command `garrison-net`: a network of real daemons on this machine."""
+
+import argparse
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from garrison import _core
+from garrison._commands.terminal import NO, OK, REFUSED, console_for, print_table
+from garrison.net.folder import write_network
+from garrison.net.outcome import Outcome, read_outcome, write_summary
+from garrison.net.plan import Plan, read_plan
+from garrison.net.processes import Processes, wait_until
+
+#: seconds between the start of the processes and sample 0
+_LEAD = 2.0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="garrison-net",
+        description="Networks of real daemons on this machine (127.0.0.1 only).",
+        epilog="Exit codes: 0 everything held, 1 something did not, 2 input refused.",
+        allow_abbrev=False,
+    )
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    up = commands.add_parser("up", help="run a scenario as a network of daemons, and check it", allow_abbrev=False)
+    up.add_argument("file", help="network.toml: a scenario, periods, what the network loses")
+    up.add_argument("-o", "--out", help="folder for keys, logs and summary.json; default: a temporary one, removed")
+    up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
+    return parser
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    try:
+        args = _parser().parse_args(argv)
+    except SystemExit as usage:
+        return int(usage.code or 0)
+    try:
+        plan = read_plan(args.file)
+        if args.out is not None:
+            return up(plan, _empty(Path(args.out)), args.programs)
+        with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
+            return up(plan, Path(folder), args.programs)
+    except (_core.Error, OSError) as error:
+        print(f"garrison-net: {' '.join(str(error).split())}", file=sys.stderr)
+        return REFUSED
+    except KeyboardInterrupt:
+        return 130
+
+
+def up(plan: Plan, folder: Path, programs: str | None) -> int:
+    """Run the plan in `folder`; 1 when anything did not hold."""
+    start = time.time() + _LEAD
+    nodes = write_network(plan, folder, start, programs)
+    print(f"{len(nodes)} daemons, {plan.samples} samples of {plan.period_ms:g} ms: {plan.seconds:.0f} s", flush=True)
+    with Processes(plan, nodes, programs) as processes:
+        wait_until(processes, start + plan.seconds)
+        ended = processes.end()
+    outcome = read_outcome(plan, nodes, ended)
+    write_summary(outcome, folder / "summary.json")
+    show(plan, outcome)
+    return NO if outcome.broken else OK
+
+
+def show(plan: Plan, outcome: Outcome) -> None:
+    """The table, what the relay did, and what did not hold."""
+    head = [
+        "node",
+        "complete",
+        "missing",
+        "asked",
+        "same bits",
+        "bound",
+        "median",
+        "error",
+        "worst",
+        "accuses",
+        "replay",
+    ]
+    rows = []
+    for node in outcome.nodes:
+        counters = node.status["counters"]
+        rows.append(
+            [
+                node.name + (" (hijacked)" if node.name in outcome.hijacked else ""),
+                f"{int(node.complete.sum())}/{plan.samples}",
+                str(counters["missing"]),
+                str(counters["wants"]),
+                f"{int(node.same.sum())}",
+                f"{np.isfinite(node.bound).mean():.1%}",
+                _number(np.nanmedian(node.bound)) if np.isfinite(node.bound).any() else "",
+                _number(np.nanmean(node.error)) if np.isfinite(node.error).any() else "",
+                _number(np.nanmax(node.error)) if np.isfinite(node.error).any() else "",
+                " ".join(node.accused),
+                f"{node.replayed - node.differ}/{node.replayed}",
+            ]
+        )
+    print_table(plan.scenario.title, head, rows, console_for())
+    relay = outcome.relay
+    print(
+        f"relay: {relay['came']} datagrams, {relay['lost']} lost, {relay['doubled']} doubled; "
+        f"complete {outcome.share('complete'):.2%}, with bound {outcome.share('bound'):.2%}"
+    )
+    for line in outcome.broken:
+        print(f"DOES NOT HOLD: {line}")
+    if not outcome.broken:
+        print("held: errors within bounds, nobody accused wrongly, every log gives the same estimates again")
+
+
+def _number(value: np.floating[Any]) -> str:
+    return f"{float(value):.3g}"
+
+
+def _empty(path: Path) -> Path:
+    path.mkdir(parents=True, exist_ok=True)
+    if any(path.iterdir()):
+        raise _core.IoError(f"{path}: got a folder that is not empty, expected a new or an empty one")
+    return path
