@@ -5,13 +5,14 @@ from pathlib import Path
 
 from garrison import _core
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
-from garrison.words import refusal
 
 
 def add(commands: Commands) -> None:
     """Declare the command."""
     command = commands.add_parser(
-        "replay", help="do again what the logs of nodes say, and compare every bit; exit 1 on a miss", allow_abbrev=False
+        "replay",
+        help="do again what the logs of nodes say, and compare every bit; exit 1 on a miss",
+        allow_abbrev=False,
     )
     command.add_argument("log", nargs="+", help="an .mcap file that garrison-node wrote")
     command.add_argument("--json", action="store_true", help="print JSON")
@@ -46,4 +47,4 @@ def _replayed(path: Path) -> dict[str, object]:
     try:
         return dict(_core.replay_log(path.read_bytes()))
     except _core.InvalidInput as error:
-        raise refusal(str(path), str(error), "a log of a node") from None
+        raise _core.InvalidInput(f"{path}: {error}") from None

@@ -39,9 +39,7 @@ class Processes:
     def __enter__(self) -> Self:
         with ExitStack() as stack:
             self._relay = self._started(stack, self._relay_command(), self._nodes[0].path.parent / "relay.json")
-            for node in self._nodes:
-                command = [program(NODE, self._programs), "--print", str(node.settings)]
-                self._daemons.append(self._started(stack, command, node.path / "samples.jsonl"))
+            self._daemons = [self._node(stack, node) for node in self._nodes]
             self._stack = stack.pop_all()
         return self
 
@@ -56,6 +54,15 @@ class Processes:
             if process.poll() is not None:
                 said = path.with_suffix(".err").read_text(errors="replace").strip()
                 raise _core.IoError(f"{path.parent.name}: got an end with exit code {process.returncode}: {said}")
+
+    def kill(self, k: int) -> None:
+        """End node k at once, as a power cut would."""
+        self._daemons[k].kill()
+        self._daemons[k].wait()
+
+    def restart(self, k: int) -> None:
+        """Start node k again, with the files that it left."""
+        self._daemons[k] = self._node(self._stack, self._nodes[k])
 
     def end(self) -> Ended:
         """Ask for every status, end all of them, and collect what they leave."""
@@ -76,9 +83,14 @@ class Processes:
         ways = [f"{node.outside}:{node.port}" for node in self._nodes]
         return [program(RELAY, self._programs), "--seed", str(self._plan.seed), *words, "--seconds", limit, *ways]
 
+    def _node(self, stack: ExitStack, node: NodeFolder) -> "subprocess.Popen[bytes]":
+        return self._started(
+            stack, [program(NODE, self._programs), "--print", str(node.settings)], node.path / "samples.jsonl"
+        )
+
     def _started(self, stack: ExitStack, command: list[str], out: Path) -> "subprocess.Popen[bytes]":
-        written = stack.enter_context(out.open("wb"))
-        said = stack.enter_context(out.with_suffix(".err").open("wb"))
+        written = stack.enter_context(out.open("ab"))
+        said = stack.enter_context(out.with_suffix(".err").open("ab"))
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=written, stderr=said)
         stack.callback(_end, process)
         return process

@@ -1,0 +1,234 @@
+"""Real daemons on 127.0.0.1: a small network, its files, its programs. Needs a build with GARRISON_BUILD_NODE."""
+
+import json
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+from garrison import _core
+from garrison.cli import main as garrison
+from garrison.net import Client
+from garrison.net.command import main
+from garrison.net.folder import write_network
+from garrison.net.plan import read_plan
+from garrison.net.processes import Processes, wait_until
+from garrison.net.programs import program
+
+SCENARIO = """
+[model]
+A = [[0.99, 0.05], [0.0, 0.95]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
+process_bound = 0.02
+measurement_bound = 0.01
+[network]
+kind = "ring"
+[filter]
+name = "saturation"
+threshold = 1.5
+rounds = 3
+attacked = 1
+initial_error = 2.0
+detector = true
+[certificate]
+failure = 0
+[[attack]]
+kind = "bias"
+agents = [2]
+value = 40.0
+start = 8
+[run]
+steps = 30
+seed = 3
+x0 = [1.0, 1.0]
+"""
+PLAN = """
+scenario = "scenario.toml"
+[run]
+period_ms = 100
+[relay]
+loss = 0.05
+delay_ms = 0.5
+"""
+
+
+def _programs() -> str:
+    found = sorted(ROOT.glob("build/*/src/node/programs/garrison-node"), key=lambda path: path.stat().st_mtime)
+    if not found:
+        pytest.skip("no programs of the node in build/: configure with -DGARRISON_BUILD_NODE=ON")
+    return str(found[-1].parent)
+
+
+@pytest.fixture(scope="module")
+def programs() -> str:
+    return _programs()
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> Path:
+    (tmp_path / "scenario.toml").write_text(SCENARIO)
+    path = tmp_path / "network.toml"
+    path.write_text(PLAN)
+    return path
+
+
+@pytest.fixture
+def folder(plan: Path, programs: str, tmp_path: Path) -> Path:
+    """The files of the network, whose first sample is an hour away."""
+    (tmp_path / "net").mkdir()
+    write_network(read_plan(plan), tmp_path / "net", time.time() + 3600, programs)
+    return tmp_path / "net" / "0"
+
+
+def check(folder: Path, programs: str) -> subprocess.CompletedProcess[str]:
+    command = [program("garrison-node", programs), "--check", str(folder / "node.toml")]
+    return subprocess.run(command, capture_output=True, text=True, timeout=20)
+
+
+def test_a_network_of_daemons_does_what_one_process_does(
+    plan: Path, programs: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "net"
+    assert main(["up", str(plan), "-o", str(out), "--programs", programs]) == 0
+    said = capsys.readouterr().out
+    assert "held:" in said
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["relay"]["lost"] > 0
+    assert all(node["samples"] > 20 and node["replayed"] > 20 and node["differ"] == 0 for node in summary["nodes"])
+    logs = [str(path) for path in sorted(out.glob("*/log/*.mcap"))]
+    assert len(logs) == 6
+    assert garrison(["replay", *logs]) == 0
+    assert "was stopped" in capsys.readouterr().out
+
+
+def test_a_killed_node_is_back_and_its_log_is_read_to_the_end(plan: Path, programs: str, tmp_path: Path) -> None:
+    out = tmp_path / "net"
+    out.mkdir()
+    read = read_plan(plan, {"run.steps": 40})
+    start = time.time() + 1.5
+    nodes = write_network(read, out, start, programs)
+    with Processes(read, nodes, programs) as processes:
+        wait_until(processes, start + 1.5)
+        processes.kill(1)
+        processes.restart(1)
+        wait_until(processes, start + read.seconds)
+        ended = processes.end()
+    assert ended.codes == [0] * 6
+    status = ended.statuses[1]
+    assert status["boot"] == 2
+    assert status["counters"]["joins"] >= 1
+    assert status["t"] >= 38
+    first, second = sorted((out / "1" / "log").glob("*.mcap"))
+    for log, stopped in ((first, False), (second, True)):
+        replayed = _core.replay_log(log.read_bytes())
+        assert replayed["differ"] == 0
+        assert replayed["ended"] == stopped
+
+
+def test_a_client_measures_and_watches(folder: Path, programs: str) -> None:
+    text = (folder / "node.toml").read_text()
+    (folder / "node.toml").write_text(text.replace('source = "file"\npath = "sensor.csv"', 'source = "socket"'))
+    command = [program("garrison-node", programs), str(folder / "node.toml")]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL) as process:
+        try:
+            client = Client(folder / "node.sock")
+            status = _patiently(client)
+            assert status["node"] == "0"
+            assert status["state"] == "waiting"
+            assert [link["state"] for link in status["links"]] == ["down", "down"]
+            assert client.measure([1.5]) == {"ok": True}
+            assert client.status()["sensor"]["taken"] == 1
+            with pytest.raises(_core.InvalidInput, match="as many numbers as the agent has outputs"):
+                client.measure([1.0, 2.0])
+            with pytest.raises(_core.InvalidInput, match="an unknown request"):
+                client._ask("what")
+        finally:
+            process.terminate()
+    assert process.returncode == 0
+    assert not (folder / "node.sock").exists()
+
+
+def _patiently(client: Client) -> dict[str, object]:
+    for _ in range(200):
+        try:
+            return client.status()
+        except (OSError, _core.Error):  # not there yet, or without a status yet
+            time.sleep(0.05)
+    return client.status()
+
+
+def test_check_says_what_fits(folder: Path, programs: str) -> None:
+    done = check(folder, programs)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "agent 0 of 6, saturation, 3 rounds every 100 ms, 2 neighbours" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "words"),
+    [
+        ("node.toml", 'source = "file"', 'source = "flie"', ["line 8, [sensor].source", '"flie"', '"lines", "udp"']),
+        ("node.toml", 'name = "0"', 'name = "9"', ["node.toml, name", "an agent of", "0, 1, 2"]),
+        ("node.toml", "part.gdesign", "nothing.gdesign", ["nothing.gdesign", "No such file"]),
+        ("sensor.csv", "\n", "\nwords\n", ["sensor.csv, line 2", '"words"', "1 numbers"]),
+        ("../roster.toml", "period_ms = 100", "period_ms = 2", ["3 rounds", "a longer period_ms"]),
+        ("../roster.toml", "initial = [0.0, 0.0]", "initial = [0.0]", ["[run].initial", "got 1 numbers", "2, one per"]),
+        ("../roster.toml", "hears = [1, 5]", "hears = [1]", ["hears", "a list without 5", "from the same design"]),
+        ("../roster.toml", "period_ms", "perod_ms", ["line 3, [run].perod_ms", 'did you mean "period_ms"?']),
+    ],
+)
+def test_check_refuses_what_does_not_fit(
+    folder: Path, programs: str, file: str, old: str, new: str, words: list[str]
+) -> None:
+    path = folder / file
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    done = check(folder, programs)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    for word in [*words, "got ", "expected "]:
+        assert word in done.stderr
+
+
+def test_check_refuses_keys_that_others_may_read_or_that_are_not_its_own(folder: Path, programs: str) -> None:
+    (folder / "node.key").chmod(0o644)
+    assert "chmod 600" in check(folder, programs).stderr
+    shutil.copy(folder.parent / "1" / "node.key", folder / "node.key")
+    (folder / "node.key").chmod(0o600)
+    done = check(folder, programs)
+    assert done.returncode == 2
+    assert "as " in done.stderr and "has for 0" in done.stderr
+    shutil.copy(folder.parent / "1" / "part.gdesign", folder / "part.gdesign")
+    (folder / "node.key").unlink()
+    assert "garrison-keygen" in check(folder, programs).stderr
+
+
+def test_another_part_is_refused(folder: Path, programs: str) -> None:
+    shutil.copy(folder.parent / "1" / "part.gdesign", folder / "part.gdesign")
+    assert "the part of agent 1" in check(folder, programs).stderr
+    damaged = bytearray((folder.parent / "0" / "part.gdesign").read_bytes())
+    damaged[50] ^= 1
+    (folder / "part.gdesign").write_bytes(damaged)
+    done = check(folder, programs)
+    assert done.returncode == 2
+    assert "part.gdesign" in done.stderr
+
+
+def test_plans_are_refused_by_key(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for old, new, word in [
+        ("loss = 0.05", "loss = 1.5", "[relay].loss"),
+        ("period_ms", "periodms", 'did you mean "period_ms"'),
+        ("delay_ms = 0.5", "delay_ms = -1", "[relay].delay_ms"),
+    ]:
+        plan.write_text(PLAN.replace(old, new))
+        assert main(["up", str(plan)]) == 2
+        assert word in capsys.readouterr().err
+
+
+def test_replay_refuses_what_is_no_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "x.mcap"
+    path.write_bytes(b"nothing of the kind")
+    assert garrison(["replay", str(path)]) == 2
+    assert "x.mcap" in capsys.readouterr().err
