@@ -7,7 +7,6 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
 from garrison import _core
 from garrison.cli import main as garrison
 from garrison.net import Client
@@ -52,18 +51,6 @@ period_ms = 100
 loss = 0.05
 delay_ms = 0.5
 """
-
-
-def _programs() -> str:
-    found = sorted(ROOT.glob("build/*/src/node/programs/garrison-node"), key=lambda path: path.stat().st_mtime)
-    if not found:
-        pytest.skip("no programs of the node in build/: configure with -DGARRISON_BUILD_NODE=ON")
-    return str(found[-1].parent)
-
-
-@pytest.fixture(scope="module")
-def programs() -> str:
-    return _programs()
 
 
 @pytest.fixture

@@ -47,7 +47,8 @@ Instant now() noexcept {
 
 bool clock_synchronised() noexcept {
   timex state{};
-  return ::adjtimex(&state) != TIME_ERROR && (state.status & STA_UNSYNC) == 0;
+  const int found = ::adjtimex(&state);
+  return found >= 0 && found != TIME_ERROR && (state.status & STA_UNSYNC) == 0;
 }
 
 }  // namespace garrison::node

@@ -48,11 +48,10 @@ SensorSettings read_sensor(const Section& section, const std::string& folder) {
   return s;
 }
 
-/// Where systemd puts what LoadCredential names, else beside the settings.
-std::string key_path(const Section& file, const std::string& folder) {
-  if (file.has("key")) return beside(folder, file.text("key"));
-  const char* credentials = std::getenv("CREDENTIALS_DIRECTORY");
-  return beside(credentials != nullptr ? credentials : folder, "node.key");
+/// Where the service manager wants it (systemd.exec(5)), else beside the settings.
+std::string given_or(const char* variable, const std::string& otherwise) {
+  const char* given = std::getenv(variable);
+  return given != nullptr && *given != '\0' ? given : otherwise;
 }
 
 }  // namespace
@@ -67,7 +66,8 @@ Settings parse_settings(const std::string& text, const std::string& path) {
   s.name = file.text("name");
   s.part = beside(folder, file.text("part"));
   s.roster = beside(folder, file.text("roster"));
-  s.key = key_path(file, folder);
+  s.key = file.has("key") ? beside(folder, file.text("key"))
+                          : beside(given_or("CREDENTIALS_DIRECTORY", folder), "node.key");
 
   const Section listen = file.section("listen");
   listen.only({"address"});
@@ -84,18 +84,20 @@ Settings parse_settings(const std::string& text, const std::string& path) {
   if (level != "inputs" && level != "off")
     refuse(log.where("level"), "\"" + level + "\"", "\"inputs\" or \"off\"");
   s.log_inputs = level == "inputs";
-  s.log_folder = beside(folder, log.text("folder", "log"));
+  s.log_folder = beside(folder, log.text("folder", given_or("LOGS_DIRECTORY", "log")));
   s.log_bytes = log.whole("size_mb", 1, 1 << 20, 64) << 20U;
   s.log_files = static_cast<int>(log.whole("files", 1, 10'000, 4));
 
   const Section state = file.section("state");
   state.only({"folder", "every_s"});
-  s.state_folder = beside(folder, state.text("folder", "state"));
+  s.state_folder = beside(folder, state.text("folder", given_or("STATE_DIRECTORY", "state")));
   s.state_every = std::llround(1e6 * state.number("every_s", 1.0, kMostSeconds, 60.0));
 
   const Section socket = file.section("socket");
   socket.only({"path"});
-  if (socket.has("path")) s.socket = beside(folder, socket.text("path"));
+  const std::string run = given_or("RUNTIME_DIRECTORY", "");
+  const std::string place = socket.text("path", run.empty() ? "" : beside(run, "node.sock"));
+  if (!place.empty()) s.socket = beside(folder, place);
 
   const Section limits = file.section("limits");
   limits.only({"receive_buffer_kb"});

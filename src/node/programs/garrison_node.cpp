@@ -75,8 +75,8 @@ void run(Station& station, bool print) {
   notify("READY=1");
   if (!wait_for_clock(settings)) return;
   loop.begin(read_state(settings.state_folder, station.run).value_or(std::vector<std::byte>{}));
-  ::mlockall(MCL_CURRENT | MCL_FUTURE);  // where it is allowed
   std::thread estimating([&loop] { loop.run(); });
+  ::mlockall(MCL_CURRENT | MCL_ONFAULT);  // where it is allowed
   const sched_param usual{};
   ::sched_setscheduler(0, SCHED_OTHER, &usual);  // files wait, estimates do not
   desk.run(loop);
