@@ -25,10 +25,11 @@ TEST_CASE("300 seeds of faults: what must hold holds") {
     CHECK(seen > 100);
 }
 
-// A clock that goes back while the node listens: it stayed in a loop, or ahead of everybody.
+// A clock that goes back while the node listens: it stayed in a loop, or ahead of everybody. 2114: ends with
+// different sessions, of which one was heard and the other was not.
 TEST_CASE("seeds that went wrong before") {
   Totals totals;
-  for (const std::uint64_t seed : {3825, 5763, 6759, 8924}) Simulation(seed, totals).run();
+  for (const std::uint64_t seed : {2114, 3825, 5763, 6759, 8924}) Simulation(seed, totals).run();
   CHECK(totals.wrong() == 0);
 }
 
