@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from garrison import _core
@@ -15,6 +16,7 @@ from garrison.net.folder import write_network
 from garrison.net.plan import read_plan
 from garrison.net.processes import Processes, wait_until
 from garrison.net.programs import program
+from test_node_web import status as example
 
 SCENARIO = """
 [model]
@@ -125,6 +127,9 @@ def test_a_client_measures_and_watches(folder: Path, programs: str) -> None:
             assert status["node"] == "0"
             assert status["state"] == "waiting"
             assert [link["state"] for link in status["links"]] == ["down", "down"]
+            assert status.keys() == example("0").keys()
+            assert status["counters"].keys() == example("0")["counters"].keys()
+            assert status["links"][0].keys() == example("0")["links"][0].keys()
             assert client.measure([1.5]) == {"ok": True}
             assert client.status()["sensor"]["taken"] == 1
             with pytest.raises(_core.InvalidInput, match="as many numbers as the agent has outputs"):
@@ -137,7 +142,7 @@ def test_a_client_measures_and_watches(folder: Path, programs: str) -> None:
     assert not (folder / "node.sock").exists()
 
 
-def _patiently(client: Client) -> dict[str, object]:
+def _patiently(client: Client) -> dict[str, Any]:
     for _ in range(200):
         try:
             return client.status()

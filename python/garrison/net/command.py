@@ -1,9 +1,12 @@
 """The command `garrison-net`: a network of real daemons on this machine."""
 
 import argparse
+import contextlib
 import sys
 import tempfile
+import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +14,13 @@ import numpy as np
 
 from garrison import _core
 from garrison._commands.terminal import NO, OK, REFUSED, console_for, print_table
-from garrison.net.folder import write_network
+from garrison.net.folder import NodeFolder, write_network
 from garrison.net.outcome import Outcome, read_outcome, write_summary
 from garrison.net.plan import Plan, read_plan
 from garrison.net.processes import Processes, wait_until
+from garrison.net.web.scene import Scene
+from garrison.net.web.server import Server
+from garrison.net.web.watcher import Watcher
 
 #: seconds between the start of the processes and sample 0
 _LEAD = 2.0
@@ -31,6 +37,7 @@ def _parser() -> argparse.ArgumentParser:
     up = commands.add_parser("up", help="run a scenario as a network of daemons, and check it", allow_abbrev=False)
     up.add_argument("file", help="network.toml: a scenario, periods, what the network loses")
     up.add_argument("-o", "--out", help="folder for keys, logs and summary.json; default: a temporary one, removed")
+    up.add_argument("--page", type=int, metavar="PORT", help="serve a live page on this port of 127.0.0.1; 0 = any")
     up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
     return parser
 
@@ -44,9 +51,9 @@ def main(argv: list[str] | None = None) -> int:
     try:
         plan = read_plan(args.file)
         if args.out is not None:
-            return up(plan, _empty(Path(args.out)), args.programs)
+            return up(plan, _empty(Path(args.out)), args.programs, args.page)
         with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
-            return up(plan, Path(folder), args.programs)
+            return up(plan, Path(folder), args.programs, args.page)
     except (_core.Error, OSError) as error:
         print(f"garrison-net: {' '.join(str(error).split())}", file=sys.stderr)
         return REFUSED
@@ -54,18 +61,44 @@ def main(argv: list[str] | None = None) -> int:
         return 130
 
 
-def up(plan: Plan, folder: Path, programs: str | None) -> int:
-    """Run the plan in `folder`; 1 when anything did not hold."""
+def up(plan: Plan, folder: Path, programs: str | None = None, page: int | None = None) -> int:
+    """Run the plan in `folder`, with a live page on port `page`; 1 when anything did not hold."""
     start = time.time() + _LEAD
     nodes = write_network(plan, folder, start, programs)
     print(f"{len(nodes)} daemons, {plan.samples} samples of {plan.period_ms:g} ms: {plan.seconds:.0f} s", flush=True)
-    with Processes(plan, nodes, programs) as processes:
+    with Processes(plan, nodes, programs) as processes, _page(plan, nodes, page):
         wait_until(processes, start + plan.seconds)
         ended = processes.end()
     outcome = read_outcome(plan, nodes, ended)
     write_summary(outcome, folder / "summary.json")
     show(plan, outcome)
     return NO if outcome.broken else OK
+
+
+@contextlib.contextmanager
+def _page(plan: Plan, nodes: list[NodeFolder], port: int | None) -> Iterator[None]:
+    """The live page, as long as the context."""
+    if port is None:
+        yield
+        return
+    scenario, run = plan.scenario, plan.reference.run
+    positions = (
+        {} if scenario.positions is None else dict(zip(scenario.names, scenario.positions.tolist(), strict=True))
+    )
+    truth = None if run.truth is None else run.truth[0, 1:]
+    scene = Scene(scenario.title, positions, [scenario.names[a] for a in scenario.hit], truth)
+    watcher = Watcher([node.socket for node in nodes], scene)
+    with Server("127.0.0.1", port, watcher) as server:
+        print(f"http://127.0.0.1:{server.server_port}/", flush=True)
+        watcher.start()
+        serving = threading.Thread(target=server.serve_forever)
+        serving.start()
+        try:
+            yield
+        finally:
+            server.shutdown()
+            serving.join()
+            watcher.end()
 
 
 def show(plan: Plan, outcome: Outcome) -> None:
