@@ -65,8 +65,12 @@ def up(plan: Plan, folder: Path, programs: str | None = None, page: int | None =
     """Run the plan in `folder`, with a live page on port `page`; 1 when anything did not hold."""
     start = time.time() + _LEAD
     nodes = write_network(plan, folder, start, programs)
-    print(f"{len(nodes)} daemons, {plan.samples} samples of {plan.period_ms:g} ms: {plan.seconds:.0f} s", flush=True)
     with Processes(plan, nodes, programs) as processes, _page(plan, nodes, page):
+        how = (
+            "with real-time priority" if processes.priority else "without real-time priority, which is not allowed here"
+        )
+        size = f"{len(nodes)} daemons, {plan.samples} samples of {plan.period_ms:g} ms"
+        print(f"{size}: {plan.seconds:.0f} s, {how}", flush=True)
         wait_until(processes, start + plan.seconds)
         ended = processes.end()
     outcome = read_outcome(plan, nodes, ended)

@@ -1,6 +1,7 @@
 """Starts the daemons and the relay, waits, and ends what it started, by its handle and nothing else."""
 
 import json
+import shutil
 import subprocess
 import time
 from contextlib import ExitStack
@@ -34,6 +35,8 @@ class Processes:
     def __init__(self, plan: Plan, nodes: list[NodeFolder], programs: str | None) -> None:
         self._plan, self._nodes, self._programs = plan, nodes, programs
         self._stack = ExitStack()
+        #: what the commands begin with: real-time priority where that is allowed, as the service unit gives it
+        self.priority = _real_time()
         self._daemons: list[subprocess.Popen[bytes]] = []
 
     def __enter__(self) -> Self:
@@ -81,11 +84,22 @@ class Processes:
         words = [word for option in options for word in option.split("=")]
         limit = str(self._plan.seconds + 120)
         ways = [f"{node.outside}:{node.port}" for node in self._nodes]
-        return [program(RELAY, self._programs), "--seed", str(self._plan.seed), *words, "--seconds", limit, *ways]
+        return [
+            *self.priority,
+            program(RELAY, self._programs),
+            "--seed",
+            str(self._plan.seed),
+            *words,
+            "--seconds",
+            limit,
+            *ways,
+        ]
 
     def _node(self, stack: ExitStack, node: NodeFolder) -> "subprocess.Popen[bytes]":
         return self._started(
-            stack, [program(NODE, self._programs), "--print", str(node.settings)], node.path / "samples.jsonl"
+            stack,
+            [*self.priority, program(NODE, self._programs), "--print", str(node.settings)],
+            node.path / "samples.jsonl",
         )
 
     def _started(self, stack: ExitStack, command: list[str], out: Path) -> "subprocess.Popen[bytes]":
@@ -98,6 +112,12 @@ class Processes:
     def _all(self) -> list[tuple["subprocess.Popen[bytes]", Path]]:
         nodes = zip(self._daemons, (node.path / "samples.jsonl" for node in self._nodes), strict=True)
         return [(self._relay, self._nodes[0].path.parent / "relay.json"), *nodes]
+
+
+def _real_time() -> list[str]:
+    command = ["chrt", "--fifo", "20"]
+    allowed = shutil.which("chrt") and subprocess.run([*command, "true"], capture_output=True).returncode == 0
+    return command if allowed else []
 
 
 def _awaited(process: "subprocess.Popen[bytes]") -> int:
