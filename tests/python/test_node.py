@@ -1,6 +1,7 @@
 """Real daemons on 127.0.0.1: a small network, its files, its programs. Needs a build with GARRISON_BUILD_NODE."""
 
 import json
+import re
 import shutil
 import subprocess
 import time
@@ -76,15 +77,19 @@ def check(folder: Path, programs: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=20)
 
 
-def test_a_network_of_daemons_does_what_one_process_does(
+def test_a_network_under_attack_does_what_one_process_does(
     plan: Path, programs: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "net"
-    assert main(["up", str(plan), "-o", str(out), "--programs", programs]) == 0
+    assert main(["up", str(plan), "-o", str(out), "--programs", programs, "--attack"]) == 0
     said = capsys.readouterr().out
     assert "held:" in said
     summary = json.loads((out / "summary.json").read_text())
-    assert summary["relay"]["lost"] > 0
+    assert all(summary["relay"][what] > 0 for what in ("lost", "replayed", "mutated", "forged", "flooded"))
+    refused = re.search(r"refused: (.*)", said)
+    assert refused is not None
+    for reason in ("tag", "replay", "size", "stranger"):
+        assert re.search(rf"\d+ {reason}\b", refused[1])
     assert all(node["samples"] > 20 and node["replayed"] > 20 and node["differ"] == 0 for node in summary["nodes"])
     logs = [str(path) for path in sorted(out.glob("*/log/*.mcap"))]
     assert len(logs) == 6

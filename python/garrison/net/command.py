@@ -6,6 +6,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,8 @@ from garrison.net.web.scene import Scene
 from garrison.net.web.server import Server
 from garrison.net.web.watcher import Watcher
 
+#: what --attack adds at the relay: shares of all datagrams, and datagrams per second
+_ATTACK = {"replay": 0.2, "mutate": 0.2, "forge": 0.2, "flood": 5000.0}
 #: seconds between the start of the processes and sample 0
 _LEAD = 2.0
 
@@ -38,6 +41,12 @@ def _parser() -> argparse.ArgumentParser:
     up.add_argument("file", help="network.toml: a scenario, periods, what the network loses")
     up.add_argument("-o", "--out", help="folder for keys, logs and summary.json; default: a temporary one, removed")
     up.add_argument("--page", type=int, metavar="PORT", help="serve a live page on this port of 127.0.0.1; 0 = any")
+    up.add_argument(
+        "--attack",
+        action="store_true",
+        help="with somebody in between who has no key: replays, mutants and forgeries, each for a fifth of the "
+        "datagrams, and a flood of 5000 a second",
+    )
     up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
     return parser
 
@@ -50,6 +59,7 @@ def main(argv: list[str] | None = None) -> int:
         return int(usage.code or 0)
     try:
         plan = read_plan(args.file)
+        plan.relay |= _ATTACK if args.attack else {}
         if args.out is not None:
             return up(plan, _empty(Path(args.out)), args.programs, args.page)
         with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
@@ -144,10 +154,24 @@ def show(plan: Plan, outcome: Outcome) -> None:
         f"relay: {relay['came']} datagrams, {relay['lost']} lost, {relay['doubled']} doubled; "
         f"complete {outcome.share('complete'):.2%}, with bound {outcome.share('bound'):.2%}"
     )
+    if attacks := {word: relay[word] for word in ("replayed", "mutated", "forged", "flooded") if relay[word]}:
+        print(
+            f"attack: {', '.join(f'{count} {word}' for word, count in attacks.items())}; refused: {_refused(outcome)}"
+        )
     for line in outcome.broken:
         print(f"DOES NOT HOLD: {line}")
     if not outcome.broken:
         print("held: errors within bounds, nobody accused wrongly, every log gives the same estimates again")
+
+
+def _refused(outcome: Outcome) -> str:
+    """All nodes' datagrams that nothing came of, by reason."""
+    found: Counter[str] = Counter()
+    for node in outcome.nodes:
+        found.update(node.status["outside"])
+        for link in node.status["links"]:
+            found.update(link["fates"])
+    return ", ".join(f"{count} {fate}" for fate, count in found.most_common() if fate not in ("taken", "handshake"))
 
 
 def _number(value: np.floating[Any]) -> str:

@@ -11,13 +11,13 @@ from garrison.scenario import Scenario, read_document, read_scenario
 from garrison.scenario.section import Section
 from garrison.words import refusal, shown
 
-_SHARES = ("loss", "duplicates")
+_SHARES = ("loss", "duplicates", "replay", "mutate", "forge")
 _TIMES = ("delay_ms", "jitter_ms")
 
 
 @dataclass
 class Plan:
-    """What is to be run. Times in ms; shares in 0..1."""
+    """What is to be run. Times in ms; shares in 0..1; flood in datagrams per second."""
 
     path: Path
     scenario: Scenario
@@ -56,7 +56,7 @@ def read_plan(path: str | Path, override: Mapping[str, Any] | None = None) -> Pl
     run = _section(whole, "run")
     run.only(["period_ms", "round_ms", "resend_ms"])
     relay, expect = _section(whole, "relay"), _section(whole, "expect")
-    relay.only(["seed", *_SHARES, *_TIMES])
+    relay.only(["seed", *_SHARES, *_TIMES, "flood"])
     expect.only(["complete", "bound"])
     return Plan(
         path=path,
@@ -66,7 +66,9 @@ def read_plan(path: str | Path, override: Mapping[str, Any] | None = None) -> Pl
         round_ms=run.number("round_ms", 0.0, positive=True) if "round_ms" in run else None,
         resend_ms=run.number("resend_ms", 0.0, positive=True) if "resend_ms" in run else None,
         seed=relay.whole("seed", 1, 0),
-        relay={key: _share(relay, key) for key in _SHARES} | {key: _time(relay, key) for key in _TIMES},
+        relay={key: _share(relay, key) for key in _SHARES}
+        | {key: _time(relay, key) for key in _TIMES}
+        | {"flood": float(relay.whole("flood", 0, 0, 1_000_000))},
         expect={key: _share(expect, key) for key in ("complete", "bound")},
     )
 

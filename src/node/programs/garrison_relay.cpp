@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // garrison-relay: a bad network on one machine. What comes to a port of 127.0.0.1 goes on to another one, or
-// is lost, late, or there twice. Chances are drawn from the seed, a row of numbers for each port.
+// is lost, late, or there twice; an attacker without keys may add datagrams of his own. Chances are drawn
+// from the seed, a row of numbers for each port.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <signal.h>
@@ -11,23 +12,28 @@
 #include <cstdio>
 #include <cstdlib>
 #include <queue>
-#include <random>
 #include <string_view>
 
 #include "garrison/core/error.hpp"
 #include "node/daemon/service.hpp"
 #include "node/daemon/udp.hpp"
+#include "node/programs/intruder.hpp"
 
 using namespace garrison::node;
 
 namespace {
 
 constexpr const char* kUsage =
-    "usage: garrison-relay [--seed 1] [--loss 0] [--duplicates 0] [--delay-ms 0] [--jitter-ms 0] [--seconds "
-    "600] FROM:TO...\n"
+    "usage: garrison-relay [--seed 1] [--loss 0] [--duplicates 0] [--delay-ms 0] [--jitter-ms 0] [--replay "
+    "0]\n"
+    "                      [--mutate 0] [--forge 0] [--flood 0] [--seconds 600] FROM:TO...\n"
     "\n"
     "  FROM:TO   ports of 127.0.0.1: datagrams that come to FROM go on to TO\n"
     "  --loss, --duplicates   chances per datagram, in 0..1\n"
+    "  --replay, --mutate, --forge   the same of sending, too: an old datagram of anybody, a changed copy, "
+    "or\n"
+    "                         random bytes behind a genuine header\n"
+    "  --flood                datagrams of random bytes a second, to all TO in turn\n"
     "  --seconds              after which it ends; it also ends by SIGTERM or SIGINT\n"
     "\n"
     "Prints what it did as a line of JSON. Exit codes: 0 fine, 2 refused.\n";
@@ -35,6 +41,7 @@ constexpr std::size_t kMostWaiting = 100'000;
 
 struct Weather {
   double loss = 0, duplicates = 0, delay_ms = 0, jitter_ms = 0, seconds = 600, seed = 1;
+  double replay = 0, mutate = 0, forge = 0, flood = 0;
 };
 struct Way {
   Descriptor from;
@@ -49,6 +56,7 @@ struct Late {
 };
 struct Counters {
   long long came = 0, lost = 0, doubled = 0, sent = 0, full = 0;
+  long long replayed = 0, mutated = 0, forged = 0, flooded = 0;
 };
 
 double number_of(std::string_view option, const char* text, double most) {
@@ -86,10 +94,12 @@ class Relay {
     const Descriptor signals(::signalfd(-1, &ending, SFD_NONBLOCK | SFD_CLOEXEC));
     std::vector<pollfd> all{{signals.get(), POLLIN, 0}};
     for (const Way& way : ways_) all.push_back({way.from.get(), POLLIN, 0});
-    const Micros end = now().steady + static_cast<Micros>(1e6 * weather_.seconds);
+    const Micros start = now().steady;
+    const Micros end = start + static_cast<Micros>(1e6 * weather_.seconds);
+    const Micros longest = weather_.flood > 0 ? 1000 : 100'000;
     while ((all[0].revents & POLLIN) == 0 && now().steady < end) {
-      const Micros left = late_.empty() ? 100'000 : late_.top().at - now().steady;
-      const timespec pause{0, static_cast<long>(1000 * std::clamp<Micros>(left, 0, 100'000))};
+      const Micros left = late_.empty() ? longest : late_.top().at - now().steady;
+      const timespec pause{0, static_cast<long>(1000 * std::clamp<Micros>(left, 0, longest))};
       ::ppoll(all.data(), all.size(), &pause, nullptr);
       for (std::size_t k = 0; k < ways_.size(); ++k)
         if ((all[k + 1].revents & POLLIN) != 0) take(k);
@@ -97,9 +107,9 @@ class Relay {
         send(late_.top().way, late_.top().bytes);
         late_.pop();
       }
+      flood(static_cast<double>(now().steady - start) / 1e6);
     }
-    std::printf("{\"came\":%lld,\"lost\":%lld,\"doubled\":%lld,\"sent\":%lld,\"full\":%lld}\n",
-                counters_.came, counters_.lost, counters_.doubled, counters_.sent, counters_.full);
+    say();
   }
 
  private:
@@ -112,6 +122,7 @@ class Relay {
       // Both are drawn for every datagram, so that one setting does not change what another one does.
       const bool lost = chance(ways_[k], weather_.loss);
       const bool twice = chance(ways_[k], weather_.duplicates);
+      attack(k, std::string(piece, static_cast<std::size_t>(got)));
       if (lost) {
         ++counters_.lost;
         continue;
@@ -120,6 +131,37 @@ class Relay {
       for (int copies = twice ? 2 : 1; copies > 0; --copies)
         forward(k, std::string(piece, static_cast<std::size_t>(got)));
     }
+  }
+
+  void attack(std::size_t k, const std::string& seen) {
+    Way& way = ways_[k];
+    const bool replays = chance(way, weather_.replay), mutates = chance(way, weather_.mutate);
+    const bool forges = chance(way, weather_.forge);
+    counters_.replayed += replays && intruder_.remembers() ? 1 : 0;
+    counters_.mutated += mutates ? 1 : 0;
+    counters_.forged += forges ? 1 : 0;
+    if (replays && intruder_.remembers()) forward(k, intruder_.old(way.random));
+    if (mutates) forward(k, Intruder::mutant(way.random, seen));
+    if (forges) forward(k, Intruder::forged(way.random, seen));
+    if (weather_.replay > 0) intruder_.remember(way.random, seen);
+  }
+
+  /// As many as are due since the start, not more than a batch at once.
+  void flood(double seconds) {
+    const auto due = static_cast<long long>(weather_.flood * seconds);
+    for (int batch = 0; counters_.flooded < due && batch < 1000; ++batch) {
+      Way& way = ways_[static_cast<std::size_t>(counters_.flooded++) % ways_.size()];
+      const std::string junk = Intruder::junk(way.random, 16 + way.random() % 80);
+      ::sendto(way.from.get(), junk.data(), junk.size(), MSG_NOSIGNAL, way.to.get(), way.to.size);
+    }
+  }
+
+  void say() const {
+    const Counters& c = counters_;
+    std::printf("{\"came\":%lld,\"lost\":%lld,\"doubled\":%lld,\"sent\":%lld,\"full\":%lld,", c.came, c.lost,
+                c.doubled, c.sent, c.full);
+    std::printf("\"replayed\":%lld,\"mutated\":%lld,\"forged\":%lld,\"flooded\":%lld}\n", c.replayed,
+                c.mutated, c.forged, c.flooded);
   }
 
   void forward(std::size_t k, std::string bytes) {
@@ -141,6 +183,7 @@ class Relay {
   std::vector<Way> ways_;
   Weather weather_;
   std::priority_queue<Late> late_;
+  Intruder intruder_;
   Counters counters_;
 };
 
@@ -151,7 +194,9 @@ int main(int count, char** words) {
   const std::tuple<const char*, double*, double> options[] = {
       {"--seed", &weather.seed, 9e15},          {"--loss", &weather.loss, 1},
       {"--duplicates", &weather.duplicates, 1}, {"--delay-ms", &weather.delay_ms, 1e4},
-      {"--jitter-ms", &weather.jitter_ms, 1e4}, {"--seconds", &weather.seconds, 86400}};
+      {"--jitter-ms", &weather.jitter_ms, 1e4}, {"--replay", &weather.replay, 1},
+      {"--mutate", &weather.mutate, 1},         {"--forge", &weather.forge, 1},
+      {"--flood", &weather.flood, 1e6},         {"--seconds", &weather.seconds, 86400}};
   try {
     std::vector<Way> ways;
     for (int k = 1; k < count; ++k) {
