@@ -15,7 +15,6 @@ from garrison.net import Client
 from garrison.net.command import main
 from garrison.net.folder import write_network
 from garrison.net.plan import read_plan
-from garrison.net.processes import Processes, wait_until
 from garrison.net.programs import program
 from test_node_web import status as example
 
@@ -97,28 +96,18 @@ def test_a_network_under_attack_does_what_one_process_does(
     assert "was stopped" in capsys.readouterr().out
 
 
-def test_a_killed_node_is_back_and_its_log_is_read_to_the_end(plan: Path, programs: str, tmp_path: Path) -> None:
+def test_killed_nodes_are_back_and_their_logs_are_read_to_the_end(
+    plan: Path, programs: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "net"
-    out.mkdir()
-    read = read_plan(plan, {"run.steps": 40})
-    start = time.time() + 1.5
-    nodes = write_network(read, out, start, programs)
-    with Processes(read, nodes, programs) as processes:
-        wait_until(processes, start + 1.5)
-        processes.kill(1)
-        processes.restart(1)
-        wait_until(processes, start + read.seconds)
-        ended = processes.end()
-    assert ended.codes == [0] * 6
-    status = ended.statuses[1]
-    assert status["boot"] == 2
-    assert status["counters"]["joins"] >= 1
-    assert status["t"] >= 38
-    first, second = sorted((out / "1" / "log").glob("*.mcap"))
-    for log, stopped in ((first, False), (second, True)):
-        replayed = _core.replay_log(log.read_bytes())
-        assert replayed["differ"] == 0
-        assert replayed["ended"] == stopped
+    assert main(["up", str(plan), "-o", str(out), "--programs", programs, "--kills", "2"]) == 0
+    assert re.search(r"kills: 2, back after [\d.]+ s", capsys.readouterr().out)
+    logs = [_core.replay_log(path.read_bytes()) for path in sorted(out.glob("*/log/*.mcap"))]
+    assert len(logs) == 6 + 2
+    assert sum(not log["ended"] for log in logs) == 2
+    assert all(log["differ"] == 0 for log in logs)
+    joined = [node["counters"]["joins"] for node in json.loads((out / "summary.json").read_text())["nodes"]]
+    assert sum(joined) >= 1
 
 
 def test_a_client_measures_and_watches(folder: Path, programs: str) -> None:

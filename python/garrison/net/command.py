@@ -16,6 +16,7 @@ import numpy as np
 from garrison import _core
 from garrison._commands.terminal import NO, OK, REFUSED, console_for, print_table
 from garrison.net.folder import NodeFolder, write_network
+from garrison.net.kills import kill_some, seconds_back
 from garrison.net.outcome import Outcome, read_outcome, write_summary
 from garrison.net.plan import Plan, read_plan
 from garrison.net.processes import Processes, wait_until
@@ -47,6 +48,7 @@ def _parser() -> argparse.ArgumentParser:
         help="with somebody in between who has no key: replays, mutants and forgeries, each for a fifth of the "
         "datagrams, and a flood of 5000 a second",
     )
+    up.add_argument("--kills", type=int, default=0, help="kill a daemon, and start it again, so many times")
     up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
     return parser
 
@@ -61,9 +63,9 @@ def main(argv: list[str] | None = None) -> int:
         plan = read_plan(args.file)
         plan.relay |= _ATTACK if args.attack else {}
         if args.out is not None:
-            return up(plan, _empty(Path(args.out)), args.programs, args.page)
+            return up(plan, _empty(Path(args.out)), args.programs, args.page, args.kills)
         with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
-            return up(plan, Path(folder), args.programs, args.page)
+            return up(plan, Path(folder), args.programs, args.page, args.kills)
     except (_core.Error, OSError) as error:
         print(f"garrison-net: {' '.join(str(error).split())}", file=sys.stderr)
         return REFUSED
@@ -71,8 +73,10 @@ def main(argv: list[str] | None = None) -> int:
         return 130
 
 
-def up(plan: Plan, folder: Path, programs: str | None = None, page: int | None = None) -> int:
+def up(plan: Plan, folder: Path, programs: str | None = None, page: int | None = None, kills: int = 0) -> int:
     """Run the plan in `folder`, with a live page on port `page`; 1 when anything did not hold."""
+    if kills:
+        plan.expect = {}  # a node that is away misses samples, and so do its neighbours
     start = time.time() + _LEAD
     nodes = write_network(plan, folder, start, programs)
     with Processes(plan, nodes, programs) as processes, _page(plan, nodes, page):
@@ -81,11 +85,20 @@ def up(plan: Plan, folder: Path, programs: str | None = None, page: int | None =
         )
         size = f"{len(nodes)} daemons, {plan.samples} samples of {plan.period_ms:g} ms"
         print(f"{size}: {plan.seconds:.0f} s, {how}", flush=True)
+        killed = kill_some(processes, plan, start, kills)
         wait_until(processes, start + plan.seconds)
         ended = processes.end()
     outcome = read_outcome(plan, nodes, ended)
+    back = [seconds_back(kill, nodes) for kill in killed]
+    outcome.broken += [
+        f"{nodes[kill.node].name} was killed and had no complete sample after that"
+        for kill, seconds in zip(killed, back, strict=True)
+        if seconds is None
+    ]
     write_summary(outcome, folder / "summary.json")
     show(plan, outcome)
+    if known := sorted(seconds for seconds in back if seconds is not None):
+        print(f"kills: {len(back)}, back after {np.median(known):.2f} s (median), {known[-1]:.2f} s (longest)")
     return NO if outcome.broken else OK
 
 
