@@ -213,6 +213,15 @@ def test_plans_are_refused_by_key(plan: Path, capsys: pytest.CaptureFixture[str]
         assert word in capsys.readouterr().err
 
 
+def test_accept_measures_a_row_and_refuses_unknown_ones(programs: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["accept", "kils"]) == 2
+    assert 'did you mean "kills"?' in capsys.readouterr().err
+    assert main(["accept", "kills", "--seconds", "1"]) == 2
+    assert "a number in 2..3600" in capsys.readouterr().err
+    assert main(["accept", "kills", "--seconds", "2.5", "--programs", programs]) in (0, 1)  # 1: a busy machine
+    assert re.search(r"kills: .*\n +5 of 5 back; median", capsys.readouterr().out)
+
+
 def test_replay_refuses_what_is_no_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "x.mcap"
     path.write_bytes(b"nothing of the kind")

@@ -1,13 +1,9 @@
 """The command `garrison-net`: a network of real daemons on this machine."""
 
 import argparse
-import contextlib
 import sys
 import tempfile
-import threading
-import time
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,19 +11,11 @@ import numpy as np
 
 from garrison import _core
 from garrison._commands.terminal import NO, OK, REFUSED, console_for, print_table
-from garrison.net.folder import NodeFolder, write_network
-from garrison.net.kills import kill_some, seconds_back
-from garrison.net.outcome import Outcome, read_outcome, write_summary
+from garrison.net.outcome import Outcome, write_summary
 from garrison.net.plan import Plan, read_plan
-from garrison.net.processes import Processes, wait_until
-from garrison.net.web.scene import Scene
-from garrison.net.web.server import Server
-from garrison.net.web.watcher import Watcher
-
-#: what --attack adds at the relay: shares of all datagrams, and datagrams per second
-_ATTACK = {"replay": 0.2, "mutate": 0.2, "forge": 0.2, "flood": 5000.0}
-#: seconds between the start of the processes and sample 0
-_LEAD = 2.0
+from garrison.net.rows import ATTACK, ROWS
+from garrison.net.running import carry_out
+from garrison.words import count, near, refusal
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -50,6 +38,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     up.add_argument("--kills", type=int, default=0, help="kill a daemon, and start it again, so many times")
     up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
+    accept = commands.add_parser(
+        "accept", help="measure what a network of daemons has to meet, row by row", allow_abbrev=False
+    )
+    accept.add_argument("row", nargs="*", help=f"some of {', '.join(row.name for row in ROWS)}; default: all")
+    accept.add_argument("--seconds", type=float, default=30.0, help="length of rows that can be longer (default 30)")
+    accept.add_argument("--programs", help="folder of the node's programs")
     return parser
 
 
@@ -60,12 +54,14 @@ def main(argv: list[str] | None = None) -> int:
     except SystemExit as usage:
         return int(usage.code or 0)
     try:
+        if args.command == "accept":
+            return _accept(args)
         plan = read_plan(args.file)
-        plan.relay |= _ATTACK if args.attack else {}
+        plan.relay |= ATTACK if args.attack else {}
         if args.out is not None:
-            return up(plan, _empty(Path(args.out)), args.programs, args.page, args.kills)
+            return _up(plan, _empty(Path(args.out)), args)
         with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
-            return up(plan, Path(folder), args.programs, args.page, args.kills)
+            return _up(plan, Path(folder), args)
     except (_core.Error, OSError) as error:
         print(f"garrison-net: {' '.join(str(error).split())}", file=sys.stderr)
         return REFUSED
@@ -73,59 +69,31 @@ def main(argv: list[str] | None = None) -> int:
         return 130
 
 
-def up(plan: Plan, folder: Path, programs: str | None = None, page: int | None = None, kills: int = 0) -> int:
-    """Run the plan in `folder`, with a live page on port `page`; 1 when anything did not hold."""
-    if kills:
-        plan.expect = {}  # a node that is away misses samples, and so do its neighbours
-    start = time.time() + _LEAD
-    nodes = write_network(plan, folder, start, programs)
-    with Processes(plan, nodes, programs) as processes, _page(plan, nodes, page):
-        how = (
-            "with real-time priority" if processes.priority else "without real-time priority, which is not allowed here"
-        )
-        size = f"{len(nodes)} daemons, {plan.samples} samples of {plan.period_ms:g} ms"
-        print(f"{size}: {plan.seconds:.0f} s, {how}", flush=True)
-        killed = kill_some(processes, plan, start, kills)
-        wait_until(processes, start + plan.seconds)
-        ended = processes.end()
-    outcome = read_outcome(plan, nodes, ended)
-    back = [seconds_back(kill, nodes) for kill in killed]
-    outcome.broken += [
-        f"{nodes[kill.node].name} was killed and had no complete sample after that"
-        for kill, seconds in zip(killed, back, strict=True)
-        if seconds is None
-    ]
+def _up(plan: Plan, folder: Path, args: argparse.Namespace) -> int:
+    outcome = carry_out(plan, folder, programs=args.programs, page=args.page, kills=args.kills, say=_say)
     write_summary(outcome, folder / "summary.json")
     show(plan, outcome)
-    if known := sorted(seconds for seconds in back if seconds is not None):
-        print(f"kills: {len(back)}, back after {np.median(known):.2f} s (median), {known[-1]:.2f} s (longest)")
     return NO if outcome.broken else OK
 
 
-@contextlib.contextmanager
-def _page(plan: Plan, nodes: list[NodeFolder], port: int | None) -> Iterator[None]:
-    """The live page, as long as the context."""
-    if port is None:
-        yield
-        return
-    scenario, run = plan.scenario, plan.reference.run
-    positions = (
-        {} if scenario.positions is None else dict(zip(scenario.names, scenario.positions.tolist(), strict=True))
-    )
-    truth = None if run.truth is None else run.truth[0, 1:]
-    scene = Scene(scenario.title, positions, [scenario.names[a] for a in scenario.hit], truth)
-    watcher = Watcher([node.socket for node in nodes], scene)
-    with Server("127.0.0.1", port, watcher) as server:
-        print(f"http://127.0.0.1:{server.server_port}/", flush=True)
-        watcher.start()
-        serving = threading.Thread(target=server.serve_forever)
-        serving.start()
-        try:
-            yield
-        finally:
-            server.shutdown()
-            serving.join()
-            watcher.end()
+def _accept(args: argparse.Namespace) -> int:
+    known = {row.name: row for row in ROWS}
+    for name in args.row:
+        if name not in known:
+            raise refusal("accept", repr(name), f"one of {', '.join(known)}", near(name, known))
+    if not 2 <= args.seconds <= 3600:
+        raise refusal("--seconds", f"{args.seconds:g}", "a number in 2..3600")
+    missed = 0
+    for row in [known[name] for name in args.row] or ROWS:
+        said, met = row.run(args.seconds, args.programs)
+        missed += not met
+        _say(f"{'met ' if met else 'MISS'}  {row.name}: {row.bar}\n      {said}")
+    _say("all met" if not missed else f"{count(missed, 'row')} missed")
+    return NO if missed else OK
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
 
 
 def show(plan: Plan, outcome: Outcome) -> None:
@@ -171,6 +139,8 @@ def show(plan: Plan, outcome: Outcome) -> None:
         print(
             f"attack: {', '.join(f'{count} {word}' for word, count in attacks.items())}; refused: {_refused(outcome)}"
         )
+    if known := sorted(seconds for seconds in outcome.back if seconds is not None):
+        print(f"kills: {len(outcome.back)}, back after {np.median(known):.2f} s (median), {known[-1]:.2f} s (longest)")
     for line in outcome.broken:
         print(f"DOES NOT HOLD: {line}")
     if not outcome.broken:

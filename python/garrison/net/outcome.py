@@ -29,6 +29,7 @@ class NodeOutcome:
     status: dict[str, Any]
     accused: list[str]
     code: int
+    took: Array  # ms from the begin of a sample to its end
     replayed: int = 0
     differ: int = 0
 
@@ -41,6 +42,8 @@ class Outcome:
     relay: dict[str, int]
     hijacked: list[str]
     broken: list[str] = field(default_factory=list)
+    back: list[float | None] = field(default_factory=list)  # s after every kill until a complete sample
+    cores: float = 0.0  # CPU time of all processes, the relay's, too, per second
 
     def share(self, name: str) -> float:
         """Of all samples of all nodes: complete, bound (there is one)."""
@@ -48,25 +51,26 @@ class Outcome:
         return float(np.mean(values))
 
 
-def read_outcome(plan: Plan, nodes: list[NodeFolder], ended: Ended) -> Outcome:
-    """Read what the nodes printed and logged, and check it."""
+def read_outcome(plan: Plan, nodes: list[NodeFolder], ended: Ended, shares: bool = True) -> Outcome:
+    """Read what the nodes printed and logged, and check it. shares: those that the plan expects, too."""
     names = plan.scenario.names
     found = [_node(plan, node, ended.statuses[k], ended.codes[k]) for k, node in enumerate(nodes)]
     outcome = Outcome(found, ended.relay, [names[a] for a in plan.scenario.hit])
-    outcome.broken = [*_broken_nodes(outcome), *_broken_shares(plan, outcome), *_broken_bits(outcome)]
+    outcome.broken = [*_broken_nodes(outcome), *_broken_bits(outcome)]
+    outcome.broken += _broken_shares(plan, outcome) if shares else []
     return outcome
 
 
 def _node(plan: Plan, folder: NodeFolder, status: dict[str, Any], code: int) -> NodeOutcome:
     samples, n = plan.samples, len(plan.reference.initial)
     complete, said = np.zeros(samples, dtype=bool), np.zeros(samples, dtype=bool)
-    bound, estimate = np.full(samples, np.nan), np.full((samples, n), np.nan)
+    bound, took, estimate = np.full(samples, np.nan), np.full(samples, np.nan), np.full((samples, n), np.nan)
     for line in (folder.path / "samples.jsonl").read_text().splitlines():
         sample = json.loads(line)
         at = sample["t"] - 1
         if not 0 <= at < samples:
             continue
-        said[at], complete[at] = True, sample["complete"]
+        said[at], complete[at], took[at] = True, sample["complete"], sample["took_ms"]
         bound[at] = np.nan if sample["bound"] is None else sample["bound"]
         estimate[at] = [np.nan if x is None else x for x in sample["estimate"]]
     run = plan.reference.run
@@ -82,6 +86,7 @@ def _node(plan: Plan, folder: NodeFolder, status: dict[str, Any], code: int) -> 
         status=status,
         accused=[plan.scenario.names[a] for a in status["accused"]],
         code=code,
+        took=took,
     )
     for log in sorted((folder.path / "log").glob("*.mcap")):
         replayed = _core.replay_log(log.read_bytes())

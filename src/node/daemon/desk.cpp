@@ -66,7 +66,6 @@ void Desk::tick(Loop& loop, Micros steady) {
   if (steady - flushed_at_ >= kFlushPause) {
     flushed_at_ = steady;
     if (log_) log_->file().flush();
-    if (print_) std::fflush(stdout);
   }
   if (steady - saved_at_ >= station_.settings.state_every) save_state();
   watch_over(loop, steady);
@@ -102,7 +101,10 @@ void Desk::status(Bytes content) {
   if (!wanted) return;
   const std::string line = sample_json(status_, around_);
   if (log_) log_->file().sample(line, status_.head.wall);
-  if (print_) std::printf("%s\n", line.c_str());
+  if (print_) {
+    std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+  }
   if (socket_) socket_->tell(line);
 }
 
