@@ -15,13 +15,15 @@ TEST_CASE("300 seeds of faults: what must hold holds") {
   CHECK(totals.estimates_wrong == 0);
   CHECK(totals.bounds_wrong == 0);
   CHECK(totals.proofs_wrong == 0);
+  CHECK(totals.statements_wrong == 0);
   CHECK(totals.nodes_wrong == 0);
   CHECK(totals.replayed_wrong == 0);
   CHECK(totals.plain_wrong == 0);
   // Every kind of fault and of comparison took place.
   for (const std::int64_t seen :
        {totals.injected, totals.mutated, totals.conflicts, totals.crashes, totals.joins, totals.clock_steps,
-        totals.resent, totals.bounds, totals.proofs, totals.fused, totals.replayed, totals.plain})
+        totals.resent, totals.bounds, totals.proofs, totals.fused, totals.statements, totals.replayed,
+        totals.plain})
     CHECK(seen > 100);
 }
 
