@@ -171,8 +171,12 @@ class Simulation::Station final : public World, private Tamper {
     log.resize(at + kEntryHead + entry.data.size());
     write_entry(entry, log.data() + at);
   }
-  void contradiction(const Statement&, const Statement&) noexcept override {
-    s_.wrong(s_.totals_.statements_wrong, "two statements that contradict each other", id_, agent_->sample());
+  void contradiction(const Statement& a, const Statement& b) noexcept override {
+    const bool proved = Proof{Key{}, a, b}.convicts(s_.signing_open_[a.sender]);
+    if (proved && a.sender == s_.faults_.liar)
+      ++s_.totals_.convictions;
+    else
+      s_.wrong(s_.totals_.statements_wrong, "an honest node is convicted", id_, agent_->sample());
   }
   void ended(const Sample& sample) noexcept override {
     fresh_ = true;
@@ -185,8 +189,9 @@ class Simulation::Station final : public World, private Tamper {
     if (node_->core().snapshot(made) != 0) disk_ = made;
   }
   /// Another lie to everybody: huge numbers, infinities, short bodies, bytes at random, wrong rounds.
-  std::size_t operator()(int, Room plain, std::size_t size) noexcept override {
+  std::size_t operator()(int neighbour, Room plain, std::size_t size) noexcept override {
     Seeded& random = s_.random_;
+    if (Inner::read(plain.data()).kind == Kind::statement) return sign_another(neighbour, plain, size);
     if (size < kInner + 16) return size;  // not a message of two numbers
     switch (random.below(10)) {
       case 0:
@@ -208,6 +213,16 @@ class Simulation::Station final : public World, private Tamper {
                            signed_unit(random) * std::pow(10.0, static_cast<double>(random.below(100))));
         return size;
     }
+  }
+
+  /// The statements of its own that a liar shows to half of its neighbours are about other bodies.
+  std::size_t sign_another(int neighbour, Room plain, std::size_t size) noexcept {
+    auto said = Statement::read(Bytes(plain).subspan(kInner, Statement::kSize));
+    if (!said || said->sender != id_ || neighbour % 2 == 0) return size;
+    said->digest[0] ^= std::byte{1};
+    garrison::node::sign(*said, Key{}, s_.signing_[static_cast<std::size_t>(id_)]);
+    said->write(plain.data() + kInner);
+    return size;
   }
 
   Simulation& s_;

@@ -31,6 +31,7 @@ struct Totals {
   std::int64_t bounds = 0, bounds_wrong = 0;          ///< errors beyond a reported bound
   std::int64_t proofs = 0, proofs_wrong = 0;          ///< node-samples that hold an honest sensor for proved
   std::int64_t nodes = 0, nodes_wrong = 0;            ///< not back with all links at the end
+  std::int64_t convictions = 0;                       ///< of liars who signed two things, by one node each
   std::int64_t statements = 0, statements_wrong = 0;  ///< of honest nodes that seemed to contradict something
   std::int64_t replayed = 0, replayed_wrong = 0;
   std::int64_t plain = 0, plain_wrong = 0;  ///< compared with the agents driven by a plain loop

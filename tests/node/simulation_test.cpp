@@ -19,6 +19,7 @@ TEST_CASE("300 seeds of faults: what must hold holds") {
   CHECK(totals.nodes_wrong == 0);
   CHECK(totals.replayed_wrong == 0);
   CHECK(totals.plain_wrong == 0);
+  CHECK(totals.convictions > 10);
   // Every kind of fault and of comparison took place.
   for (const std::int64_t seen :
        {totals.injected, totals.mutated, totals.conflicts, totals.crashes, totals.joins, totals.clock_steps,

@@ -1,8 +1,12 @@
 """Real daemons on 127.0.0.1: a small network, its files, its programs. Needs a build with GARRISON_BUILD_NODE."""
 
+import base64
+import ctypes
+import ctypes.util
 import json
 import re
 import shutil
+import struct
 import subprocess
 import time
 from pathlib import Path
@@ -90,6 +94,7 @@ def test_a_network_under_attack_does_what_one_process_does(
     for reason in ("tag", "replay", "size", "stranger"):
         assert re.search(rf"\d+ {reason}\b", refused[1])
     assert all(node["samples"] > 20 and node["replayed"] > 20 and node["differ"] == 0 for node in summary["nodes"])
+    assert all(node["counters"]["statements"] > 0 for node in summary["nodes"])
     logs = [str(path) for path in sorted(out.glob("*/log/*.mcap"))]
     assert len(logs) == 6
     assert garrison(["replay", *logs]) == 0
@@ -220,6 +225,49 @@ def test_accept_measures_a_row_and_refuses_unknown_ones(programs: str, capsys: p
     assert "a number in 2..3600" in capsys.readouterr().err
     assert main(["accept", "kills", "--seconds", "2.5", "--programs", programs]) in (0, 1)  # 1: a busy machine
     assert re.search(r"kills: .*\n +5 of 5 back; median", capsys.readouterr().out)
+
+
+def _signed(seed: bytes, run: bytes, first: int, digest: bytes) -> bytes:
+    """A statement as docs/node.md has it: of agent 0, its first start, ten samples, thirty bodies."""
+    name = ctypes.util.find_library("sodium")
+    assert name is not None
+    sodium = ctypes.CDLL(name)
+    open_, secret, signature = (ctypes.create_string_buffer(size) for size in (32, 64, 64))
+    sodium.crypto_sign_seed_keypair(open_, secret, seed)
+    content = struct.pack("<HQqqI", 0, 1, first, first + 9, 30) + digest
+    message = b"garrison root 1" + run + content
+    sodium.crypto_sign_detached(signature, None, message, ctypes.c_ulonglong(len(message)), secret)
+    return content + signature.raw
+
+
+def test_a_proof_is_checked_offline(folder: Path, programs: str, tmp_path: Path) -> None:
+    seed = base64.b64decode((folder / "node.key").read_text().split()[1])
+    run, other_seed = b"r" * 32, b"s" * 32
+    a, b = (_signed(seed, run, 10, letter * 32) for letter in (b"a", b"b"))
+    cases = {
+        0: b"GPROOF01" + run + a + b,
+        1: b"GPROOF01" + run + a + a,
+        2: b"GPROOF01" + run + a,
+    }
+    command = [
+        program("garrison-ctl", programs),
+        "verify-proof",
+        str(tmp_path / "x.proof"),
+        str(folder / "../roster.toml"),
+    ]
+    for code, content in cases.items():
+        (tmp_path / "x.proof").write_bytes(content)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=20)
+        assert done.returncode == code, done.stderr
+    for content in (
+        b"GPROOF01" + b"q" * 32 + a + b,  # of another run
+        b"GPROOF01" + run + a + _signed(other_seed, run, 10, b"b" * 32),  # of another key
+        b"GPROOF01" + run + a + _signed(seed, run, 20, b"b" * 32),  # of other samples
+    ):
+        (tmp_path / "x.proof").write_bytes(content)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=20)
+        assert done.returncode == 1
+        assert "has NOT signed" in done.stdout
 
 
 def test_replay_refuses_what_is_no_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -32,6 +32,9 @@ COUNTERS = [
     "clock_back",
     "unsent",
     "log_gaps",
+    "statements",
+    "contradictions",
+    "disowned",
 ]
 
 

@@ -104,6 +104,8 @@ def _broken_nodes(outcome: Outcome) -> list[str]:
             out.append(f"{node.name}: {beyond} errors beyond the bound, expected none")
         if wrongly := sorted(set(node.accused) - set(outcome.hijacked)):
             out.append(f"{node.name} accuses {', '.join(wrongly)}, whom nobody attacks")
+        if contradictions := node.status["counters"]["contradictions"] + node.status["counters"]["disowned"]:
+            out.append(f"{node.name}: {contradictions} contradictions between what honest nodes signed and sent")
         if node.differ or not node.replayed:
             out.append(f"{node.name}: {node.differ} of {node.replayed} estimates differ in the replay of its log")
     return out

@@ -88,6 +88,8 @@ void Desk::record(Note note, Bytes content) {
       return status(content);
     case Note::snapshot:
       return snapshot(content);
+    case Note::proof:
+      return proof(content);
     case Note::fresh:
       if (log_) log_->begin();
       return;
@@ -112,6 +114,26 @@ void Desk::snapshot(Bytes content) {
   snapshot_.assign(content.begin(), content.end());
   snapshot_at_ = now().steady;
   if (mirror_->load(content) == Refusal::none) around_.accused = mirror_->accused();
+}
+
+/// The one thing that is worth a line in the journal, and a file for others to check.
+void Desk::proof(Bytes content) {
+  const auto found = Proof::read(content);
+  if (!found) return;
+  const Member* who = station_.roster.find(int{found->a.sender});
+  const std::string folder = beside(station_.settings.state_folder, "proofs");
+  const std::string path =
+      beside(folder, std::to_string(found->a.sender) + "-" + std::to_string(found->a.boot) + "-" +
+                         std::to_string(found->a.first) + ".proof");
+  try {
+    make_folder(folder);
+    replace_file(path, content);
+    std::fprintf(stderr, "<4>garrison-node: %s has signed two different statements about sample %lld: %s\n",
+                 who == nullptr ? "somebody" : who->name.c_str(), static_cast<long long>(found->a.first),
+                 path.c_str());
+  } catch (const Error& error) {
+    if (failed_++ == 0) std::fprintf(stderr, "<3>garrison-node: %s\n", error.what());
+  }
 }
 
 void Desk::save_state() {

@@ -30,6 +30,7 @@ class Desk {
   void record(Note note, Bytes content);
   void status(Bytes content);
   void snapshot(Bytes content);
+  void proof(Bytes content);
   std::string answer(std::string_view request);
   void watch_over(Loop& loop, Micros steady);
 

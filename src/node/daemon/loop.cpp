@@ -21,6 +21,23 @@ std::vector<Neighbour> neighbours_of(const Station& station) {
   }
   return out;
 }
+/// Statements are about a second, or a sample where that is longer.
+Authors::Setup authors_of(const Station& station, std::uint64_t boot) {
+  Authors::Setup out;
+  Key open{};
+  out.own = station.self.id;
+  out.key = signing_key(station.identity.seed, open);
+  out.boot = boot;
+  hash({}, {station.run}, out.run);
+  for (const Member& m : station.roster.members) {
+    out.open.resize(std::max(out.open.size(), static_cast<std::size_t>(m.id) + 1));
+    out.open[static_cast<std::size_t>(m.id)] = m.open;
+  }
+  out.neighbours.assign(station.agent->neighbours().begin(), station.agent->neighbours().end());
+  out.rounds = station.agent->rounds();
+  out.batch = static_cast<int>(std::clamp<Micros>(1'000'000 / station.schedule.period, 1, 64));
+  return out;
+}
 template <class T>
 Bytes bytes_of(const T& value) noexcept {
   return std::as_bytes(std::span(&value, 1));
@@ -33,6 +50,7 @@ Loop::Loop(Station& station, std::uint64_t boot, Udp& udp, const Sensor& sensor,
       sensor_(sensor),
       ring_(ring),
       now_(garrison::node::now()),
+      authors_(authors_of(station, boot)),
       node_(*station.agent, station.schedule, station.identity.exchange, neighbours_of(station), station.run,
             boot, *this, random_),
       status_(sizeof(StatusHead) + 8 * static_cast<std::size_t>(station.agent->states()) +
@@ -46,6 +64,7 @@ Loop::Loop(Station& station, std::uint64_t boot, Udp& udp, const Sensor& sensor,
              (kEntryHead + station.agent->most_bytes())) {}
 
 void Loop::begin(Bytes snapshot) {
+  node_.sign_with(authors_);
   now_ = garrison::node::now();
   Core& core = node_.core();
   if (!snapshot.empty() && core.restore(snapshot, now_)) return;
@@ -62,6 +81,12 @@ void Loop::run() noexcept {
   }
   put_snapshot();
   put_status(nullptr);
+}
+
+void Loop::contradiction(const Statement& a, const Statement& b) noexcept {
+  std::array<std::byte, Proof::kSize> bytes;
+  Proof{authors_.run(), a, b}.write(bytes.data());
+  ring_.put(static_cast<std::uint8_t>(Note::proof), {bytes});
 }
 
 void Loop::turn() noexcept {
@@ -159,6 +184,9 @@ void Loop::put_status(const Sample* sample) noexcept {
   head_.counters = node_.core().counters();
   head_.outside = node_.outside();
   head_.unsent = udp_.unsent();
+  head_.statements = authors_.taken();
+  head_.contradictions = authors_.contradictions();
+  head_.disowned = authors_.disowned();
   head_.resets = station_.agent->resets();
   head_.control = station_.agent->control();
   std::byte* at = status_.data();

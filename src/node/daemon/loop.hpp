@@ -19,6 +19,7 @@ enum class Note : std::uint8_t {
   status,    ///< Status
   snapshot,  ///< bytes of a snapshot
   fresh,     ///< a new log begins here
+  proof,     ///< somebody has signed two things: Proof
 };
 
 /// The system's random numbers.
@@ -47,6 +48,7 @@ class Loop final : private World {
   void measure(std::int64_t sample, std::span<double> y) noexcept override;
   void journal(const Entry& entry) noexcept override;
   void ended(const Sample& sample) noexcept override;
+  void contradiction(const Statement& a, const Statement& b) noexcept override;
 
   void turn() noexcept;
   void wait() noexcept;
@@ -62,6 +64,7 @@ class Loop final : private World {
   Ring& ring_;
   SystemRandom random_;
   Instant now_;
+  Authors authors_;
   Node node_;
   StatusHead head_;
   std::vector<std::byte> status_;

@@ -42,7 +42,10 @@ void put_counters(Json& json, const StatusHead& head) {
                                                       {"clock_steps", c.clock_steps},
                                                       {"clock_back", c.clock_back},
                                                       {"unsent", head.unsent},
-                                                      {"log_gaps", head.log_gaps}};
+                                                      {"log_gaps", head.log_gaps},
+                                                      {"statements", head.statements},
+                                                      {"contradictions", head.contradictions},
+                                                      {"disowned", head.disowned}};
   json.key("counters").open('{');
   for (const auto& [name, value] : all) json.key(name).whole(value);
   json.close('}');

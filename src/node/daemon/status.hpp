@@ -20,6 +20,9 @@ struct StatusHead {
   Fates outside;
   std::int64_t unsent = 0;
   std::int64_t log_gaps = 0;
+  std::int64_t statements = 0;
+  std::int64_t contradictions = 0;
+  std::int64_t disowned = 0;
   std::int64_t resets = 0;
   double control = kNaN;
 };

@@ -9,8 +9,10 @@
 #include <string>
 
 #include "garrison/node/log.hpp"
+#include "garrison/node/statement.hpp"
 #include "garrison/version.hpp"
 #include "node/daemon/files.hpp"
+#include "node/daemon/roster.hpp"
 
 using namespace garrison::node;
 
@@ -19,12 +21,15 @@ namespace {
 constexpr const char* kUsage =
     "usage: garrison-ctl status|watch SOCKET\n"
     "       garrison-ctl replay LOG\n"
+    "       garrison-ctl verify-proof PROOF ROSTER\n"
     "\n"
     "  status   everything a node says of itself, as a line of JSON\n"
     "  watch    a line a sample, until interrupted\n"
     "  replay   do again what a log says and compare every bit\n"
     "\n"
-    "Exit codes: 0 fine, 1 the log gave something else, 2 refused.\n";
+    "  verify-proof   whether a .proof convicts an agent of the roster\n"
+    "\n"
+    "Exit codes: 0 fine, 1 the log gave something else, or the proof proves nothing, 2 refused.\n";
 
 Descriptor connected(const std::string& path) {
   sockaddr_un to{};
@@ -61,22 +66,43 @@ int replay(const std::string& path) {
   return r.wrong == 0 ? 0 : 1;
 }
 
+int verify(const std::string& path, const std::string& roster_path) {
+  const auto proof = Proof::read(read_bytes(path));
+  if (!proof) garrison::refuse(path, "no proof", "a file that garrison-node wrote into proofs/");
+  const Roster roster = read_roster(roster_path);
+  const Member* who = roster.find(int{proof->a.sender});
+  if (who == nullptr)
+    garrison::refuse(roster_path, "no agent " + std::to_string(proof->a.sender),
+                     "the roster of the proof's run");
+  const bool proved = proof->convicts(who->open);
+  const auto n = [](std::int64_t v) { return static_cast<long long>(v); };
+  std::printf(
+      "%s: %s, agent %d, %s two different statements about samples %lld..%lld and %lld..%lld of its start "
+      "%llu\n",
+      path.c_str(), who->name.c_str(), who->id, proved ? "has signed" : "has NOT signed", n(proof->a.first),
+      n(proof->a.last), n(proof->b.first), n(proof->b.last), static_cast<unsigned long long>(proof->a.boot));
+  return proved ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
   if (count == 2 && std::string_view(words[1]) == "--version")
     return std::printf("garrison-ctl " GARRISON_VERSION "\n"), 0;
   if (count == 2 && std::string_view(words[1]) == "--help") return std::fputs(kUsage, stdout), 0;
-  if (count != 3) return std::fputs(kUsage, stderr), 2;
+  if (count != 3 && !(count == 4 && std::string_view(words[1]) == "verify-proof"))
+    return std::fputs(kUsage, stderr), 2;
   const std::string command = words[1];
   try {
+    if (!start_crypto()) return std::fputs("garrison-ctl: the system has no random numbers\n", stderr), 2;
+    if (command == "verify-proof" && count == 4) return verify(words[2], words[3]);
     if (command == "status") return ask("status", words[2], true);
     if (command == "watch") return ask("watch", words[2], false);
     if (command == "replay") return replay(words[2]);
   } catch (const std::exception& error) {
     return std::fprintf(stderr, "garrison-ctl: %s\n", error.what()), 2;
   }
-  return std::fprintf(stderr, "garrison-ctl: got \"%s\", expected status, watch or replay\n%s", words[1],
-                      kUsage),
+  return std::fprintf(stderr, "garrison-ctl: got \"%s\", expected status, watch, replay or verify-proof\n%s",
+                      words[1], kUsage),
          2;
 }

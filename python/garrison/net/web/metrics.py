@@ -18,6 +18,9 @@ _COUNTERS = {
     "clock_steps": ("clock_steps_total", "jumps of the clock"),
     "clock_back": ("clock_back_total", "jumps behind what had been sent"),
     "unsent": ("unsent_total", "datagrams that the system did not take"),
+    "statements": ("statements_total", "signed statements of others"),
+    "contradictions": ("contradictions_total", "senders that signed two different statements about the same samples"),
+    "disowned": ("disowned_total", "statements of neighbours about something else than what they sent here"),
     "log_gaps": ("log_gaps_total", "times the log had to begin anew"),
 }
 #: numbers of a status -> metric and what it is; missing where there is none
