@@ -112,6 +112,9 @@ TEST_CASE("settings: refusals say file, line, key, and what to do") {
   CHECK(says(settings_with("\"HERE\"", "\"127.0.0.1:70000\""), {"[listen].address", "host:port"}));
   CHECK(says(settings_with("command = \"cat\"", ""), {"[sensor].path", "named pipe"}));
   CHECK(says(settings_with("scale = [2.0]", "scale = [nan]"), {"[sensor].scale", "finite"}));
+  CHECK(says(
+      settings_with("source = \"lines\"\ncommand = \"cat\"", "source = \"udp\"\naddress = \"0.0.0.0:7\""),
+      {"[sensor].address", "got 0.0.0.0:7", "not authenticated"}));
 }
 
 TEST_CASE("roster: members in order, a start with a time zone") {

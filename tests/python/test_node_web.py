@@ -63,6 +63,7 @@ def status(name: str, **other: Any) -> dict[str, Any]:
         "counters": dict.fromkeys(COUNTERS, 7),
         "sensor": {"taken": 5, "malformed": 1, "outside": 0, "restarts": 0},
         "snapshot_age_s": 0.5,
+        "log_failed": 0,
         "outside": {"stranger": 4},
         "links": [{**link, "fates": {"taken": 12, "replay": 3}}],
     } | other

@@ -65,7 +65,10 @@ void Desk::tick(Loop& loop, Micros steady) {
   if (log_ && log_->file().bytes() >= station_.settings.log_bytes) loop.ask_fresh();
   if (steady - flushed_at_ >= kFlushPause) {
     flushed_at_ = steady;
-    if (log_) log_->file().flush();
+    if (log_) {
+      log_->file().flush();
+      around_.log_failed = log_->failed();
+    }
   }
   if (steady - saved_at_ >= station_.settings.state_every) save_state();
   watch_over(loop, steady);
@@ -91,8 +94,7 @@ void Desk::record(Note note, Bytes content) {
     case Note::proof:
       return proof(content);
     case Note::fresh:
-      if (log_) log_->begin();
-      return;
+      return begin_log();
   }
 }
 
@@ -114,6 +116,18 @@ void Desk::snapshot(Bytes content) {
   snapshot_.assign(content.begin(), content.end());
   snapshot_at_ = now().steady;
   if (mirror_->load(content) == Refusal::none) around_.accused = mirror_->accused();
+}
+
+/// A disk that takes no more logs does not end the node.
+void Desk::begin_log() {
+  if (!log_) return;
+  try {
+    log_->begin();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "<3>garrison-node: no log from here on: %s\n", error.what());
+    ++around_.log_failed;
+    log_.reset();
+  }
 }
 
 /// The one thing that is worth a line in the journal, and a file for others to check.

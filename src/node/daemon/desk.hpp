@@ -31,6 +31,7 @@ class Desk {
   void status(Bytes content);
   void snapshot(Bytes content);
   void proof(Bytes content);
+  void begin_log();
   std::string answer(std::string_view request);
   void watch_over(Loop& loop, Micros steady);
 

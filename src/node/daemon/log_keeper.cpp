@@ -26,8 +26,10 @@ LogKeeper::LogKeeper(std::string folder, std::string name, std::uint64_t boot, s
 void LogKeeper::begin() {
   const std::string file =
       name_ + "-" + padded(boot_, 6) + "-" + padded(static_cast<std::uint64_t>(number_++), 4) + ".mcap";
-  file_.reset();  // the last one gets its end first
-  file_.emplace(beside(folder_, file), name_, part_);
+  LogWriter next(beside(folder_, file), name_, part_);
+  if (file_) failed_ += file_->failed();
+  file_.reset();  // the last one gets its end
+  file_.emplace(std::move(next));
   drop_oldest();
 }
 

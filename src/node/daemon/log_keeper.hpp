@@ -16,7 +16,8 @@ class LogKeeper {
 
   void begin();
   LogWriter& file() { return *file_; }
-  std::int64_t failed() const noexcept { return failed_; }
+  /// Writes that failed, of all files.
+  std::int64_t failed() const noexcept { return failed_ + file_->failed(); }
 
  private:
   void drop_oldest() const;

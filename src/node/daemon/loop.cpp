@@ -112,7 +112,7 @@ void Loop::wait() noexcept {
   ::ppoll(&socket, 1, &time, nullptr);
 }
 
-/// A sample that is under way is finished, for two periods at most.
+/// A sample that is under way is finished, or given up when the next one begins.
 bool Loop::may_end() const noexcept {
   if (!ending_.load(std::memory_order_relaxed)) return false;
   return node_.core().state() != Core::State::rounds || station_.agent->round() >= station_.agent->rounds() ||

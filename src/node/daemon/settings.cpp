@@ -44,7 +44,12 @@ SensorSettings read_sensor(const Section& section, const std::string& folder) {
   if (s.path.empty() && (s.source == Source::file || (piped && s.command.empty())))
     refuse(section.where("path"), "nothing", piped ? "a named pipe, \"-\", or a command" : "a CSV file");
   if (!s.path.empty() && s.path != "-") s.path = beside(folder, s.path);
-  if (s.source == Source::udp) s.address = address_from(section.where("address"), section.text("address"));
+  if (s.source != Source::udp) return s;
+  s.address = address_from(section.where("address"), section.text("address"));
+  if (!is_loopback(s.address))
+    refuse(section.where("address"), section.text("address"),
+           "an address of this machine alone: 127.0.0.1 or [::1]",
+           "sensors are not authenticated; let a program on this machine receive from others");
   return s;
 }
 

@@ -115,6 +115,7 @@ std::string status_json(const Status& status, const Surroundings& around) {
   json.key("outside").whole(s.outside).key("restarts").whole(s.restarts).close('}');
   json.key("snapshot_age_s")
       .number(around.snapshot_age < 0 ? kNaN : static_cast<double>(around.snapshot_age) / 1e6);
+  json.key("log_failed").whole(around.log_failed);
   json.key("outside");
   put_fates(json, status.head.outside);
   json.key("links").open('[');

@@ -49,6 +49,7 @@ struct Surroundings {
   std::vector<int> accused;
   Sensor::Counters sensor;
   Micros snapshot_age = -1;
+  std::int64_t log_failed = 0;  ///< writes
   std::uint64_t boot = 0;
 };
 

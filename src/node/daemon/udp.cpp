@@ -48,6 +48,15 @@ Address address_from(const std::string& which, const std::string& text) {
   return out;
 }
 
+bool is_loopback(const Address& address) noexcept {
+  if (address.storage.ss_family == AF_INET) {
+    const auto& v4 = reinterpret_cast<const sockaddr_in&>(address.storage);
+    return ntohl(v4.sin_addr.s_addr) >> 24U == 127;
+  }
+  const auto& v6 = reinterpret_cast<const sockaddr_in6&>(address.storage);
+  return address.storage.ss_family == AF_INET6 && IN6_IS_ADDR_LOOPBACK(&v6.sin6_addr);
+}
+
 Udp::Udp(const std::string& which, const Address& own, int receive_buffer)
     : socket_(::socket(own.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)),
       in_(new Batch, &Batch::end),

@@ -23,6 +23,9 @@ struct Address {
 /// "127.0.0.1:7470", "[::1]:7470", "host:7470". @throws InvalidInput
 Address address_from(const std::string& which, const std::string& text);
 
+/// Of this machine alone.
+bool is_loopback(const Address& address) noexcept;
+
 class Udp {
  public:
   /// @throws IoError when the address cannot be had. receive_buffer: bytes.

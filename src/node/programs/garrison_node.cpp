@@ -63,6 +63,22 @@ void say(const Station& s) {
               static_cast<double>(s.schedule.begin(s.agent->start() + 1)) / 1e6);
 }
 
+/// The loop in its thread, which ends with this, however that comes.
+class Estimating {
+ public:
+  explicit Estimating(Loop& loop) : loop_(loop), thread_([&loop] { loop.run(); }) {}
+  ~Estimating() {
+    loop_.end();
+    thread_.join();
+  }
+  Estimating(const Estimating&) = delete;
+  Estimating& operator=(const Estimating&) = delete;
+
+ private:
+  Loop& loop_;
+  std::thread thread_;
+};
+
 void run(Station& station, bool print) {
   const Settings& settings = station.settings;
   make_folder(settings.state_folder);
@@ -75,13 +91,14 @@ void run(Station& station, bool print) {
   notify("READY=1");
   if (!wait_for_clock(settings)) return;
   loop.begin(read_state(settings.state_folder, station.run).value_or(std::vector<std::byte>{}));
-  std::thread estimating([&loop] { loop.run(); });
-  ::mlockall(MCL_CURRENT | MCL_ONFAULT);  // where it is allowed
-  const sched_param usual{};
-  ::sched_setscheduler(0, SCHED_OTHER, &usual);  // files wait, estimates do not
-  desk.run(loop);
-  notify("STOPPING=1");
-  estimating.join();
+  {
+    const Estimating estimating(loop);
+    ::mlockall(MCL_CURRENT | MCL_ONFAULT);  // where it is allowed
+    const sched_param usual{};
+    ::sched_setscheduler(0, SCHED_OTHER, &usual);  // files wait, estimates do not
+    desk.run(loop);
+    notify("STOPPING=1");
+  }
   desk.drain();
   desk.save_state();
 }
