@@ -4,8 +4,10 @@ import base64
 import ctypes
 import ctypes.util
 import json
+import os
 import re
 import shutil
+import socket
 import struct
 import subprocess
 import time
@@ -139,6 +141,39 @@ def test_a_client_measures_and_watches(folder: Path, programs: str) -> None:
             process.terminate()
     assert process.returncode == 0
     assert not (folder / "node.sock").exists()
+
+
+def test_a_service_is_told_where_files_are_and_tells_how_it_is(folder: Path, programs: str, tmp_path: Path) -> None:
+    settings = (folder / "node.toml").read_text()
+    for words in ('key = "node.key"\n', '[socket]\npath = "node.sock"\n'):
+        assert words in settings
+        settings = settings.replace(words, "")
+    (folder / "node.toml").write_text(settings)
+    places = {name: tmp_path / name.lower() for name in ("CREDENTIALS", "STATE", "LOGS", "RUNTIME")}
+    for place in places.values():
+        place.mkdir()
+    (folder / "node.key").rename(places["CREDENTIALS"] / "node.key")
+    manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    manager.bind(str(tmp_path / "notify"))
+    manager.settimeout(20)
+    environment = {
+        **os.environ,
+        **{f"{name}_DIRECTORY": str(place) for name, place in places.items()},
+        "NOTIFY_SOCKET": str(tmp_path / "notify"),
+        "WATCHDOG_USEC": "100000",
+    }
+    command = [program("garrison-node", programs), str(folder / "node.toml")]
+    with manager, subprocess.Popen(command, stdin=subprocess.DEVNULL, env=environment) as process:
+        assert manager.recv(1000) == b"READY=1"
+        assert manager.recv(1000).startswith(b"WATCHDOG=1\nSTATUS=")
+        assert Client(places["RUNTIME"] / "node.sock").status()["boot"] == 1
+        process.terminate()
+        said = b""
+        while said != b"STOPPING=1":
+            said = manager.recv(1000)
+    assert process.returncode == 0
+    assert (places["STATE"] / "boot").read_text() == "1\n"
+    assert [path.name for path in places["LOGS"].iterdir()] == ["0-000001-0000.mcap"]
 
 
 def _patiently(client: Client) -> dict[str, Any]:
