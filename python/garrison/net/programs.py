@@ -7,8 +7,18 @@ from pathlib import Path
 from garrison import _core
 
 NODE, KEYGEN, RELAY = "garrison-node", "garrison-keygen", "garrison-relay"
+#: of the tests, which are not installed
+HOSTILE, SIMULATION = "garrison_node_hostile", "garrison_node_sim"
 #: environment variable that names their folder
 VARIABLE = "GARRISON_PROGRAMS"
+
+
+def is_there(name: str, folder: str | None = None) -> bool:
+    """Whether `program` finds it; the node's own programs always count as there, so that a lack of them is refused."""
+    try:
+        return name == NODE or bool(program(name, folder))
+    except _core.IoError:
+        return False
 
 
 def program(name: str, folder: str | None = None) -> str:
@@ -26,5 +36,6 @@ def program(name: str, folder: str | None = None) -> str:
 
 def _built(name: str) -> str | None:
     root = Path(__file__).parents[3]
-    found = sorted(root.glob(f"build/*/src/node/programs/{name}"), key=lambda path: path.stat().st_mtime)
+    places = [*root.glob(f"build/*/src/node/programs/{name}"), *root.glob(f"build/*/tests/node/{name}")]
+    found = sorted(places, key=lambda path: path.stat().st_mtime)
     return str(found[-1]) if found else None

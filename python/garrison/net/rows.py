@@ -1,5 +1,6 @@
-"""What is measured of real daemons, row by row, with the bar of each: `garrison-net accept`."""
+"""What is measured, row by row, with the bar of each: `garrison-net accept`."""
 
+import subprocess
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,6 +10,7 @@ import numpy as np
 
 from garrison.net.outcome import Outcome
 from garrison.net.plan import Plan, read_plan
+from garrison.net.programs import HOSTILE, NODE, SIMULATION, program
 from garrison.net.running import carry_out
 
 #: what an attacker without keys adds at the relay: shares of all datagrams, and datagrams per second
@@ -41,6 +43,7 @@ class Row:
     name: str
     bar: str
     run: Callable[[float, str | None], tuple[str, bool]]
+    needs: str = NODE  # a program; rows of programs that are not installed are left out unless they are named
 
 
 #: where the examples are: in a checkout, or from the package garrison-doc
@@ -118,7 +121,24 @@ def _flood(seconds: float, programs: str | None) -> tuple[str, bool]:
     )
 
 
+def _outsiders(seconds: float, programs: str | None) -> tuple[str, bool]:
+    return _printed([program(HOSTILE, programs)])
+
+
+def _seeds(seconds: float, programs: str | None) -> tuple[str, bool]:
+    return _printed([program(SIMULATION, programs), "1", str(int(10 * seconds))])
+
+
+def _printed(command: list[str]) -> tuple[str, bool]:
+    done = subprocess.run(command, capture_output=True, text=True)
+    return "\n      ".join(done.stdout.splitlines()), done.returncode == 0
+
+
 ROWS = (
+    Row(
+        "outsiders", "1e5 replayed, 1e6 forged, 1e6 mutated, 1e6 strangers' handshakes: none taken", _outsiders, HOSTILE
+    ),
+    Row("seeds", "10 seeds of simulated faults per second of --seconds: nothing wrong", _seeds, SIMULATION),
     Row("loss", "wind, 10 % loss: 99.9 % complete, a bound throughout, logs replay to the bit", _loss),
     Row("attack", "the same with replays, mutants, forgeries, a flood: the same bits", _attack),
     Row("kills", "2 kills a second, 10 nodes: all back within a second, logs replay", _kills),
