@@ -5,7 +5,7 @@
 #include <cstring>
 #include <optional>
 
-#include "garrison/engine/design_file.hpp"
+#include "garrison/version.hpp"
 
 namespace garrison::node {
 
@@ -152,7 +152,7 @@ void LogWriter::flush() noexcept {
   if (std::fflush(file_.get()) != 0) ++failed_;
 }
 
-LogReplay replay_log(Bytes file) {
+LogReplay replay_log(Bytes file, const AgentMaker& make) {
   const Bytes magic = std::as_bytes(std::span(kMagic));
   const char* expected = "a log that garrison-node wrote (MCAP)";
   if (file.size() < magic.size() || !std::equal(magic.begin(), magic.end(), file.begin()))
@@ -168,7 +168,8 @@ LogReplay replay_log(Bytes file) {
     if (code == attachment && !agent) {
       const auto part = attached(content, "part");
       if (!part) continue;
-      agent = read_part(*part);
+      agent = make(*part);
+      if (!agent) refuse("log", "a part that is not for this program", expected);
       replay.emplace(*agent);
     }
     if (code == data_end) out.ended = true;

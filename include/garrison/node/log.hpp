@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -61,7 +62,12 @@ struct LogReplay {
   bool ended = false;  ///< the file has its end: the node was stopped, not killed
 };
 
+/// Makes the agent of a part; null when it is none.
+using AgentMaker = std::function<std::unique_ptr<Agent>(Bytes part)>;
+
 /// Does again what a log says. @throws InvalidInput when the file is no log of a node
+GARRISON_EXPORT LogReplay replay_log(Bytes file, const AgentMaker& make);
+/// The same with the whole library: any family, with its certificate.
 GARRISON_EXPORT LogReplay replay_log(Bytes file);
 
 }  // namespace garrison::node
