@@ -1,7 +1,7 @@
 """dist_info.py FOLDER COMMANDS: what pip would write beside the package, from pyproject.toml, for installs without pip.
 
-FOLDER becomes garrison-VERSION.dist-info (importlib.metadata finds version, requirements, commands), COMMANDS a folder with
-the scripts that start the commands.
+FOLDER becomes garrison-VERSION.dist-info (importlib.metadata finds version, requirements, commands), COMMANDS a folder
+with the scripts that start the commands.
 """
 
 import sys

@@ -135,9 +135,7 @@ def _printed(command: list[str]) -> tuple[str, bool]:
 
 
 ROWS = (
-    Row(
-        "outsiders", "1e5 replayed, 1e6 forged, 1e6 mutated, 1e6 strangers: none taken", _outsiders, HOSTILE
-    ),
+    Row("outsiders", "1e5 replayed, 1e6 forged, 1e6 mutated, 1e6 strangers: none taken", _outsiders, HOSTILE),
     Row("seeds", "10 seeds of simulated faults per second of --seconds: nothing wrong", _seeds, SIMULATION),
     Row("loss", "wind, 10 % loss: 99.9 % complete, a bound throughout, logs replay to the bit", _loss),
     Row("attack", "the same with replays, mutants, forgeries, a flood: the same bits", _attack),
