@@ -24,8 +24,8 @@ TEST_CASE("a line is as many numbers as there are outputs, with a time or withou
   CHECK(parse_line(" +1,2 \r\n", 2)->y == std::vector{1.0, 2.0});
   CHECK(std::isnan(parse_line("nan 1", 2)->y[0]));
   CHECK(*parse_line("@12.25 1", 1)->taken == 12'250'000);
-  for (const char* bad :
-       {"", "1", "1 2 3", "1 x", "1 inf", "@x 1 2", "@1e300 1 2", "1 @3 2", "0x10 1", "1 2 @3", "@1 @2 3"})
+  for (const char* bad : {"", "1", "1 2 3", "1 x", "1 inf", "@x 1 2", "@1e300 1 2", "1 @3 2", "0x10 1",
+                          "1 2 @3", "@1 @2 3", "1,,2", ",1"})
     CHECK(!parse_line(bad, 2));
 }
 

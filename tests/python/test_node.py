@@ -95,7 +95,7 @@ def test_a_network_under_attack_does_what_one_process_does(
     assert refused is not None
     for reason in ("tag", "replay", "size", "stranger"):
         assert re.search(rf"\d+ {reason}\b", refused[1])
-    assert all(node["samples"] > 20 and node["replayed"] > 20 and node["differ"] == 0 for node in summary["nodes"])
+    assert all(node["samples"] > 10 and node["replayed"] > 10 and node["differ"] == 0 for node in summary["nodes"])
     assert all(node["counters"]["statements"] > 0 for node in summary["nodes"])
     logs = [str(path) for path in sorted(out.glob("*/log/*.mcap"))]
     assert len(logs) == 6

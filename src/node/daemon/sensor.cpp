@@ -48,6 +48,7 @@ std::optional<SensorLine> parse_line(std::string_view text, std::size_t outputs)
     const std::size_t end = std::min(text.find_first_of(" \t,;"), text.size());
     std::string_view word = text.substr(0, end);
     text = trimmed(text.substr(std::min(end + 1, text.size())));
+    if (word.empty()) return {};  // a separator without a number before it
     const bool stamp = word.front() == '@' && out.y.empty() && !out.taken;
     if (stamp) word.remove_prefix(1);
     const auto value = number_in(word);
