@@ -2,6 +2,7 @@
 // Designs, single agents and their messages.
 #include "bindings.hpp"
 #include "garrison/engine/design_file.hpp"
+#include "garrison/node/log.hpp"
 #include "garrison/wire/letter.hpp"
 
 using namespace garrison;
@@ -399,6 +400,31 @@ void bind_agent(py::module_& m) {
                       [](const py::bytes& b) { return agent_kept(from_python(b, "agent")); }));
 }
 
+void bind_log(py::module_& m) {
+  m.def(
+      "replay_log",
+      [](const py::object& log) {
+        const node::LogReplay r = node::replay_log(from_python(log, "log"));
+        py::dict out;
+        out["agent"] = r.agent;
+        out["family"] = r.family;
+        out["calls"] = r.calls;
+        out["estimates"] = r.estimates;
+        out["differ"] = r.wrong;
+        out["first"] = r.first;
+        out["last"] = r.last;
+        out["ended"] = r.ended;
+        return out;
+      },
+      py::arg("log"),
+      "Do again what the log of a node (bytes of an MCAP file) says. Returns agent, family, calls, estimates "
+      "(compared),\n"
+      "differ (estimates that differ in a bit, and calls that were refused), first and last sample, ended "
+      "(the "
+      "node was\n"
+      "stopped, not killed). Raises InvalidInput for anything but a log.");
+}
+
 constexpr const char* kSpreads[] = {"local", "flooded"};
 
 std::optional<certificate::Wanted> wanted_of(const std::string& name, double failure, int attacked) {
@@ -417,6 +443,7 @@ std::optional<certificate::Wanted> wanted_of(const std::string& name, double fai
 
 void bind_agents(py::module_& m) {
   bind_message(m);
+  bind_log(m);
   bind_agent(m);
   py::class_<Prepared, std::shared_ptr<Prepared>>(m, "Design", "A filter designed for one model and network.")
       .def(py::init([](const Model& model, const Network& network, const FilterHandle& filter,

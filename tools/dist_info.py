@@ -1,7 +1,7 @@
-"""dist_info.py FOLDER COMMAND: what pip would write beside the package, from pyproject.toml, for installs without pip.
+"""dist_info.py FOLDER COMMANDS: what pip would write beside the package, from pyproject.toml, for installs without pip.
 
-FOLDER becomes garrison-VERSION.dist-info (importlib.metadata finds version, requirements, command), COMMAND the script
-that starts the command line.
+FOLDER becomes garrison-VERSION.dist-info (importlib.metadata finds version, requirements, commands), COMMANDS a folder
+with the scripts that start the commands.
 """
 
 import sys
@@ -26,22 +26,22 @@ def metadata(project: dict, version: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def main(folder: Path, command: Path) -> None:
+def main(folder: Path, commands: Path) -> None:
     """Write both."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     folder.mkdir(parents=True, exist_ok=True)
     version = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
     (folder / "METADATA").write_text(metadata(project, version), encoding="utf-8")
     (folder / "INSTALLER").write_text("cmake\n", encoding="utf-8")
-    (name, entry), *others = project["scripts"].items()
-    if others or name != command.name:
-        sys.exit(f"dist_info.py: got the commands {list(project['scripts'])}, expected {command.name} alone")
-    (folder / "entry_points.txt").write_text(f"[console_scripts]\n{name} = {entry}\n", encoding="utf-8")
-    module, function = entry.split(":")
-    command.write_text(
-        f"#!/usr/bin/python3\nimport sys\n\nfrom {module} import {function}\n\nsys.exit({function}())\n",
-        encoding="utf-8",
-    )
+    entries = "".join(f"{name} = {entry}\n" for name, entry in project["scripts"].items())
+    (folder / "entry_points.txt").write_text(f"[console_scripts]\n{entries}", encoding="utf-8")
+    commands.mkdir(exist_ok=True)
+    for name, entry in project["scripts"].items():
+        module, function = entry.split(":")
+        (commands / name).write_text(
+            f"#!/usr/bin/python3\nimport sys\n\nfrom {module} import {function}\n\nsys.exit({function}())\n",
+            encoding="utf-8",
+        )
 
 
 if __name__ == "__main__":

@@ -34,6 +34,7 @@ need doctest-dev installed doctest-dev
 need nlohmann-json3-dev installed nlohmann-json3-dev
 need libsuitesparse-dev installed libsuitesparse-dev
 need libsodium-dev installed libsodium-dev
+need libtomlplusplus-dev installed libtomlplusplus-dev
 if [[ " $* " == *" bench "* ]]; then need coinor-libipopt-dev installed coinor-libipopt-dev; fi
 need python3 have "$python"
 need python3-venv "$python" -c 'import venv, ensurepip'

@@ -21,6 +21,7 @@ from garrison._commands import (
     fit,
     import_,
     init,
+    replay,
     run,
     structure,
     sweep,
@@ -44,6 +45,7 @@ COMMANDS = (
     calibrate,
     structure,
     design_file,
+    replay,
 )
 #: environment variable that shows where a bug was met
 _DEBUG = "GARRISON_DEBUG"

@@ -271,13 +271,13 @@ void Core::fuse(Instant now, bool send) noexcept {
 void Core::post(Agent::Sent sent, int round, bool send) noexcept {
   const std::size_t at = kept(agent_.sample(), round);
   history_of_[at] = agent_.sample();
-  sizes_[at] = sent.bytes;
+  sizes_[at] = send ? sent.bytes : 0;  // what was not sent in time, and not signed, is not sent later
   wants_ = 0;
   want_at_ = 0;
-  if (sent.bytes == 0) return;
+  if (sent.bytes == 0 || !send) return;
   const Bytes body(bytes_.data(), sent.bytes);
   copy(body, history_.data() + at * agent_.most_bytes());
-  if (send) outlet_.broadcast(agent_.sample(), round, body);
+  outlet_.broadcast(agent_.sample(), round, body);
 }
 
 void Core::end_sample(Instant now) noexcept {

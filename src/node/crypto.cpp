@@ -28,6 +28,20 @@ bool shared_secret(const Key& secret, const Key& theirs, Key& out) noexcept {
   return crypto_scalarmult(octets(out), octets(secret), octets(theirs)) == 0;
 }
 
+SigningKey signing_key(const Key& seed, Key& open) noexcept {
+  SigningKey out;
+  crypto_sign_seed_keypair(octets(open), octets(out), octets(seed));
+  return out;
+}
+Signature signature_of(Bytes message, const SigningKey& key) noexcept {
+  Signature out;
+  crypto_sign_detached(octets(out), nullptr, octets(message), message.size(), octets(key));
+  return out;
+}
+bool signed_by(Bytes message, const Signature& signature, const Key& open) noexcept {
+  return crypto_sign_verify_detached(octets(signature), octets(message), message.size(), octets(open)) == 0;
+}
+
 std::size_t seal(const Key& key, std::uint64_t counter, Bytes authenticated, Bytes plain,
                  std::byte* out) noexcept {
   const Nonce nonce = nonce_of(counter);

@@ -6,6 +6,9 @@
 namespace garrison::node {
 
 namespace {
+constexpr int kMostHops = 2;  // that a statement is passed on
+constexpr int kChecks = 256;  // of signatures, in a sample: they cost more than anything else that arrives
+
 /// Microseconds that fit a frame's field; beyond half an hour the clocks are wrong anyway.
 std::int32_t narrow(Micros time) noexcept {
   return static_cast<std::int32_t>(std::clamp<Micros>(time, -2'000'000'000, 2'000'000'000));
@@ -67,6 +70,9 @@ LinkView Node::link(std::size_t k, Instant now) const noexcept {
 void Node::broadcast(std::int64_t sample, int round, Bytes body) noexcept {
   for (Link& link : links_)
     if (link.listens) send_body(link, sample, round, body);
+  Statement signed_now;
+  if (authors_ != nullptr && authors_->said(sample, round, body, signed_now))
+    spread(signed_now, sample, 0, -1);
 }
 void Node::answer(int neighbour, std::int64_t sample, int round, Bytes body) noexcept {
   Link* link = link_of(neighbour);
@@ -75,6 +81,11 @@ void Node::answer(int neighbour, std::int64_t sample, int round, Bytes body) noe
 void Node::want(int neighbour, std::int64_t sample, int round) noexcept {
   Inner inner{Kind::want, 0, false, static_cast<std::uint16_t>(round), sample};
   if (Link* link = link_of(neighbour); link != nullptr) send_frame(*link, inner, {});
+}
+
+void Node::ended(const Sample& sample) noexcept {
+  checks_left_ = kChecks;
+  world_.ended(sample);
 }
 
 Node::Link* Node::link_of(int id) noexcept {
@@ -118,6 +129,8 @@ Fate Node::frame(Link& link, Bytes plain, Instant now) noexcept {
       if (fate == Fate::taken) time_link(link, inner, now);  // of a sample that exists
       return fate;
     }
+    case Kind::statement:
+      return statement(link, inner, rest);
     case Kind::want:
       return rest.empty() ? core_.wanted(link.peer.id(), inner.sample, inner.round) : Fate::kind;
     case Kind::alive:
@@ -130,7 +143,7 @@ Fate Node::frame(Link& link, Bytes plain, Instant now) noexcept {
 /// Fragments come in order or are asked for again: what is out of order is dropped.
 Fate Node::message(Link& link, const Inner& inner, Bytes part, Instant now) noexcept {
   const bool whole = inner.fragment == 0 && !inner.more;
-  if (whole) return core_.message(link.peer.id(), inner.sample, inner.round, part, mark_of(part), now);
+  if (whole) return body(link, inner, part, now);
   if (link.parts.empty() || (inner.more && part.size() != kFragment)) return Fate::kind;
   if (inner.fragment == 0) {
     link.building = inner;
@@ -142,9 +155,43 @@ Fate Node::message(Link& link, const Inner& inner, Bytes part, Instant now) noex
   copy(part, link.parts.data() + link.filled);
   link.filled += part.size();
   if (inner.more) return Fate::taken;
-  const Bytes body(link.parts.data(), link.filled);
+  const Bytes all(link.parts.data(), link.filled);
   link.filled = 0;
-  return core_.message(link.peer.id(), inner.sample, inner.round, body, mark_of(body), now);
+  return body(link, inner, all, now);
+}
+
+Fate Node::body(Link& link, const Inner& inner, Bytes body, Instant now) noexcept {
+  const Fate fate = core_.message(link.peer.id(), inner.sample, inner.round, body, mark_of(body), now);
+  if (fate == Fate::taken && authors_ != nullptr)
+    authors_->heard(link.peer.id(), inner.sample, inner.round, body);
+  return fate;
+}
+
+/// New ones go on to all others, so that those who were told something else see both.
+Fate Node::statement(Link& link, const Inner& inner, Bytes rest) noexcept {
+  if (authors_ == nullptr) return Fate::off;
+  const auto said = Statement::read(rest);
+  if (!said) return Fate::kind;
+  if (checks_left_ <= 0) return Fate::off;
+  --checks_left_;
+  Statement other;
+  const Authors::News news = authors_->take(*said, other);
+  if (news == Authors::News::known) return Fate::duplicate;
+  if (news == Authors::News::refused) return Fate::kind;
+  if (news == Authors::News::contradiction) {
+    world_.contradiction(other, *said);
+    spread(other, inner.sample, inner.round + 1, link.peer.id());  // the other half, whoever missed it
+  }
+  if (inner.round < kMostHops) spread(*said, inner.sample, inner.round + 1, link.peer.id());
+  return Fate::taken;
+}
+
+void Node::spread(const Statement& statement, std::int64_t sample, int hops, int but) noexcept {
+  std::array<std::byte, Statement::kSize> bytes;
+  statement.write(bytes.data());
+  const Inner inner{Kind::statement, 0, false, static_cast<std::uint16_t>(hops), sample};
+  for (Link& link : links_)
+    if (link.peer.id() != but) send_frame(link, inner, bytes);
 }
 
 /// With d the difference of the phases one way and e the other way round, the clocks differ by (e - d)/2 and

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/node/peer.hpp"
 
+#include <utility>
+
 namespace garrison::node {
 
 namespace {
@@ -150,8 +152,8 @@ Peer::Received Peer::data(Bytes in, Micros steady, std::byte* plain) noexcept {
     if (!open(s->receiving, counter, in.first(kOuter), in.subspan(kOuter), plain)) return {Fate::tag};
     s->window.mark(counter);
     heard_ = steady;
-    // Handshakes that crossed may leave us with different ones of two sessions: what is heard stays.
-    if (s == &previous_) previous_until_ = steady + kPrevious;
+    s->heard = steady;
+    if (s == &previous_) keep_previous(steady);
     if (s == &next_) {
       const Session confirmed = next_;
       next_ = Session{};
@@ -172,6 +174,14 @@ void Peer::use(const Session& next, Micros steady) noexcept {
   previous_ = current_;
   previous_until_ = steady + kPrevious;
   current_ = next;
+  current_.heard = steady;
+}
+
+/// Handshakes that crossed may leave us with different ones of two sessions: what is heard stays. Where
+/// nothing at all comes in the newer one, the neighbour has dropped it, and hears us in the older one only.
+void Peer::keep_previous(Micros steady) noexcept {
+  previous_until_ = steady + kPrevious;
+  if (steady - current_.heard >= kSilence) std::swap(current_, previous_);
 }
 
 void Peer::put_mac(std::byte* at, std::size_t before) const noexcept {

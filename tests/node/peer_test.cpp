@@ -186,3 +186,21 @@ TEST_CASE("outsiders: nothing is taken, everything is counted by name") {
   }
   CHECK(pair.give(pair.one, pair.frame(pair.zero)) == Fate::taken);  // the link still works
 }
+
+// A link that stayed deaf one way while the clock of one end was wrong (seed 2114): new handshakes had older
+// stamps, and the other end, which heard, saw no reason to take them.
+TEST_CASE("a session that the neighbour has dropped gives way to the one that is heard") {
+  Pair pair;
+  REQUIRE(pair.link(pair.zero, pair.one));
+  Datagram out;
+  for (int handshakes = 0; handshakes < 2; ++handshakes) {
+    pair.pass(Peer::kSilence + 100'000);
+    REQUIRE(pair.one.tick(pair.now, pair.random, out));
+    REQUIRE(pair.give(pair.zero, out.view()) == Fate::handshake);
+    // The first response arrives, but not what confirms it; the second one does not arrive.
+    if (handshakes == 0) REQUIRE(pair.give(pair.one, pair.reply.view()) == Fate::handshake);
+  }
+  CHECK(pair.give(pair.zero, pair.frame(pair.one)) == Fate::no_session);
+  CHECK(pair.give(pair.one, pair.frame(pair.zero)) == Fate::taken);
+  CHECK(pair.give(pair.zero, pair.frame(pair.one)) == Fate::taken);
+}

@@ -40,6 +40,8 @@ int main(int count, char** arguments) {
   row("estimates that are not finite", t.estimates, t.estimates_wrong);
   row("errors beyond the reported bound", t.bounds, t.bounds_wrong);
   row("samples in which an honest sensor is proved", t.proofs, t.proofs_wrong);
+  row("statements of honest nodes that contradict something", t.statements, t.statements_wrong);
+  std::printf("%-58s %12lld\n", "convictions of liars who signed two things", n(t.convictions));
   row("nodes not back with all links at the end", t.nodes, t.nodes_wrong);
   row("estimates that the log does not give again", t.replayed, t.replayed_wrong);
   row("estimates other than the plain loop's", t.plain, t.plain_wrong);

@@ -95,6 +95,7 @@ class Simulation::Station final : public World, private Tamper {
     node_ = std::make_unique<Node>(*agent_, s_.schedule_, s_.keys_[static_cast<std::size_t>(id_)],
                                    std::move(neighbours), s_.prologue_, boots_, *this, s_.random_);
     if (id_ == s_.faults_.liar) node_->tamper_with(*this);
+    if (!s_.signing_.empty()) sign();
     logs_.emplace_back();
     if (boots_ == 1)
       node_->core().start(s_.x0_, clock());
@@ -105,6 +106,18 @@ class Simulation::Station final : public World, private Tamper {
     count();
     node_.reset();
     if (lost) disk_.clear();
+  }
+  void sign() {
+    authors_ =
+        std::make_unique<Authors>(Authors::Setup{id_,
+                                                 s_.signing_[static_cast<std::size_t>(id_)],
+                                                 boots_,
+                                                 Key{},
+                                                 s_.signing_open_,
+                                                 {agent_->neighbours().begin(), agent_->neighbours().end()},
+                                                 agent_->rounds(),
+                                                 10});
+    node_->sign_with(*authors_);
   }
   void tick() {
     node_->tick(clock());
@@ -127,6 +140,10 @@ class Simulation::Station final : public World, private Tamper {
     t.joins += c.joins;
     t.clock_steps += c.clock_steps;
     for (std::size_t k = 0; k < node_->links(); ++k) t.conflicts += node_->fates(k)[Fate::conflict];
+    if (authors_ != nullptr) {
+      t.statements += authors_->taken();
+      if (s_.faults_.liar < 0) t.statements_wrong += authors_->disowned();
+    }
     missed_ |= c.missing + c.missed_samples != 0;
   }
   Instant clock() const {
@@ -154,6 +171,13 @@ class Simulation::Station final : public World, private Tamper {
     log.resize(at + kEntryHead + entry.data.size());
     write_entry(entry, log.data() + at);
   }
+  void contradiction(const Statement& a, const Statement& b) noexcept override {
+    const bool proved = Proof{Key{}, a, b}.convicts(s_.signing_open_[a.sender]);
+    if (proved && a.sender == s_.faults_.liar)
+      ++s_.totals_.convictions;
+    else
+      s_.wrong(s_.totals_.statements_wrong, "an honest node is convicted", id_, agent_->sample());
+  }
   void ended(const Sample& sample) noexcept override {
     fresh_ = true;
     s_.check_sample(id_, sample);
@@ -165,8 +189,9 @@ class Simulation::Station final : public World, private Tamper {
     if (node_->core().snapshot(made) != 0) disk_ = made;
   }
   /// Another lie to everybody: huge numbers, infinities, short bodies, bytes at random, wrong rounds.
-  std::size_t operator()(int, Room plain, std::size_t size) noexcept override {
+  std::size_t operator()(int neighbour, Room plain, std::size_t size) noexcept override {
     Seeded& random = s_.random_;
+    if (Inner::read(plain.data()).kind == Kind::statement) return sign_another(neighbour, plain, size);
     if (size < kInner + 16) return size;  // not a message of two numbers
     switch (random.below(10)) {
       case 0:
@@ -190,10 +215,21 @@ class Simulation::Station final : public World, private Tamper {
     }
   }
 
+  /// The statements of its own that a liar shows to half of its neighbours are about other bodies.
+  std::size_t sign_another(int neighbour, Room plain, std::size_t size) noexcept {
+    auto said = Statement::read(Bytes(plain).subspan(kInner, Statement::kSize));
+    if (!said || said->sender != id_ || neighbour % 2 == 0) return size;
+    said->digest[0] ^= std::byte{1};
+    garrison::node::sign(*said, Key{}, s_.signing_[static_cast<std::size_t>(id_)]);
+    said->write(plain.data() + kInner);
+    return size;
+  }
+
   Simulation& s_;
   int id_;
   std::uint64_t boots_ = 0;
   std::unique_ptr<Agent> agent_;
+  std::unique_ptr<Authors> authors_;
   std::unique_ptr<Node> node_;
   Octets disk_;
   std::vector<Octets> logs_;  ///< one per boot
@@ -212,6 +248,11 @@ Simulation::Simulation(std::uint64_t seed, Totals& totals, bool verbose)
   prologue_.fill(std::byte{7});
   Seeded for_keys(1);
   for (int i = 0; i < kAgents; ++i) keys_.push_back(key_pair(for_keys.key()));
+  if (seed % 5 == 1)
+    for (int i = 0; i < kAgents; ++i) {
+      signing_open_.emplace_back();
+      signing_.push_back(signing_key(for_keys.key(), signing_open_.back()));
+    }
   make_plant();
   for (int i = 0; i < kAgents; ++i) {
     stations_.push_back(std::make_unique<Station>(*this, i));

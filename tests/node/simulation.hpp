@@ -26,17 +26,19 @@ struct Totals {
   std::int64_t mutants_wrong = 0;      ///< a changed one accepted
   std::int64_t fused = 0,
                fused_wrong = 0;  ///< bodies that their sender did not produce for that sample and round
-  std::int64_t bodies = 0, bodies_wrong = 0;        ///< samples and rounds with two bodies of one node
-  std::int64_t estimates = 0, estimates_wrong = 0;  ///< not finite
-  std::int64_t bounds = 0, bounds_wrong = 0;        ///< errors beyond a reported bound
-  std::int64_t proofs = 0, proofs_wrong = 0;        ///< node-samples that hold an honest sensor for proved
-  std::int64_t nodes = 0, nodes_wrong = 0;          ///< not back with all links at the end
+  std::int64_t bodies = 0, bodies_wrong = 0;          ///< samples and rounds with two bodies of one node
+  std::int64_t estimates = 0, estimates_wrong = 0;    ///< not finite
+  std::int64_t bounds = 0, bounds_wrong = 0;          ///< errors beyond a reported bound
+  std::int64_t proofs = 0, proofs_wrong = 0;          ///< node-samples that hold an honest sensor for proved
+  std::int64_t nodes = 0, nodes_wrong = 0;            ///< not back with all links at the end
+  std::int64_t convictions = 0;                       ///< of liars who signed two things, by one node each
+  std::int64_t statements = 0, statements_wrong = 0;  ///< of honest nodes that seemed to contradict something
   std::int64_t replayed = 0, replayed_wrong = 0;
   std::int64_t plain = 0, plain_wrong = 0;  ///< compared with the agents driven by a plain loop
 
   std::int64_t wrong() const {
     return taken_twice_wrong + mutants_wrong + fused_wrong + bodies_wrong + estimates_wrong + bounds_wrong +
-           proofs_wrong + nodes_wrong + replayed_wrong + plain_wrong;
+           proofs_wrong + statements_wrong + nodes_wrong + replayed_wrong + plain_wrong;
   }
 };
 
@@ -118,6 +120,8 @@ class Simulation {
   Schedule schedule_;
   Faults faults_;
   std::vector<KeyPair> keys_;
+  std::vector<SigningKey> signing_;  ///< empty: nobody signs
+  std::vector<Key> signing_open_;
   Prologue prologue_{};
   Vector x0_;
   std::vector<Vector> states_;

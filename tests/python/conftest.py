@@ -15,3 +15,18 @@ def wind() -> Path:
 def cases() -> Path:
     """Folder of the reference cases."""
     return ROOT / "tests" / "cases"
+
+
+def node_programs() -> Path | None:
+    """Folder of the node's programs in the newest build of this checkout, or None."""
+    found = sorted(ROOT.glob("build/*/src/node/programs/garrison-node"), key=lambda path: path.stat().st_mtime)
+    return found[-1].parent if found else None
+
+
+@pytest.fixture(scope="session")
+def programs() -> str:
+    """The same, for tests that cannot do without."""
+    found = node_programs()
+    if found is None:
+        pytest.skip("no programs of the node in build/: configure with -DGARRISON_BUILD_NODE=ON")
+    return str(found)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import garrison
-from conftest import ROOT
+from conftest import ROOT, node_programs
 
 #: languages of blocks -> whether they are run or written; others are refused, so that no block escapes by its name
 LANGUAGES = {"python", "shell", "toml", "text", "cpp", "cmake"}
@@ -67,7 +67,7 @@ def _shell(block: Block, page: Path, folder: Path) -> None:
     package = Path(garrison.__file__).parents[1]  # the same garrison as here, built or installed
     environment = {
         **os.environ,
-        "PATH": f"{command.parent}:{os.environ['PATH']}",
+        "PATH": ":".join(str(p) for p in (command.parent, node_programs(), os.environ["PATH"]) if p),
         "PYTHONPATH": os.pathsep.join(p for p in (str(package), os.environ.get("PYTHONPATH", "")) if p),
     }
     done = subprocess.run(

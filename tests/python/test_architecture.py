@@ -22,6 +22,7 @@ LAYERS = (
     ("figures", "report", "verify"),
     ("_commands",),
     ("cli",),
+    ("net",),
     ("__main__",),
 )
 #: a run and an analysis draw themselves: the places where a lower layer imports a higher one, inside functions

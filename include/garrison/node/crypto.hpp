@@ -14,12 +14,20 @@ struct KeyPair {
   Key secret{};
   Key open{};
 };
+/// Ed25519 (RFC 8032): seed and public key.
+using SigningKey = std::array<std::byte, 64>;
+using Signature = std::array<std::byte, 64>;
 /// False when the system has no random numbers to give.
 bool start_crypto() noexcept;
 
 KeyPair key_pair(const Key& secret) noexcept;
 /// X25519; false when the result is zero (a key of small order).
 bool shared_secret(const Key& secret, const Key& theirs, Key& out) noexcept;
+
+/// The key that a seed gives, and its public half.
+SigningKey signing_key(const Key& seed, Key& open) noexcept;
+Signature signature_of(Bytes message, const SigningKey& key) noexcept;
+bool signed_by(Bytes message, const Signature& signature, const Key& open) noexcept;
 
 /// ChaCha20-Poly1305 (RFC 8439) with the nonce 0000 | counter. `out` has room for plain + kTag; returns its
 /// size.

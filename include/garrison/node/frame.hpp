@@ -26,7 +26,7 @@ inline constexpr std::size_t kFragment = 1120;
 static_assert(kLeastData + kFragment <= kMostDatagram);
 
 enum class Type : std::uint8_t { initiation = 1, response = 2, data = 3 };
-enum class Kind : std::uint8_t { message = 1, want = 2, alive = 9 };
+enum class Kind : std::uint8_t { message = 1, want = 2, statement = 3, alive = 9 };
 
 struct Datagram {
   std::array<std::byte, kMostDatagram> bytes;

@@ -69,7 +69,7 @@ inline void read_numbers(Bytes bytes, std::span<double> numbers) noexcept {
 
 /// Does again what a journal says. `wrong()` counts the estimates that differ in a bit and the calls that
 /// were refused this time.
-class Replay {
+class GARRISON_EXPORT Replay {
  public:
   /// `sent`, if there is one, is shown every body that comes of it: sample, round, body.
   explicit Replay(Agent& agent, std::function<void(std::int64_t, int, Bytes)> sent = {});

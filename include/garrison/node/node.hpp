@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "garrison/node/authors.hpp"
 #include "garrison/node/core.hpp"
 #include "garrison/node/peer.hpp"
 
@@ -18,6 +19,8 @@ class World {
   virtual void measure(std::int64_t sample, std::span<double> y) noexcept = 0;
   virtual void journal(const Entry& entry) noexcept = 0;
   virtual void ended(const Sample& sample) noexcept = 0;
+  /// Somebody has signed both.
+  virtual void contradiction(const Statement&, const Statement&) noexcept {}
 };
 
 /// A neighbour as the roster has it.
@@ -56,6 +59,8 @@ class Node final : private Outlet {
   void tick(Instant now) noexcept;
   Fate receive(Bytes datagram, Instant now) noexcept;
   void tamper_with(Tamper& tamper) noexcept { tamper_ = &tamper; }
+  /// Signs what is sent, and passes statements on. Keeps a reference.
+  void sign_with(Authors& authors) noexcept { authors_ = &authors; }
   /// Wall time of the next tick.
   Micros due() const noexcept;
 
@@ -82,19 +87,24 @@ class Node final : private Outlet {
   void answer(int neighbour, std::int64_t sample, int round, Bytes body) noexcept override;
   void want(int neighbour, std::int64_t sample, int round) noexcept override;
   void journal(const Entry& entry) noexcept override { world_.journal(entry); }
-  void ended(const Sample& sample) noexcept override { world_.ended(sample); }
+  void ended(const Sample& sample) noexcept override;
 
   Link* link_of(int id) noexcept;
   void send_body(Link& link, std::int64_t sample, int round, Bytes body) noexcept;
   void send_frame(Link& link, Inner inner, Bytes rest) noexcept;
   Fate frame(Link& link, Bytes plain, Instant now) noexcept;
   Fate message(Link& link, const Inner& inner, Bytes part, Instant now) noexcept;
+  Fate body(Link& link, const Inner& inner, Bytes body, Instant now) noexcept;
+  Fate statement(Link& link, const Inner& inner, Bytes rest) noexcept;
+  void spread(const Statement& statement, std::int64_t sample, int hops, int but) noexcept;
   void time_link(Link& link, const Inner& inner, Instant now) noexcept;
 
   Schedule schedule_;
   World& world_;
   Random& random_;
   Tamper* tamper_ = nullptr;
+  Authors* authors_ = nullptr;
+  int checks_left_ = 0;      ///< of signatures, until the next sample ends
   std::vector<Link> links_;  ///< ascending ids
   std::array<std::byte, kMostDatagram> plain_{};
   Datagram out_;

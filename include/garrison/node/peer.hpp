@@ -57,6 +57,7 @@ class Peer {
     std::uint32_t ours = 0;  ///< the index by which they name it
     std::uint32_t theirs = 0;
     Micros since = 0;
+    Micros heard = 0;  ///< last genuine frame in it; its begin before the first one
     bool live = false;
     bool started_here = false;
   };
@@ -67,6 +68,7 @@ class Peer {
   Received data(Bytes in, Micros steady, std::byte* plain) noexcept;
   void alive(Micros steady, Datagram& out) noexcept;
   void use(const Session& next, Micros steady) noexcept;
+  void keep_previous(Micros steady) noexcept;
   void put_mac(std::byte* at, std::size_t before) const noexcept;
   bool mac_fits(Bytes in) const noexcept;
 

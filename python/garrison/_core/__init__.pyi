@@ -57,6 +57,7 @@ __all__: list[str] = [
     "platoon",
     "rdkf",
     "replay",
+    "replay_log",
     "s_sparse_observable",
     "saturation",
     "simulate",
@@ -981,6 +982,13 @@ def replay(
 ) -> dict:
     """
     Arrays of a replayed run; use garrison.replay.
+    """
+
+def replay_log(log: typing.Any) -> dict:
+    """
+    Do again what the log of a node (bytes of an MCAP file) says. Returns agent, family, calls, estimates (compared),
+    differ (estimates that differ in a bit, and calls that were refused), first and last sample, ended (the node was
+    stopped, not killed). Raises InvalidInput for anything but a log.
     """
 
 def s_sparse_observable(

@@ -1,0 +1,5 @@
+"""A network of real daemons on one machine: `garrison-net`."""
+
+from garrison.net.client import Client
+
+__all__ = ["Client"]

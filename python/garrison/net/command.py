@@ -1,0 +1,172 @@
+"""The command `garrison-net`: a network of real daemons on this machine."""
+
+import argparse
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from garrison import _core
+from garrison._commands.terminal import NO, OK, REFUSED, console_for, print_table
+from garrison.net.outcome import Outcome, write_summary
+from garrison.net.plan import Plan, read_plan
+from garrison.net.programs import is_there
+from garrison.net.rows import ATTACK, ROWS
+from garrison.net.running import carry_out
+from garrison.words import count, near, refusal
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="garrison-net",
+        description="Networks of real daemons on this machine (127.0.0.1 only).",
+        epilog="Exit codes: 0 everything held, 1 something did not, 2 input refused.",
+        allow_abbrev=False,
+    )
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    up = commands.add_parser("up", help="run a scenario as a network of daemons, and check it", allow_abbrev=False)
+    up.add_argument("file", help="network.toml: a scenario, periods, what the network loses")
+    up.add_argument("-o", "--out", help="folder for keys, logs and summary.json; default: a temporary one, removed")
+    up.add_argument("--page", type=int, metavar="PORT", help="serve a live page on this port of 127.0.0.1; 0 = any")
+    up.add_argument(
+        "--attack",
+        action="store_true",
+        help="with somebody in between who has no key: replays, mutants and forgeries, each for a fifth of the "
+        "datagrams, and a flood of 5000 a second",
+    )
+    up.add_argument("--kills", type=int, default=0, help="kill a daemon, and start it again, so many times")
+    up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
+    accept = commands.add_parser(
+        "accept", help="measure what a network of daemons has to meet, row by row", allow_abbrev=False
+    )
+    accept.add_argument("row", nargs="*", help=f"some of {', '.join(row.name for row in ROWS)}; default: all")
+    accept.add_argument("--seconds", type=float, default=30.0, help="length of rows that can be longer (default 30)")
+    accept.add_argument("--programs", help="folder of the node's programs")
+    return parser
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    try:
+        args = _parser().parse_args(argv)
+    except SystemExit as usage:
+        return int(usage.code or 0)
+    try:
+        if args.command == "accept":
+            return _accept(args)
+        plan = read_plan(args.file)
+        plan.relay |= ATTACK if args.attack else {}
+        if args.out is not None:
+            return _up(plan, _empty(Path(args.out)), args)
+        with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
+            return _up(plan, Path(folder), args)
+    except (_core.Error, OSError) as error:
+        print(f"garrison-net: {' '.join(str(error).split())}", file=sys.stderr)
+        return REFUSED
+    except KeyboardInterrupt:
+        return 130
+
+
+def _up(plan: Plan, folder: Path, args: argparse.Namespace) -> int:
+    outcome = carry_out(plan, folder, programs=args.programs, page=args.page, kills=args.kills, say=_say)
+    write_summary(outcome, folder / "summary.json")
+    show(plan, outcome)
+    return NO if outcome.broken else OK
+
+
+def _accept(args: argparse.Namespace) -> int:
+    known = {row.name: row for row in ROWS}
+    for name in args.row:
+        if name not in known:
+            raise refusal("accept", repr(name), f"one of {', '.join(known)}", near(name, known))
+    if not 2 <= args.seconds <= 3600:
+        raise refusal("--seconds", f"{args.seconds:g}", "a number in 2..3600")
+    missed = 0
+    for row in [known[name] for name in args.row] or ROWS:
+        if not args.row and not is_there(row.needs, args.programs):
+            _say(f"left out  {row.name}: {row.needs} is not installed; it is a program of the tests")
+            continue
+        said, met = row.run(args.seconds, args.programs)
+        missed += not met
+        _say(f"{'met ' if met else 'MISS'}  {row.name}: {row.bar}\n      {said}")
+    _say("all met" if not missed else f"{count(missed, 'row')} missed")
+    return NO if missed else OK
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+def show(plan: Plan, outcome: Outcome) -> None:
+    """The table, what the relay did, and what did not hold."""
+    head = [
+        "node",
+        "complete",
+        "missing",
+        "asked",
+        "same bits",
+        "bound",
+        "median",
+        "error",
+        "worst",
+        "accuses",
+        "replay",
+    ]
+    rows = []
+    for node in outcome.nodes:
+        counters = node.status["counters"]
+        rows.append(
+            [
+                node.name + (" (hijacked)" if node.name in outcome.hijacked else ""),
+                f"{int(node.complete.sum())}/{plan.samples}",
+                str(counters["missing"]),
+                str(counters["wants"]),
+                f"{int(node.same.sum())}",
+                f"{np.isfinite(node.bound).mean():.1%}",
+                _number(np.nanmedian(node.bound)) if np.isfinite(node.bound).any() else "",
+                _number(np.nanmean(node.error)) if np.isfinite(node.error).any() else "",
+                _number(np.nanmax(node.error)) if np.isfinite(node.error).any() else "",
+                " ".join(node.accused),
+                f"{node.replayed - node.differ}/{node.replayed}",
+            ]
+        )
+    print_table(plan.scenario.title, head, rows, console_for())
+    relay = outcome.relay
+    print(
+        f"relay: {relay['came']} datagrams, {relay['lost']} lost, {relay['doubled']} doubled; "
+        f"complete {outcome.share('complete'):.2%}, with bound {outcome.share('bound'):.2%}"
+    )
+    if attacks := {word: relay[word] for word in ("replayed", "mutated", "forged", "flooded") if relay[word]}:
+        print(
+            f"attack: {', '.join(f'{count} {word}' for word, count in attacks.items())}; refused: {_refused(outcome)}"
+        )
+    if known := sorted(seconds for seconds in outcome.back if seconds is not None):
+        print(f"kills: {len(outcome.back)}, back after {np.median(known):.2f} s (median), {known[-1]:.2f} s (longest)")
+    for line in outcome.broken:
+        print(f"DOES NOT HOLD: {line}")
+    if not outcome.broken:
+        print("held: errors within bounds, nobody accused wrongly, every log gives the same estimates again")
+
+
+def _refused(outcome: Outcome) -> str:
+    """All nodes' datagrams that nothing came of, by reason."""
+    found: Counter[str] = Counter()
+    for node in outcome.nodes:
+        found.update(node.status["outside"])
+        for link in node.status["links"]:
+            found.update(link["fates"])
+    return ", ".join(f"{count} {fate}" for fate, count in found.most_common() if fate not in ("taken", "handshake"))
+
+
+def _number(value: np.floating[Any]) -> str:
+    return f"{float(value):.3g}"
+
+
+def _empty(path: Path) -> Path:
+    path.mkdir(parents=True, exist_ok=True)
+    if any(path.iterdir()):
+        raise _core.IoError(f"{path}: got a folder that is not empty, expected a new or an empty one")
+    return path

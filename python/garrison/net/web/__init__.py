@@ -1,0 +1,1 @@
+"""What running nodes say of themselves, for browsers and for Prometheus: `garrison-web`."""

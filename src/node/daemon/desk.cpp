@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "node/daemon/desk.hpp"
+
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "garrison/engine/design_file.hpp"
+#include "node/daemon/state.hpp"
+
+namespace garrison::node {
+
+namespace {
+constexpr int kPauseMs = 20;
+constexpr Micros kFlushPause = 1'000'000;
+
+std::string error_line(const std::string& which, const std::string& expected) {
+  return R"({"error":")" + which + R"(","expected":")" + expected + R"("})";
+}
+}  // namespace
+
+Desk::Desk(Station& station, std::uint64_t boot, Sensor& sensor, Ring& ring, bool print)
+    : station_(station), sensor_(sensor), ring_(ring), print_(print), mirror_(read_part(station.part)) {
+  const Settings& s = station.settings;
+  if (s.log_inputs) log_.emplace(s.log_folder, station.self.name, boot, station.part, s.log_files);
+  around_.node = station.self.name;
+  around_.id = station.self.id;
+  around_.family = std::string(station.agent->family());
+  around_.boot = boot;
+  for (const Member& m : station.links) around_.names.push_back(m.name);
+  if (!s.socket.empty())
+    socket_ =
+        std::make_unique<LocalSocket>(s.socket, [this](std::string_view request) { return answer(request); });
+}
+
+void Desk::run(Loop& loop) {
+  sigset_t ending;
+  sigemptyset(&ending);
+  sigaddset(&ending, SIGTERM);
+  sigaddset(&ending, SIGINT);
+  const Descriptor signals(::signalfd(-1, &ending, SFD_NONBLOCK | SFD_CLOEXEC));
+  signalfd_siginfo came{};
+  saved_at_ = now().steady;
+  while (::read(signals.get(), &came, sizeof came) != sizeof came) {
+    wait(signals.get());
+    tick(loop, now().steady);
+  }
+  loop.end();
+}
+
+void Desk::wait(int signals) {
+  std::vector<pollfd> all{{signals, POLLIN, 0}};
+  if (sensor_.descriptor() >= 0) all.push_back({sensor_.descriptor(), POLLIN, 0});
+  if (socket_) socket_->wait_for(all);
+  ::poll(all.data(), all.size(), kPauseMs);
+}
+
+void Desk::tick(Loop& loop, Micros steady) {
+  sensor_.tick(steady);
+  if (sensor_.descriptor() >= 0) sensor_.readable(now().wall);
+  drain();
+  if (socket_) socket_->serve();
+  if (log_ && log_->file().bytes() >= station_.settings.log_bytes) loop.ask_fresh();
+  if (steady - flushed_at_ >= kFlushPause) {
+    flushed_at_ = steady;
+    if (log_) {
+      log_->file().flush();
+      around_.log_failed = log_->failed();
+    }
+  }
+  if (steady - saved_at_ >= station_.settings.state_every) save_state();
+  watch_over(loop, steady);
+}
+
+void Desk::drain() {
+  while (ring_.take(room_,
+                    [this](std::uint8_t note, Bytes content) { record(static_cast<Note>(note), content); })) {
+  }
+}
+
+void Desk::record(Note note, Bytes content) {
+  switch (note) {
+    case Note::call:
+      if (log_)
+        log_->file().entry(content.subspan(8),
+                           static_cast<Micros>(wire::load<std::uint64_t>(content.data())));
+      return;
+    case Note::status:
+      return status(content);
+    case Note::snapshot:
+      return snapshot(content);
+    case Note::proof:
+      return proof(content);
+    case Note::fresh:
+      return begin_log();
+  }
+}
+
+void Desk::status(Bytes content) {
+  known_ = status_.read(content, static_cast<std::size_t>(station_.agent->states()), station_.links.size());
+  if (!known_ || !status_.head.ended) return;
+  const bool wanted = log_ || print_ || (socket_ && socket_->watched());
+  if (!wanted) return;
+  const std::string line = sample_json(status_, around_);
+  if (log_) log_->file().sample(line, status_.head.wall);
+  if (print_) {
+    std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+  }
+  if (socket_) socket_->tell(line);
+}
+
+void Desk::snapshot(Bytes content) {
+  snapshot_.assign(content.begin(), content.end());
+  snapshot_at_ = now().steady;
+  if (mirror_->load(content) == Refusal::none) around_.accused = mirror_->accused();
+}
+
+/// A disk that takes no more logs does not end the node.
+void Desk::begin_log() {
+  if (!log_) return;
+  try {
+    log_->begin();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "<3>garrison-node: no log from here on: %s\n", error.what());
+    ++around_.log_failed;
+    log_.reset();
+  }
+}
+
+/// The one thing that is worth a line in the journal, and a file for others to check.
+void Desk::proof(Bytes content) {
+  const auto found = Proof::read(content);
+  if (!found) return;
+  const Member* who = station_.roster.find(int{found->a.sender});
+  const std::string folder = beside(station_.settings.state_folder, "proofs");
+  const std::string path =
+      beside(folder, std::to_string(found->a.sender) + "-" + std::to_string(found->a.boot) + "-" +
+                         std::to_string(found->a.first) + ".proof");
+  try {
+    make_folder(folder);
+    replace_file(path, content);
+    std::fprintf(stderr, "<4>garrison-node: %s has signed two different statements about sample %lld: %s\n",
+                 who == nullptr ? "somebody" : who->name.c_str(), static_cast<long long>(found->a.first),
+                 path.c_str());
+  } catch (const Error& error) {
+    if (failed_++ == 0) std::fprintf(stderr, "<3>garrison-node: %s\n", error.what());
+  }
+}
+
+void Desk::save_state() {
+  saved_at_ = now().steady;
+  if (snapshot_.empty()) return;
+  try {
+    write_state(station_.settings.state_folder, station_.run, snapshot_);
+  } catch (const Error& error) {
+    if (failed_++ == 0) std::fprintf(stderr, "<3>garrison-node: %s\n", error.what());
+  }
+}
+
+std::string Desk::answer(std::string_view request) {
+  if (request == "status") {
+    if (!known_) return error_line("no status yet", "a node that has begun");
+    around_.sensor = sensor_.counters();
+    around_.snapshot_age = snapshot_at_ < 0 ? -1 : now().steady - snapshot_at_;
+    return status_json(status_, around_);
+  }
+  if (request.starts_with("y ")) {
+    if (!sensor_.takes_lines_from_clients())
+      return error_line("y", R"(a node with [sensor] source = \"socket\")");
+    const std::int64_t before = sensor_.counters().taken;
+    sensor_.line(request.substr(2), now().wall);
+    if (sensor_.counters().taken > before) return R"({"ok":true})";
+    return error_line("y", "as many numbers as the agent has outputs, nan where one is missing");
+  }
+  return error_line("an unknown request", "status, watch, or y and numbers");
+}
+
+/// The manager hears of us only while the loop turns.
+void Desk::watch_over(Loop& loop, Micros steady) {
+  static const Micros pause = watchdog_pause();
+  if (pause == 0 || steady - watched_at_ < pause / 2 || loop.turns() == turns_seen_) return;
+  watched_at_ = steady;
+  turns_seen_ = loop.turns();
+  notify("WATCHDOG=1\nSTATUS=" + std::string(word(status_.head.state)) + ", sample " +
+         std::to_string(status_.head.sample.sample));
+}
+
+}  // namespace garrison::node

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The thread beside the loop: sensors, files, the local socket, and what the service manager is told. It may
+// be late; the loop never waits for it.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "node/daemon/local_socket.hpp"
+#include "node/daemon/log_keeper.hpp"
+#include "node/daemon/loop.hpp"
+
+namespace garrison::node {
+
+class Desk {
+ public:
+  /// Keeps references. print: a line a sample on standard output. @throws IoError
+  Desk(Station& station, std::uint64_t boot, Sensor& sensor, Ring& ring, bool print);
+
+  /// Until a signal comes; the loop is told to end, and what it leaves is written.
+  void run(Loop& loop);
+  /// What came through the ring, to files and clients.
+  void drain();
+  /// The last snapshot onto the disk.
+  void save_state();
+
+ private:
+  void wait(int signals);
+  void tick(Loop& loop, Micros steady);
+  void record(Note note, Bytes content);
+  void status(Bytes content);
+  void snapshot(Bytes content);
+  void proof(Bytes content);
+  void begin_log();
+  std::string answer(std::string_view request);
+  void watch_over(Loop& loop, Micros steady);
+
+  Station& station_;
+  Sensor& sensor_;
+  Ring& ring_;
+  bool print_;
+  std::optional<LogKeeper> log_;
+  std::unique_ptr<Agent> mirror_;  ///< loads snapshots, to be asked what the loop has no time for
+  std::unique_ptr<LocalSocket> socket_;
+  std::vector<std::byte> room_;
+  std::vector<std::byte> snapshot_;
+  Surroundings around_;
+  Status status_;
+  bool known_ = false;
+  Micros snapshot_at_ = -1;
+  Micros saved_at_ = 0;
+  Micros flushed_at_ = 0;
+  Micros watched_at_ = 0;
+  std::uint64_t turns_seen_ = 0;
+  std::int64_t failed_ = 0;
+};
+
+}  // namespace garrison::node

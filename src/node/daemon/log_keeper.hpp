@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The log files of a node: the next one begins where the last is full, the oldest one goes.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "garrison/node/log.hpp"
+
+namespace garrison::node {
+
+class LogKeeper {
+ public:
+  /// Files are FOLDER/NAME-BOOT-NUMBER.mcap; at most `files` of this name stay. @throws IoError
+  LogKeeper(std::string folder, std::string name, std::uint64_t boot, std::vector<std::byte> part, int files);
+
+  void begin();
+  LogWriter& file() { return *file_; }
+  /// Writes that failed, of all files.
+  std::int64_t failed() const noexcept { return failed_ + file_->failed(); }
+
+ private:
+  void drop_oldest() const;
+
+  std::string folder_;
+  std::string name_;
+  std::uint64_t boot_;
+  std::vector<std::byte> part_;
+  int files_;
+  int number_ = 0;
+  std::optional<LogWriter> file_;
+  std::int64_t failed_ = 0;
+};
+
+}  // namespace garrison::node

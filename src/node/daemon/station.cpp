@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "node/daemon/station.hpp"
+
+#include <algorithm>
+
+#include "garrison/engine/design_file.hpp"
+#include "node/daemon/files.hpp"
+#include "node/daemon/sensor.hpp"
+
+namespace garrison::node {
+
+namespace {
+
+/// The head of a snapshot says which design it is of (docs/node.md).
+std::uint64_t design_of(const Agent& agent) {
+  std::vector<std::byte> snapshot(agent.snapshot_bytes());
+  agent.save(snapshot);
+  return wire::load<std::uint64_t>(snapshot.data() + 8);
+}
+
+std::unique_ptr<Agent> agent_in(const std::string& path, Bytes part) {
+  try {
+    return read_part(part);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(path + ": " + error.what());
+  }
+}
+
+const Member& self_in(const Roster& roster, const Settings& settings) {
+  const Member* self = roster.find(settings.name);
+  if (self != nullptr) return *self;
+  std::string names;
+  for (const Member& m : roster.members) names += (names.empty() ? "" : ", ") + m.name;
+  refuse(settings.file + ", name", "\"" + settings.name + "\"", "an agent of " + roster.path + ": " + names);
+}
+
+Vector initial_of(const Roster& roster, int states) {
+  if (roster.initial.empty()) return Vector::Zero(states);
+  if (roster.initial.size() != static_cast<std::size_t>(states))
+    refuse(roster.path + ", [run].initial", std::to_string(roster.initial.size()) + " numbers",
+           std::to_string(states) + ", one per state");
+  return Eigen::Map<const Vector>(roster.initial.data(), states);
+}
+
+bool hears(const Member& who, int whom) {
+  return std::find(who.hears.begin(), who.hears.end(), whom) != who.hears.end();
+}
+
+/// Links both ways, unless the roster says who hears whom.
+void add_links(Station& s) {
+  const auto heard = s.agent->neighbours();
+  for (const Member& m : s.roster.members) {
+    if (m.id == s.self.id) continue;
+    const bool in = std::binary_search(heard.begin(), heard.end(), m.id);
+    const bool out = m.directed ? hears(m, s.self.id) : in;
+    if (s.self.directed && hears(s.self, m.id) != in)
+      refuse(s.roster.path + ", [[agent]] " + s.self.name + ", hears",
+             in ? "a list without " + m.name : m.name, "those whom the design lets it hear",
+             "write roster and parts from the same design");
+    if (!in && !out) continue;
+    s.links.push_back(m);
+    s.listens.push_back(out);
+  }
+  for (const int id : heard)
+    if (s.roster.find(id) == nullptr)
+      refuse(s.roster.path, "no agent " + std::to_string(id), "all neighbours of " + s.self.name,
+             "add its [[agent]], or take the roster of this design");
+}
+
+}  // namespace
+
+Station read_station(const std::string& path) {
+  Station s;
+  s.settings = read_settings(path);
+  s.roster = read_roster(s.settings.roster);
+  s.self = self_in(s.roster, s.settings);
+  s.identity = read_key(s.settings.key);
+  if (s.identity.open != s.self.open)
+    refuse(s.settings.key, "the key " + base64(s.identity.open),
+           base64(s.self.open) + ", as " + s.roster.path + " has for " + s.self.name,
+           "put the line that garrison-keygen printed into the roster, on all nodes");
+  s.part = read_bytes(s.settings.part);
+  s.agent = agent_in(s.settings.part, s.part);
+  if (s.agent->id() != s.self.id)
+    refuse(s.settings.part, "the part of agent " + std::to_string(s.agent->id()),
+           "that of agent " + std::to_string(s.self.id) + ", which is " + s.self.name);
+  s.schedule = schedule_for(s.roster, s.agent->rounds());
+  s.initial = initial_of(s.roster, s.agent->states());
+  s.run = prologue_of(design_of(*s.agent), s.schedule,
+                      {s.initial.data(), static_cast<std::size_t>(s.initial.size())});
+  add_links(s);
+  const Sensor tried(s.settings.sensor, static_cast<std::size_t>(s.agent->outputs()), s.settings.file);
+  return s;
+}
+
+}  // namespace garrison::node

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Logs of real daemons of this machine give the same bits on other processors, under qemu: arm64 (little-endian) and s390x
+# (big-endian). Runs six daemons for some seconds. Needs a build of the node's programs, and
+#   apt-get install qemu-user-static g++-s390x-linux-gnu g++-aarch64-linux-gnu
+# and leaves out, with a word, what is not installed. PYTHON=... names the interpreter that has garrison.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cat >"$work/scenario.toml" <<'END'
+[model]
+A = [[0.99, 0.05], [-0.05, 0.97]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
+process_bound = 0.02
+measurement_bound = 0.01
+[network]
+kind = "ring"
+[filter]
+name = "saturation"
+threshold = 1.5
+rounds = 3
+attacked = 1
+initial_error = 2.0
+detector = true
+[[attack]]
+kind = "bias"
+agents = [2]
+value = 40.0
+start = 20
+[run]
+steps = 60
+seed = 3
+x0 = [1.0, 1.0]
+END
+printf 'scenario = "scenario.toml"\n[run]\nperiod_ms = 100\n[relay]\nloss = 0.1\n' >"$work/network.toml"
+"${PYTHON:-.venv/bin/python}" -m garrison.net up "$work/network.toml" -o "$work/net" >/dev/null
+sources=(tests/node/elsewhere.cpp src/node/journal.cpp src/node/log.cpp src/core/error.cpp)
+flags=(-std=c++20 -O2 -ffp-contract=off -DGARRISON_HEADERS_ONLY -Iinclude -isystem /usr/include/eigen3)
+compared=0
+for processor in s390x aarch64; do
+  if ! command -v "$processor-linux-gnu-g++" >/dev/null || ! command -v "qemu-$processor-static" >/dev/null; then
+    echo "processors: $processor left out, not installed"
+    continue
+  fi
+  "$processor-linux-gnu-g++" "${flags[@]}" "${sources[@]}" -static -o "$work/$processor"
+  echo "processors: $processor: $("qemu-$processor-static" "$work/$processor" "$work"/net/*/log/*.mcap)"
+  compared=$((compared + 1))
+done
+echo "processors: every bit is the same on $compared other processors"

@@ -1,0 +1,312 @@
+"""Real daemons on 127.0.0.1: a small network, its files, its programs. Needs a build with GARRISON_BUILD_NODE."""
+
+import base64
+import ctypes
+import ctypes.util
+import json
+import os
+import re
+import shutil
+import socket
+import struct
+import subprocess
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from garrison import _core
+from garrison.cli import main as garrison
+from garrison.net import Client
+from garrison.net.command import main
+from garrison.net.folder import write_network
+from garrison.net.plan import read_plan
+from garrison.net.programs import program
+from test_node_web import status as example
+
+SCENARIO = """
+[model]
+A = [[0.99, 0.05], [0.0, 0.95]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
+process_bound = 0.02
+measurement_bound = 0.01
+[network]
+kind = "ring"
+[filter]
+name = "saturation"
+threshold = 1.5
+rounds = 3
+attacked = 1
+initial_error = 2.0
+detector = true
+[certificate]
+failure = 0
+[[attack]]
+kind = "bias"
+agents = [2]
+value = 40.0
+start = 8
+[run]
+steps = 30
+seed = 3
+x0 = [1.0, 1.0]
+"""
+PLAN = """
+scenario = "scenario.toml"
+[run]
+period_ms = 100
+[relay]
+loss = 0.05
+delay_ms = 0.5
+"""
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> Path:
+    (tmp_path / "scenario.toml").write_text(SCENARIO)
+    path = tmp_path / "network.toml"
+    path.write_text(PLAN)
+    return path
+
+
+@pytest.fixture
+def folder(plan: Path, programs: str, tmp_path: Path) -> Path:
+    """The files of the network, whose first sample is an hour away."""
+    (tmp_path / "net").mkdir()
+    write_network(read_plan(plan), tmp_path / "net", time.time() + 3600, programs)
+    return tmp_path / "net" / "0"
+
+
+def check(folder: Path, programs: str) -> subprocess.CompletedProcess[str]:
+    command = [program("garrison-node", programs), "--check", str(folder / "node.toml")]
+    return subprocess.run(command, capture_output=True, text=True, timeout=20)
+
+
+def test_a_network_under_attack_does_what_one_process_does(
+    plan: Path, programs: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "net"
+    assert main(["up", str(plan), "-o", str(out), "--programs", programs, "--attack"]) == 0
+    said = capsys.readouterr().out
+    assert "held:" in said
+    summary = json.loads((out / "summary.json").read_text())
+    assert all(summary["relay"][what] > 0 for what in ("lost", "replayed", "mutated", "forged", "flooded"))
+    refused = re.search(r"refused: (.*)", said)
+    assert refused is not None
+    for reason in ("tag", "replay", "size", "stranger"):
+        assert re.search(rf"\d+ {reason}\b", refused[1])
+    assert all(node["samples"] > 10 and node["replayed"] > 10 and node["differ"] == 0 for node in summary["nodes"])
+    assert all(node["counters"]["statements"] > 0 for node in summary["nodes"])
+    logs = [str(path) for path in sorted(out.glob("*/log/*.mcap"))]
+    assert len(logs) == 6
+    assert garrison(["replay", *logs]) == 0
+    assert "was stopped" in capsys.readouterr().out
+
+
+def test_killed_nodes_are_back_and_their_logs_are_read_to_the_end(
+    plan: Path, programs: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "net"
+    assert main(["up", str(plan), "-o", str(out), "--programs", programs, "--kills", "2"]) == 0
+    assert re.search(r"kills: 2, back after [\d.]+ s", capsys.readouterr().out)
+    logs = [_core.replay_log(path.read_bytes()) for path in sorted(out.glob("*/log/*.mcap"))]
+    assert len(logs) == 6 + 2
+    assert sum(not log["ended"] for log in logs) == 2
+    assert all(log["differ"] == 0 for log in logs)
+    joined = [node["counters"]["joins"] for node in json.loads((out / "summary.json").read_text())["nodes"]]
+    assert sum(joined) >= 1
+
+
+def test_a_client_measures_and_watches(folder: Path, programs: str) -> None:
+    text = (folder / "node.toml").read_text()
+    (folder / "node.toml").write_text(text.replace('source = "file"\npath = "sensor.csv"', 'source = "socket"'))
+    command = [program("garrison-node", programs), str(folder / "node.toml")]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL) as process:
+        try:
+            client = Client(folder / "node.sock")
+            status = _patiently(client)
+            assert status["node"] == "0"
+            assert status["state"] == "waiting"
+            assert [link["state"] for link in status["links"]] == ["down", "down"]
+            assert status.keys() == example("0").keys()
+            assert status["counters"].keys() == example("0")["counters"].keys()
+            assert status["links"][0].keys() == example("0")["links"][0].keys()
+            assert client.measure([1.5]) == {"ok": True}
+            assert client.status()["sensor"]["taken"] == 1
+            with pytest.raises(_core.InvalidInput, match="as many numbers as the agent has outputs"):
+                client.measure([1.0, 2.0])
+            with pytest.raises(_core.InvalidInput, match="an unknown request"):
+                client._ask("what")
+        finally:
+            process.terminate()
+    assert process.returncode == 0
+    assert not (folder / "node.sock").exists()
+
+
+def test_a_service_is_told_where_files_are_and_tells_how_it_is(folder: Path, programs: str, tmp_path: Path) -> None:
+    settings = (folder / "node.toml").read_text()
+    for words in ('key = "node.key"\n', '[socket]\npath = "node.sock"\n'):
+        assert words in settings
+        settings = settings.replace(words, "")
+    (folder / "node.toml").write_text(settings)
+    places = {name: tmp_path / name.lower() for name in ("CREDENTIALS", "STATE", "LOGS", "RUNTIME")}
+    for place in places.values():
+        place.mkdir()
+    (folder / "node.key").rename(places["CREDENTIALS"] / "node.key")
+    manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    manager.bind(str(tmp_path / "notify"))
+    manager.settimeout(20)
+    environment = {
+        **os.environ,
+        **{f"{name}_DIRECTORY": str(place) for name, place in places.items()},
+        "NOTIFY_SOCKET": str(tmp_path / "notify"),
+        "WATCHDOG_USEC": "100000",
+    }
+    command = [program("garrison-node", programs), str(folder / "node.toml")]
+    with manager, subprocess.Popen(command, stdin=subprocess.DEVNULL, env=environment) as process:
+        assert manager.recv(1000) == b"READY=1"
+        assert manager.recv(1000).startswith(b"WATCHDOG=1\nSTATUS=")
+        assert Client(places["RUNTIME"] / "node.sock").status()["boot"] == 1
+        process.terminate()
+        said = b""
+        while said != b"STOPPING=1":
+            said = manager.recv(1000)
+    assert process.returncode == 0
+    assert (places["STATE"] / "boot").read_text() == "1\n"
+    assert [path.name for path in places["LOGS"].iterdir()] == ["0-000001-0000.mcap"]
+
+
+def _patiently(client: Client) -> dict[str, Any]:
+    for _ in range(200):
+        try:
+            return client.status()
+        except (OSError, _core.Error):  # not there yet, or without a status yet
+            time.sleep(0.05)
+    return client.status()
+
+
+def test_check_says_what_fits(folder: Path, programs: str) -> None:
+    done = check(folder, programs)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "agent 0 of 6, saturation, 3 rounds every 100 ms, 2 neighbours" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "words"),
+    [
+        ("node.toml", 'source = "file"', 'source = "flie"', ["line 8, [sensor].source", '"flie"', '"lines", "udp"']),
+        ("node.toml", 'name = "0"', 'name = "9"', ["node.toml, name", "an agent of", "0, 1, 2"]),
+        ("node.toml", "part.gdesign", "nothing.gdesign", ["nothing.gdesign", "No such file"]),
+        ("sensor.csv", "\n", "\nwords\n", ["sensor.csv, line 2", '"words"', "1 numbers"]),
+        ("../roster.toml", "period_ms = 100", "period_ms = 2", ["3 rounds", "a longer period_ms"]),
+        ("../roster.toml", "initial = [0.0, 0.0]", "initial = [0.0]", ["[run].initial", "got 1 numbers", "2, one per"]),
+        ("../roster.toml", "hears = [1, 5]", "hears = [1]", ["hears", "a list without 5", "from the same design"]),
+        ("../roster.toml", "period_ms", "perod_ms", ["line 3, [run].perod_ms", 'did you mean "period_ms"?']),
+    ],
+)
+def test_check_refuses_what_does_not_fit(
+    folder: Path, programs: str, file: str, old: str, new: str, words: list[str]
+) -> None:
+    path = folder / file
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    done = check(folder, programs)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    for word in [*words, "got ", "expected "]:
+        assert word in done.stderr
+
+
+def test_check_refuses_keys_that_others_may_read_or_that_are_not_its_own(folder: Path, programs: str) -> None:
+    (folder / "node.key").chmod(0o644)
+    assert "chmod 600" in check(folder, programs).stderr
+    shutil.copy(folder.parent / "1" / "node.key", folder / "node.key")
+    (folder / "node.key").chmod(0o600)
+    done = check(folder, programs)
+    assert done.returncode == 2
+    assert "as " in done.stderr and "has for 0" in done.stderr
+    shutil.copy(folder.parent / "1" / "part.gdesign", folder / "part.gdesign")
+    (folder / "node.key").unlink()
+    assert "garrison-keygen" in check(folder, programs).stderr
+
+
+def test_another_part_is_refused(folder: Path, programs: str) -> None:
+    shutil.copy(folder.parent / "1" / "part.gdesign", folder / "part.gdesign")
+    assert "the part of agent 1" in check(folder, programs).stderr
+    damaged = bytearray((folder.parent / "0" / "part.gdesign").read_bytes())
+    damaged[50] ^= 1
+    (folder / "part.gdesign").write_bytes(damaged)
+    done = check(folder, programs)
+    assert done.returncode == 2
+    assert "part.gdesign" in done.stderr
+
+
+def test_plans_are_refused_by_key(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for old, new, word in [
+        ("loss = 0.05", "loss = 1.5", "[relay].loss"),
+        ("period_ms", "periodms", 'did you mean "period_ms"'),
+        ("delay_ms = 0.5", "delay_ms = -1", "[relay].delay_ms"),
+    ]:
+        plan.write_text(PLAN.replace(old, new))
+        assert main(["up", str(plan)]) == 2
+        assert word in capsys.readouterr().err
+
+
+def test_accept_measures_a_row_and_refuses_unknown_ones(programs: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["accept", "kils"]) == 2
+    assert 'did you mean "kills"?' in capsys.readouterr().err
+    assert main(["accept", "kills", "--seconds", "1"]) == 2
+    assert "a number in 2..3600" in capsys.readouterr().err
+    assert main(["accept", "kills", "--seconds", "2.5", "--programs", programs]) in (0, 1)  # 1: a busy machine
+    assert re.search(r"kills: .*\n +5 of 5 back; median", capsys.readouterr().out)
+
+
+def _signed(seed: bytes, run: bytes, first: int, digest: bytes) -> bytes:
+    """A statement as docs/node.md has it: of agent 0, its first start, ten samples, thirty bodies."""
+    name = ctypes.util.find_library("sodium")
+    assert name is not None
+    sodium = ctypes.CDLL(name)
+    open_, secret, signature = (ctypes.create_string_buffer(size) for size in (32, 64, 64))
+    sodium.crypto_sign_seed_keypair(open_, secret, seed)
+    content = struct.pack("<HQqqI", 0, 1, first, first + 9, 30) + digest
+    message = b"garrison root 1" + run + content
+    sodium.crypto_sign_detached(signature, None, message, ctypes.c_ulonglong(len(message)), secret)
+    return content + signature.raw
+
+
+def test_a_proof_is_checked_offline(folder: Path, programs: str, tmp_path: Path) -> None:
+    seed = base64.b64decode((folder / "node.key").read_text().split()[1])
+    run, other_seed = b"r" * 32, b"s" * 32
+    a, b = (_signed(seed, run, 10, letter * 32) for letter in (b"a", b"b"))
+    cases = {
+        0: b"GPROOF01" + run + a + b,
+        1: b"GPROOF01" + run + a + a,
+        2: b"GPROOF01" + run + a,
+    }
+    command = [
+        program("garrison-ctl", programs),
+        "verify-proof",
+        str(tmp_path / "x.proof"),
+        str(folder / "../roster.toml"),
+    ]
+    for code, content in cases.items():
+        (tmp_path / "x.proof").write_bytes(content)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=20)
+        assert done.returncode == code, done.stderr
+    for content in (
+        b"GPROOF01" + b"q" * 32 + a + b,  # of another run
+        b"GPROOF01" + run + a + _signed(other_seed, run, 10, b"b" * 32),  # of another key
+        b"GPROOF01" + run + a + _signed(seed, run, 20, b"b" * 32),  # of other samples
+    ):
+        (tmp_path / "x.proof").write_bytes(content)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=20)
+        assert done.returncode == 1
+        assert "has NOT signed" in done.stdout
+
+
+def test_replay_refuses_what_is_no_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "x.mcap"
+    path.write_bytes(b"nothing of the kind")
+    assert garrison(["replay", str(path)]) == 2
+    assert "x.mcap" in capsys.readouterr().err
