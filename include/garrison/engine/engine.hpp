@@ -87,7 +87,7 @@ class Engine final : public Runner {
       const auto i = static_cast<std::size_t>(places_[k].id);
       const Vec<n>& x = F::template estimate<n>(states_[k]);
       const Report r = F::template report<n>(local(k), *gains_, states_[k]);
-      const Bound bound = certificate::least(r.bound, certified_ ? certified_->of(places_[k].id) : nullptr,
+      const Bound bound = certificate::least(r.bound, r.kind, certified_ ? certified_->of(places_[k].id) : nullptr,
                                              {x.data(), static_cast<std::size_t>(x.size())});
       if (f.estimate != nullptr)
         std::copy_n(x.data(), x.size(), f.estimate + i * static_cast<std::size_t>(x.size()));
@@ -195,7 +195,8 @@ class Engine final : public Runner {
       mail_.collect(t, round, plain, [&](std::size_t k, int sender, Message& m) {
         shape<F, n>(local(k), *gains_, sender, t, m);
       });
-      if (certified_) certified_->round(workers_, [this](int i, const auto& hear) { each_heard(i, hear); });
+      if (certified_ && !(plain && mail_.perfect()))
+        certified_->round(workers_, [this](int i, const auto& hear) { each_heard(i, hear); });
       const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
       if (batch_.fuse(*gains_, locals(), inbox, workers_))
         mail_.post();

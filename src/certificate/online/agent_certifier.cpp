@@ -76,6 +76,8 @@ AgentCertifier::AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::sp
   for (const std::size_t r : row_) source_.push_back(number.at(plan_->source[r]));
   one_row_each_ = number.size() == row_.size();
   y_.resize(row_.size());
+  present_.resize(row_.size());
+  used_.resize(row_.size());
   ends_.resize(2 * row_.size());
   y1_.resize(row_.size());
   width1_.resize(row_.size());
@@ -93,7 +95,7 @@ void AgentCertifier::reset(std::int64_t t) noexcept {
   memory_.t = t;
   memory_.radius = kInfinity;
   memory_.age = -1;
-  memory_.firm = false;
+  memory_.firm = 0;
   for (auto* part : {&memory_.center, &memory_.box, &memory_.ball})
     std::fill(part->begin(), part->end(), 0.0);
   memory_.ball_radius = 0.0;
@@ -104,7 +106,8 @@ double AgentCertifier::aged(double radius, int age) const {
   return age == 0 ? radius : plan_->norm[k] * radius + plan_->added[k];
 }
 
-void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
+/// The relayed region becomes one of sample t, of which nothing is known yet.
+void AgentCertifier::move_to(std::int64_t t) noexcept {
   const std::int64_t passed = t - memory_.t;
   memory_.t = t;
   memory_.radius = kInfinity;
@@ -124,10 +127,32 @@ void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
   std::fill(y_.begin(), y_.end(), kNaN);
   known_ = 0;
   judged_ = false;
+}
+
+void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
+  move_to(t);
   const auto me = std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin();
   for (std::size_t k = at_[static_cast<std::size_t>(me)]; k < at_[static_cast<std::size_t>(me) + 1]; ++k)
     learn(k, *y++);
   if (rounds_ == 0) end_sample();
+}
+
+void AgentCertifier::begin_knowing(std::int64_t t, const double* all, const AgentCertifier* same) noexcept {
+  if (same == nullptr) {
+    move_to(t);
+  } else {
+    copy_relayed(*same);
+    memory_.t = t;
+    memory_.radius = kInfinity;
+    judged_ = false;
+  }
+  known_ = 0;
+  for (std::size_t k = 0; k < y_.size(); ++k) {
+    const double y = all[row_[k]];
+    const bool usable = std::abs(y) < kHuge;
+    y_[k] = usable ? y : kNaN;
+    known_ += usable ? 1 : 0;
+  }
 }
 
 void AgentCertifier::learn(std::size_t at, double y) noexcept {
@@ -147,7 +172,7 @@ void AgentCertifier::say(int round, Evidence& out) const noexcept {
   }
   const bool has = memory_.age >= 0;
   out.age = has ? memory_.age : 0;
-  out.firm = has && memory_.firm;
+  out.firm = has ? memory_.firm : 0;
   std::copy(memory_.ball.begin(), memory_.ball.end(), out.ball.begin());
   out.ball.back() = memory_.ball_radius;
   if (!has) std::fill(out.ball.begin(), out.ball.end(), kNaN);
@@ -167,16 +192,46 @@ void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
   if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.ball.back(), in.age, in.firm);
 }
 
-/// Takes over a ball that is better than the own one. Gaussian: which one is used must not depend on the
-/// noise through its age, so first the firm ones, then the freshest; of one age the smallest.
-void AgentCertifier::offer(const double* center, double radius, int age, bool firm) noexcept {
-  if (memory_.age >= 0) {
-    const auto rank = [&](double size, int old, bool is_firm) {
-      const int tier = is_firm && old <= plan_->firm_ages ? 0 : 1;
-      return plan_->deterministic() ? std::tuple(0, 0, aged(size, old)) : std::tuple(tier, old, size);
-    };
-    if (!(rank(radius, age, firm) < rank(memory_.ball_radius, memory_.age, memory_.firm))) return;
-  }
+/// Whether a ball is better than the own one. Gaussian: which one is used must not depend on the noise
+/// through its age, so first the firmest ones, then the freshest; of one age the smallest. No two balls are
+/// alike: what an agent ends with does not depend on the way by which they came.
+bool AgentCertifier::goes_before(const double* center, double radius, int age, int firm) const {
+  if (memory_.age < 0) return true;
+  const auto rank = [&](double size, int old, int firmness) {
+    const int tier = old <= plan_->firm_ages ? -firmness : 0;
+    return plan_->deterministic() ? std::tuple(0, 0, aged(size, old), old, -firmness)
+                                  : std::tuple(tier, old, size, 0, -firmness);
+  };
+  const auto given = rank(radius, age, firm);
+  const auto own = rank(memory_.ball_radius, memory_.age, memory_.firm);
+  if (given != own) return given < own;
+  return std::lexicographical_compare(center, center + memory_.ball.size(), memory_.ball.begin(),
+                                      memory_.ball.end());
+}
+bool AgentCertifier::relays_before(const AgentCertifier& other) const {
+  const Memory& m = memory_;
+  return m.age >= 0 && other.goes_before(m.ball.data(), m.ball_radius, m.age, m.firm);
+}
+bool AgentCertifier::relays_the_same(const AgentCertifier& other) const {
+  const Memory& m = memory_;
+  const Memory& o = other.memory_;
+  return m.age == o.age && m.firm == o.firm && m.ball_radius == o.ball_radius && m.ball == o.ball;
+}
+bool AgentCertifier::found_the_same(const AgentCertifier& other) const {
+  const Memory& m = memory_;
+  const Memory& o = other.memory_;
+  return std::memcmp(&m.radius, &o.radius, sizeof(double)) == 0 && m.center == o.center && m.box == o.box;
+}
+void AgentCertifier::copy_relayed(const AgentCertifier& other) noexcept {
+  memory_.ball = other.memory_.ball;
+  memory_.ball_radius = other.memory_.ball_radius;
+  memory_.age = other.memory_.age;
+  memory_.firm = other.memory_.firm;
+}
+
+/// Takes over a ball that is better than the own one.
+void AgentCertifier::offer(const double* center, double radius, int age, int firm) noexcept {
+  if (!goes_before(center, radius, age, firm)) return;
   std::copy_n(center, memory_.ball.size(), memory_.ball.begin());
   memory_.ball_radius = radius;
   memory_.age = age;
@@ -190,21 +245,36 @@ void AgentCertifier::end_sample() noexcept {
   if (!judged_) witness();
 }
 
-void AgentCertifier::witness() noexcept {
-  judged_ = true;
+/// Writes what is known into rows_, anew only where other measurements are missing than the last time.
+void AgentCertifier::gather() noexcept {
+  bool same = true;
+  for (std::size_t k = 0; k < y_.size(); ++k) {
+    const char present = std::isnan(y_[k]) ? 0 : 1;
+    same = same && present == present_[k];
+    present_[k] = present;
+  }
+  int j = 0;
+  if (same) {
+    for (std::size_t k = 0; k < y_.size(); ++k)
+      if (used_[k] != 0) rows_.measure(j++, y_[k]);
+    return;
+  }
   rows_.clear();
   const std::size_t n = memory_.center.size();
   for (std::size_t k = 0; k < y_.size(); ++k) {
-    if (std::isnan(y_[k])) continue;
     const auto r = static_cast<Eigen::Index>(row_[k]);
-    rows_.add(source_[k], {plan_->rows.data() + row_[k] * n, n}, y_[k], plan_->variance(r),
-              plan_->deterministic() ? plan_->width(r) : 0.0);
+    used_[k] = static_cast<char>(
+        present_[k] != 0 && rows_.add(source_[k], {plan_->rows.data() + row_[k] * n, n}, y_[k],
+                                      plan_->variance(r), plan_->deterministic() ? plan_->width(r) : 0.0));
   }
-  // Without a row to spare a single liar passes for the only honest one, and the region reaches to wherever
-  // it says.
-  own_firm_ = rows_.present() > plan_->wanted.attacked + 1 &&
-              rows_.size() - plan_->wanted.attacked > static_cast<int>(n);
+}
+
+void AgentCertifier::witness() noexcept {
+  judged_ = true;
+  gather();
+  own_firm_ = firmness();
   if (rows_.size() == 0) return;
+  const std::size_t n = memory_.center.size();
   Assumption a;
   a.s = plan_->wanted.attacked;
   a.bounded = plan_->deterministic();
@@ -214,6 +284,14 @@ void AgentCertifier::witness() noexcept {
   keep((few ? witness_subsets(rows_, a, kNaN, subsets_) : leverage_ball(rows_, a, leverage_)).region);
   if (a.bounded && n == 1 && one_row_each_ && !std::isnan(memory_.radius)) interval_rule();
   relay_own();
+}
+
+/// Without a row to spare a single liar passes for the only honest one, and with s liars among at most 2 s
+/// sources they may all agree: the region reaches to wherever they say.
+int AgentCertifier::firmness() const {
+  const int s = plan_->wanted.attacked;
+  const bool spare = rows_.present() > s + 1 && rows_.size() - s > rows_.states();
+  return !spare ? 0 : rows_.present() > 2 * s ? 2 : 1;
 }
 
 /// W0, one state: where it is sharper than what is kept.

@@ -41,8 +41,8 @@ struct Wanted {
 /// Failure probability, Gaussian. In a sample fail with 3/8 of it: some measurement is beyond z1 (T1), or the
 /// least-squares vector of the full set of rows beyond z2_full, or that of one of the partial sets that
 /// losses and locality leave, one per agent, beyond z2_partial (T2). An agent uses two regions, its own of
-/// this sample and one that was relayed; which one that is depends on losses only: the freshest firm one, of
-/// those the smallest. Process noise since then has the other quarter.
+/// this sample and one that was relayed; which one that is depends on losses only: the freshest of the
+/// firmest, of those the smallest. Process noise since then has the other quarter.
 struct GARRISON_EXPORT Plan {
   Wanted wanted;
   int agents = 0;
