@@ -120,7 +120,9 @@ def prepare(
 
     certificate: what every agent proves of its error at run time, whatever filter it runs, whatever at most `attacked`
     sources send (docs/certificates.md). "local": from its own measurement and its neighbours'; "flooded": from all
-    that the rounds of a sample bring, with larger messages; "none": the filter's own bound alone, no byte more.
+    that the rounds of a sample bring, with larger messages; "direct": as "local" without what others found, so that
+    bounds hold although agents lie in their messages, each counting as an attacked source; "none": the filter's own
+    bound alone, no byte more.
     failure: probability, per agent and sample, that such a bound is wrong, for the model's covariances; 0 = never, for
     noise within its bounds. attacked: default the filter's parameter of that name. A source is an agent, or what the
     model names as source. What is lost on the way makes a bound larger, never wrong.

@@ -30,8 +30,9 @@ struct CertifiedNetwork::Agents {
 void CertifiedNetwork::Agents::plan_at_once(const certificate::Plan& plan, const Network& network, int rounds,
                                             const std::vector<int>& listeners) {
   const bool flooded = certifiers.front()->flooded();
-  flood = detail::Flood(network, flooded ? rounds : rounds - 1);
-  reaches_all = rounds > 0 && flood.reaches_all();
+  const bool direct = certifiers.front()->direct();
+  if (!direct) flood = detail::Flood(network, flooded ? rounds : rounds - 1);
+  reaches_all = rounds > 0 && (direct || flood.reaches_all());
   if (!reaches_all) return;
   for (int i = 0; i < network.agents(); ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -51,6 +52,7 @@ void CertifiedNetwork::Agents::plan_at_once(const certificate::Plan& plan, const
 
 bool CertifiedNetwork::Agents::all_alike() const {
   const AgentCertifier& first = *certifiers.front();
+  if (first.direct()) return true;
   for (const auto& one : certifiers)
     if (!one->relays_the_same(first) || (first.flooded() && !one->found_the_same(first))) return false;
   return true;
@@ -129,7 +131,7 @@ void CertifiedNetwork::finish(Workers& workers) {
 }
 
 /// A sample in which everybody learns everything, from a region that all share. Flooded, one agent stands for
-/// all.
+/// all; direct, nothing is shared.
 void CertifiedNetwork::at_once(Workers& workers) {
   auto& all = all_->certifiers;
   AgentCertifier& first = *all.front();
@@ -138,19 +140,19 @@ void CertifiedNetwork::at_once(Workers& workers) {
   const bool relaying = first.memory().age >= 0;
   workers.split(others, [&](std::int64_t begin, std::int64_t end, int) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      all[i + 1]->begin_knowing(t_, y_, &first);
+      all[i + 1]->begin_knowing(t_, y_, first.direct() ? nullptr : &first);
       all[i + 1]->witness();
     }
   });
   first.witness();
-  const AgentCertifier* best = &first;
-  for (std::size_t i = 1; i <= static_cast<std::size_t>(others); ++i)
-    if (all[i]->relays_before(*best)) best = all[i].get();
-  bytes_ += all_->bare_bytes + (relaying ? all_->region_bytes : 0);
-  if (!relaying && !first.flooded() && best->memory().age >= 0)
+  if (relaying && !first.direct())
+    bytes_ += all_->region_bytes;
+  else if (!first.flooded() && !first.direct())
     bytes_ += all_->bytes_of_first_regions(rounds_, listeners_);
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(others); ++i)
-    if (all[i].get() != best) all[i]->copy_relayed(*best);
+  const std::int64_t sharing = first.direct() ? 0 : others;
+  for (std::size_t i = 1; i <= static_cast<std::size_t>(sharing); ++i) first.hear_relayed(*all[i]);
+  for (std::size_t i = 1; i <= static_cast<std::size_t>(sharing); ++i) all[i]->copy_relayed(first);
+  bytes_ += all_->bare_bytes;
   for (std::size_t k = 0; k < all_->measured_bytes.size(); ++k)
     bytes_ += std::abs(y_[k]) < kHuge ? all_->measured_bytes[k] : 0;
   round_ = rounds_;

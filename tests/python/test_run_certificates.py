@@ -97,7 +97,7 @@ def test_designs_agents_and_runs_keep_it(tmp_path: Path) -> None:
         assert [a.bound for a in agents] == list(run.bound[0, t])
         assert [a.bound_kind for a in agents] == list(run.bound_kind[0, t])
     said = messages[0].fields
-    assert {"certificate.measurements", "certificate.ball", "certificate.age", "certificate.firm"} <= set(said)
+    assert {"certificate.measurements", "certificate.ball", "certificate.age", "certificate.fresh"} <= set(said)
     run.save(tmp_path / "run.npz")
     assert gr.Run.load(tmp_path / "run.npz") == run == pickle.loads(pickle.dumps(run))
     with pytest.raises(gr.InvalidInput, match="certificate: got 'local' with a design"):

@@ -53,6 +53,7 @@ AgentCertifier::AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::sp
       id_(id),
       rounds_(rounds),
       flooded_(plan_->wanted.spread == Spread::flooded),
+      direct_(plan_->wanted.spread == Spread::direct),
       agents_(within_reach(*plan_, id, neighbours)),
       rows_(plan_->states(), std::max(1, sizes(*plan_, agents_).sources),
             std::max(1, sizes(*plan_, agents_).rows)),
@@ -95,7 +96,7 @@ void AgentCertifier::reset(std::int64_t t) noexcept {
   memory_.t = t;
   memory_.radius = kInfinity;
   memory_.age = -1;
-  memory_.firm = 0;
+  memory_.fresh = 0;
   for (auto* part : {&memory_.center, &memory_.box, &memory_.ball})
     std::fill(part->begin(), part->end(), 0.0);
   memory_.ball_radius = 0.0;
@@ -113,10 +114,12 @@ void AgentCertifier::move_to(std::int64_t t) noexcept {
   memory_.radius = kInfinity;
   if (memory_.age >= 0) {
     Eigen::Map<Vector> center(memory_.ball.data(), moved_.size());
-    if (passed > plan_->ages() - memory_.age) {
+    const int oldest = plan_->deterministic() ? memory_.age : memory_.fresh + kChoice;  // that it may be
+    if (passed > plan_->ages() - oldest) {
       memory_.age = -1;
     } else {
       memory_.age += static_cast<int>(passed);
+      memory_.fresh += static_cast<int>(passed);
       for (std::int64_t k = 0; k < passed; ++k) {
         moved_.noalias() = plan_->A * center;
         center = moved_;
@@ -170,9 +173,10 @@ void AgentCertifier::say(int round, Evidence& out) const noexcept {
     for (std::size_t k = 0; k < out.measurements.size(); ++k)
       out.measurements[k] = round == 0 ? y_[at_[me] + k] : kNaN;
   }
-  const bool has = memory_.age >= 0;
+  const bool has = memory_.age >= 0 && !direct_;
   out.age = has ? memory_.age : 0;
-  out.firm = has ? memory_.firm : 0;
+  out.fresh = has ? memory_.fresh : 0;
+  if (direct_) return;
   std::copy(memory_.ball.begin(), memory_.ball.end(), out.ball.begin());
   out.ball.back() = memory_.ball_radius;
   if (!has) std::fill(out.ball.begin(), out.ball.end(), kNaN);
@@ -187,35 +191,49 @@ void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
     for (std::size_t k = 0; k < in.measurements.size(); ++k)
       learn(at_[static_cast<std::size_t>(at)] + k, in.measurements[k]);
   }
-  bool whole = in.age <= std::max(plan_->ages(), 0);
+  if (direct_) return;
+  bool whole = in.age <= std::max(plan_->ages(), 0) && in.fresh <= in.age && eligible(in.age, in.fresh);
   for (const double v : in.ball) whole = whole && !std::isnan(v);
-  if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.ball.back(), in.age, in.firm);
+  if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.ball.back(), in.age, in.fresh);
 }
 
-/// Whether a ball is better than the own one. Gaussian: which one is used must not depend on the noise
-/// through its age, so first the firmest ones, then the freshest; of one age the smallest. No two balls are
-/// alike: what an agent ends with does not depend on the way by which they came.
-bool AgentCertifier::goes_before(const double* center, double radius, int age, int firm) const {
-  if (memory_.age < 0) return true;
-  const auto rank = [&](double size, int old, int firmness) {
-    const int tier = old <= plan_->firm_ages ? -firmness : 0;
-    return plan_->deterministic() ? std::tuple(0, 0, aged(size, old), old, -firmness)
-                                  : std::tuple(tier, old, size, 0, -firmness);
-  };
-  const auto given = rank(radius, age, firm);
-  const auto own = rank(memory_.ball_radius, memory_.age, memory_.firm);
+/// Whether a region may be used where one of age `fresh` was to be had: with Gaussian noise, choosing among
+/// all ages by looking at the data would cost failure probability without end.
+bool AgentCertifier::eligible(int age, int fresh) const {
+  return plan_->deterministic() || age <= fresh + kChoice;
+}
+
+/// Whether a ball is smaller than the own one. No two balls are alike: what an agent ends with does not
+/// depend on the way by which they came.
+bool AgentCertifier::goes_before(const double* center, double radius, int age) const {
+  const auto given = std::tuple(aged(radius, age), age, radius);
+  const auto own = std::tuple(aged(memory_.ball_radius, memory_.age), memory_.age, memory_.ball_radius);
   if (given != own) return given < own;
   return std::lexicographical_compare(center, center + memory_.ball.size(), memory_.ball.begin(),
                                       memory_.ball.end());
 }
-bool AgentCertifier::relays_before(const AgentCertifier& other) const {
-  const Memory& m = memory_;
-  return m.age >= 0 && other.goes_before(m.ball.data(), m.ball_radius, m.age, m.firm);
+
+/// Takes over a ball that is better than the own one.
+void AgentCertifier::offer(const double* center, double radius, int age, int fresh) noexcept {
+  if (memory_.age >= 0) {
+    memory_.fresh = std::min(memory_.fresh, fresh);
+    if (!eligible(age, memory_.fresh)) return;
+    if (eligible(memory_.age, memory_.fresh) && !goes_before(center, radius, age)) return;
+  } else {
+    memory_.fresh = fresh;
+  }
+  std::copy_n(center, memory_.ball.size(), memory_.ball.begin());
+  memory_.ball_radius = radius;
+  memory_.age = age;
+}
+void AgentCertifier::hear_relayed(const AgentCertifier& other) noexcept {
+  const Memory& m = other.memory_;
+  if (m.age >= 0) offer(m.ball.data(), m.ball_radius, m.age, m.fresh);
 }
 bool AgentCertifier::relays_the_same(const AgentCertifier& other) const {
   const Memory& m = memory_;
   const Memory& o = other.memory_;
-  return m.age == o.age && m.firm == o.firm && m.ball_radius == o.ball_radius && m.ball == o.ball;
+  return m.age == o.age && m.fresh == o.fresh && m.ball_radius == o.ball_radius && m.ball == o.ball;
 }
 bool AgentCertifier::found_the_same(const AgentCertifier& other) const {
   const Memory& m = memory_;
@@ -226,16 +244,7 @@ void AgentCertifier::copy_relayed(const AgentCertifier& other) noexcept {
   memory_.ball = other.memory_.ball;
   memory_.ball_radius = other.memory_.ball_radius;
   memory_.age = other.memory_.age;
-  memory_.firm = other.memory_.firm;
-}
-
-/// Takes over a ball that is better than the own one.
-void AgentCertifier::offer(const double* center, double radius, int age, int firm) noexcept {
-  if (!goes_before(center, radius, age, firm)) return;
-  std::copy_n(center, memory_.ball.size(), memory_.ball.begin());
-  memory_.ball_radius = radius;
-  memory_.age = age;
-  memory_.firm = firm;
+  memory_.fresh = other.memory_.fresh;
 }
 
 void AgentCertifier::end_round(int round) noexcept {
@@ -272,7 +281,6 @@ void AgentCertifier::gather() noexcept {
 void AgentCertifier::witness() noexcept {
   judged_ = true;
   gather();
-  own_firm_ = firmness();
   if (rows_.size() == 0) return;
   const std::size_t n = memory_.center.size();
   Assumption a;
@@ -284,14 +292,6 @@ void AgentCertifier::witness() noexcept {
   keep((few ? witness_subsets(rows_, a, kNaN, subsets_) : leverage_ball(rows_, a, leverage_)).region);
   if (a.bounded && n == 1 && one_row_each_ && !std::isnan(memory_.radius)) interval_rule();
   relay_own();
-}
-
-/// Without a row to spare a single liar passes for the only honest one, and with s liars among at most 2 s
-/// sources they may all agree: the region reaches to wherever they say.
-int AgentCertifier::firmness() const {
-  const int s = plan_->wanted.attacked;
-  const bool spare = rows_.present() > s + 1 && rows_.size() - s > rows_.states();
-  return !spare ? 0 : rows_.present() > 2 * s ? 2 : 1;
 }
 
 /// W0, one state: where it is sharper than what is kept.
@@ -325,7 +325,7 @@ void AgentCertifier::keep(const Region& region) noexcept {
 }
 
 void AgentCertifier::relay_own() noexcept {
-  if (std::isfinite(memory_.radius)) offer(memory_.center.data(), memory_.radius, 0, own_firm_);
+  if (std::isfinite(memory_.radius)) offer(memory_.center.data(), memory_.radius, 0, 0);
 }
 
 Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
@@ -350,7 +350,7 @@ Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
 }
 
 void AgentCertifier::shape_evidence(int sender, Evidence& out) const {
-  out.ball.resize(memory_.ball.size() + 1, kNaN);
+  out.ball.resize(direct_ ? 0 : memory_.ball.size() + 1, kNaN);
   out.measurements.resize(flooded_ ? y_.size() : static_cast<std::size_t>(plan_->outputs(sender)), kNaN);
 }
 
@@ -360,7 +360,8 @@ bool AgentCertifier::usable() const noexcept {
   };
   return finite(memory_.center) && finite(memory_.box) && finite(memory_.ball) && !(memory_.radius < 0.0) &&
          memory_.ball_radius >= 0.0 && memory_.ball_radius < kHuge &&
-         memory_.age <= std::max(0, plan_->ages());
+         memory_.age <= std::max(0, plan_->ages()) &&
+         (memory_.age < 0 || (memory_.fresh <= memory_.age && eligible(memory_.age, memory_.fresh)));
 }
 
 bool AgentCertifier::knows_the_same(const AgentCertifier& other) const {
@@ -373,7 +374,6 @@ void AgentCertifier::adopt(const AgentCertifier& other) noexcept {
   memory_.radius = other.memory_.radius;
   memory_.center = other.memory_.center;
   memory_.box = other.memory_.box;
-  own_firm_ = other.own_firm_;
   relay_own();
 }
 

@@ -37,30 +37,32 @@ class AgentCertifier final : public Certifier {
   /// may arrive, by row of the plan. With `same`, which has begun: the relayed region is its.
   void begin_knowing(std::int64_t t, const double* all, const AgentCertifier* same) noexcept;
   void copy_relayed(const AgentCertifier& other) noexcept;
-  bool relays_before(const AgentCertifier& other) const;
+  /// As if it came in a message.
+  void hear_relayed(const AgentCertifier& other) noexcept;
   bool relays_the_same(const AgentCertifier& other) const;
   bool found_the_same(const AgentCertifier& other) const;
   /// Takes over all that lasts to the next sample.
   void copy(const AgentCertifier& other) noexcept { memory_ = other.memory_; }
   bool flooded() const { return flooded_; }
+  bool direct() const { return direct_; }
 
  private:
   void move_to(std::int64_t t) noexcept;
   void learn(std::size_t at, double y) noexcept;
   void gather() noexcept;
-  int firmness() const;
   void interval_rule() noexcept;
   void keep(const Region& region) noexcept;
   void relay_own() noexcept;
-  void offer(const double* center, double radius, int age, int firm) noexcept;
-  bool goes_before(const double* center, double radius, int age, int firm) const;
+  bool eligible(int age, int fresh) const;
+  void offer(const double* center, double radius, int age, int fresh) noexcept;
+  bool goes_before(const double* center, double radius, int age) const;
   double aged(double radius, int age) const;
 
   std::shared_ptr<const Plan> plan_;
   int id_;
   int rounds_;
   bool flooded_;
-  int own_firm_ = 0;              // see Evidence
+  bool direct_;
   bool judged_ = true;            // the witness of this sample is there
   std::vector<int> agents_;       // whose rows may become known, ascending
   std::vector<std::size_t> at_;   // where each one's rows begin in y_, and their number

@@ -24,7 +24,7 @@ struct Memory {
   std::vector<double> ball;
   double ball_radius = kNaN;
   int age = -1;
-  int firm = 0;  // see Evidence
+  int fresh = 0;  // see Evidence
 
   template <class V>
   void visit(V& v) {
@@ -35,7 +35,7 @@ struct Memory {
     v("ball", ball);
     v("ball_radius", ball_radius);
     v.range("age", age, -1, kMostAge);
-    v.range("firm", firm, 0, kFirmest);
+    v.range("fresh", fresh, 0, kMostAge);
   }
 };
 

@@ -11,8 +11,8 @@ namespace garrison::certificate {
 /// Regions older than this are forgotten.
 inline constexpr int kMostAge = 1000;
 
-/// Largest Evidence::firm.
-inline constexpr int kFirmest = 2;
+/// With Gaussian noise a region may be so many samples older than the freshest that was to be had.
+inline constexpr int kChoice = 3;
 
 /// Fields in the sense of core/fields.hpp; drivers put them behind those of the filter's message.
 struct Evidence {
@@ -23,19 +23,15 @@ struct Evidence {
   /// and its radius when it was new; all absent = none.
   std::vector<double> ball;
   int age = 0;  ///< samples since
-  /// How far liars could stretch it: 2 = not at will, more than 2 s sources were at hand; 1 = every set of
-  /// rows that may be the honest one had a row to spare, but s liars alone may have been such a set; 0 = to
-  /// anywhere.
-  int firm = 0;
-
-  bool has_ball() const { return ball.back() == ball.back(); }
+  /// Age of the freshest region that the sender could have had; losses alone decide it.
+  int fresh = 0;
 
   template <class V>
   void visit(V& v) {
     v.sparse("certificate.measurements", measurements);
     v.sparse("certificate.ball", ball);
     v.count("certificate.age", age, kMostAge);
-    v.count("certificate.firm", firm, kFirmest);
+    v.count("certificate.fresh", fresh, kMostAge);
   }
 };
 
