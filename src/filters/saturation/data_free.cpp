@@ -16,6 +16,8 @@ constexpr int kFewestSteps = 32;
 constexpr int kMostSteps = 4096;
 /// Of what lies before the window, so much may be left (largest row sum).
 constexpr double kForgotten = 1e-3;
+/// Twice the steps make what holds for ever no smaller than this part of it: enough.
+constexpr double kSettled = 0.99;
 
 /// Kernels of a window behind which little is left, as far as it pays.
 certificate::Kernels kernels_of(const certificate::ErrorSystem& system) {
@@ -64,12 +66,16 @@ DataFree data_free(const Model& model, const Network& network, const DataFreeOpt
   const Vector& b_v = model.noise().measurement_bound;
   certificate::TableOptions options{.s = o.attacked, .start = o.initial_error, .T = 1};
   if (!std::isnan(o.beta)) options.beta = o.beta;
-  const auto enough = [&](const certificate::Table& table) {
-    return table.steady || options.T >= kMostSteps || !table.d.row(options.T).allFinite();
+  // What holds for ever is no less than the last window: until it is not the start that is seen there.
+  const auto for_ever = [](const certificate::Table& table) {
+    return table.steady ? table.steady->d.maxCoeff() : kInfinity;
   };
   options.T = std::max(kFewestSteps, kernels.window() + 2);
   auto table = std::make_unique<certificate::Table>(certificate::table(kernels, options, b_w, b_v));
-  while (!enough(*table)) {
+  double before = kInfinity;
+  while (options.T < kMostSteps && table->d.row(options.T).allFinite() &&
+         !(for_ever(*table) > kSettled * before)) {
+    before = for_ever(*table);
     options.T *= 2;
     *table = certificate::table(kernels, options, b_w, b_v);
   }
