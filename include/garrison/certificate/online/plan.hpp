@@ -16,7 +16,7 @@ enum class Spread : std::uint8_t {
   local,    ///< its own and its neighbours', and the best region that anybody found from such
   flooded,  ///< all that the rounds of a sample bring: messages carry every measurement known so far
   direct,   ///< its own and its neighbours', and nothing else that others say: bounds hold also where agents
-           ///< lie in their messages, as long as liars and attacked sources are at most s together
+            ///< lie in their messages, as long as liars and attacked sources are at most s together
 };
 
 /// What a run is asked to certify: with at most `attacked` sources lying (an agent with all its outputs is
