@@ -23,13 +23,14 @@ import partial_sharing
 import platoon
 import rdkf
 import scipy
+import set_based
 import structure
 from rich.console import Console
 from rich.table import Table
 
 HERE = Path(__file__).parent
 #: modules with tasks(repeats)
-TOPICS = (certified, consensus, montecarlo, lambda0, rdkf, partial_sharing, structure, platoon)
+TOPICS = (certified, consensus, montecarlo, lambda0, rdkf, partial_sharing, structure, platoon, set_based)
 
 
 def limits() -> dict[str, float]:

@@ -425,17 +425,17 @@ void bind_log(py::module_& m) {
       "stopped, not killed). Raises InvalidInput for anything but a log.");
 }
 
-constexpr const char* kSpreads[] = {"local", "flooded"};
+constexpr const char* kSpreads[] = {"local", "flooded", "direct"};
 
 std::optional<certificate::Wanted> wanted_of(const std::string& name, double failure, int attacked) {
   if (name == "none") return std::nullopt;
   certificate::Wanted wanted;
   wanted.failure = failure;
   wanted.attacked = attacked;
-  if (name == "flooded")
-    wanted.spread = certificate::Spread::flooded;
-  else if (name != "local")
-    refuse_unknown("certificate", name, std::vector<std::string>{"none", "local", "flooded"});
+  const auto* const found = std::find(std::begin(kSpreads), std::end(kSpreads), name);
+  if (found == std::end(kSpreads))
+    refuse_unknown("certificate", name, std::vector<std::string>{"none", "local", "flooded", "direct"});
+  wanted.spread = static_cast<certificate::Spread>(found - kSpreads);
   return wanted;
 }
 

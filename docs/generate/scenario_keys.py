@@ -67,7 +67,7 @@ MEANINGS = {
     },
     "certificate": {
         "spread": '"none"; "local": from the measurements of an agent and its neighbours; '
-        '"flooded": from all that the rounds bring',
+        '"flooded": from all that the rounds bring; "direct": as "local", where agents may lie in their messages',
         "failure": "probability per agent and sample that it is wrong, for Gaussian noise; 0: for bounded noise",
         "attacked": "most attacked sensors at a time; left out: that of the filter",
     },

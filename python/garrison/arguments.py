@@ -148,7 +148,7 @@ def attacks(value: Any) -> list[_core.Attack]:
 def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any) -> dict[str, Any]:
     """What to certify: `attacked` is the filter's own where it has one."""
     if not isinstance(name, str):
-        raise refusal("certificate", shown(name), '"none", "local" or "flooded"')
+        raise refusal("certificate", shown(name), '"none", "local", "flooded" or "direct"')
     if name == "none":
         return {}
     if attacked is None:

@@ -37,7 +37,8 @@ _WHY = {
     "the attackers the rest does not determine the state",
     BoundKind.REFUTED: "the measurements contradict the assumption that at most so many are attacked (or the rare "
     "event happened that the failure probability allows)",
-    BoundKind.LIARS: "agents lie in their messages, and every bound rests on what they say",
+    BoundKind.LIARS: "agents lie in their messages, and this bound rests on what they say (those of "
+    'certificate = "direct" do not)',
 }
 
 

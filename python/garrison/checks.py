@@ -94,7 +94,7 @@ def check(
         > 0. After it searches end with a certified interval and say so; computations that have no partial result
         raise InvalidInput. Without it, searches end after about a second of work, with the same result on every
         machine. Ctrl-C ends both.
-    certificate : {"none", "local", "flooded"}
+    certificate : {"none", "local", "flooded", "direct"}
         What to certify at run time, see `prepare`.
     failure : float
         Probability in [0, 1), per agent and sample, that a certified bound is wrong; 0 = never, with bounded

@@ -148,7 +148,7 @@ def simulate(
     conditions : bool
         Evaluate the filter's conditions first, and put the required ones that are not met into the run's
         `warnings`.
-    certificate : {"none", "local", "flooded"}
+    certificate : {"none", "local", "flooded", "direct"}
         What to certify at run time, see `prepare`.
     failure : float
         Probability in [0, 1), per agent and sample, that a certified bound is wrong; 0 = never, with bounded
@@ -265,7 +265,7 @@ def replay(
     conditions : bool
         Evaluate the filter's conditions first, and put the required ones that are not met into the run's
         `warnings`.
-    certificate : {"none", "local", "flooded"}
+    certificate : {"none", "local", "flooded", "direct"}
         What to certify at run time, see `prepare`.
     failure : float
         Probability in [0, 1), per agent and sample, that a certified bound is wrong; 0 = never, with bounded

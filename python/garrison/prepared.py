@@ -126,11 +126,12 @@ def prepare(
         Who hears whom.
     filter : Filter
         One of garrison.filters, or a filter of your own.
-    certificate : {"none", "local", "flooded"}
+    certificate : {"none", "local", "flooded", "direct"}
         What every agent proves of its error at run time, whatever filter it runs, whatever at most `attacked`
         sources send (docs/certificates.md). "local": from its own measurement and its neighbours'; "flooded":
         from all that the rounds of a sample bring, with larger messages; "none": the filter's own bound alone, no
-        byte more. What is lost on the way makes a bound larger, never wrong.
+        byte more. "direct": as "local" without what others found, so that bounds hold although agents lie in their
+        messages, each counting as an attacked source. What is lost on the way makes a bound larger, never wrong.
     failure : float
         Probability in [0, 1), per agent and sample, that such a bound is wrong, for the model's covariances; 0 =
         never, for noise within its bounds.

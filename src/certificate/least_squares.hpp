@@ -17,12 +17,15 @@ class LeastSquares {
   /// lmax(G).
   template <class Uses>
   bool solve(const Rows& rows, const Uses& uses) {
+    return factor(rows, uses) && locate(rows, uses);
+  }
+  /// The part of `solve` that no measurement enters.
+  template <class Uses>
+  bool factor(const Rows& rows, const Uses& uses) {
     G_.setZero();
-    g_.setZero();
     for (int j = 0; j < rows.size(); ++j) {
       if (!uses(j)) continue;
       const double weight = 1.0 / rows.variance(j);
-      g_ += weight * rows.y(j) * rows.c(j);
       for (Eigen::Index k = 0; k < G_.cols(); ++k) G_.col(k) += weight * rows.c(j)(k) * rows.c(j);
     }
     eigen_.compute(G_);
@@ -32,8 +35,21 @@ class LeastSquares {
     // Columns of V over the root of their eigenvalue: G^-1 = T T', and G^-1/2 c is T'c up to a rotation.
     for (Eigen::Index k = 0; k < values.size(); ++k)
       to_frame_.col(k) = eigen_.eigenvectors().col(k) / std::sqrt(values(k));
-    u_.noalias() = to_frame_.transpose() * g_;
-    c_.noalias() = to_frame_ * u_;
+    return true;
+  }
+  /// The rest of it, after `factor` of the same rows.
+  template <class Uses>
+  bool locate(const Rows& rows, const Uses& uses) {
+    const Eigen::Index n = g_.size();
+    g_.setZero();
+    for (int j = 0; j < rows.size(); ++j) {
+      if (!uses(j)) continue;
+      const double weighted = rows.y(j) / rows.variance(j);
+      const double* const c = rows.c(j).data();
+      for (Eigen::Index k = 0; k < n; ++k) g_[k] += weighted * c[k];
+    }
+    u_.noalias() = to_frame_.transpose().lazyProduct(g_);
+    c_.noalias() = to_frame_.lazyProduct(u_);
     return c_.allFinite();
   }
 

@@ -10,14 +10,56 @@
 
 namespace garrison::certificate {
 
+namespace {
+
+/// What the kept rows decide without their measurements. Of all rows at hand it is the same in every sample
+/// that brings the same rows.
+struct Frame {
+  Frame(int states, int sources, int capacity)
+      : fit(states),
+        reach(capacity),
+        influence(capacity),
+        sigma(capacity),
+        leverage(static_cast<std::size_t>(sources)) {}
+
+  detail::LeastSquares fit;
+  Vector reach;                  // sqrt(C_j G^-1 C_j')
+  Vector influence;              // on ||G^1/2 (x - c)|| of the measurement, |residual| aside
+  Vector sigma;                  // of each row, kept or not
+  std::vector<double> leverage;  // sum over the kept rows of each source
+  bool determined = false;
+  int left = -1;  // of `mu`
+  double mu = 0.0;
+
+  template <class Keeps>
+  void make(const Rows& rows, const Keeps& keeps) {
+    left = -1;
+    for (int j = 0; j < rows.size(); ++j) sigma(j) = std::sqrt(rows.variance(j));
+    determined = fit.factor(rows, keeps);
+    if (!determined) return;
+    std::fill(leverage.begin(), leverage.end(), 0.0);
+    for (int j = 0; j < rows.size(); ++j) {
+      if (!keeps(j)) continue;
+      const double spread2 = fit.spread2(rows, j);
+      reach(j) = std::sqrt(spread2);
+      influence(j) = reach(j) / rows.variance(j);
+      leverage[static_cast<std::size_t>(rows.source(j))] += spread2 / rows.variance(j);
+    }
+  }
+};
+
+}  // namespace
+
 /// What a pass needs; one number per row or per source.
 struct LeverageWorkspace::Room {
   Room(int states, int sources, int capacity)
-      : fit(states),
-        reach(capacity),
+      : known(states, sources, capacity),
+        whole(states, sources, capacity),
+        part(states, sources, capacity),
+        own_at(capacity),
         out(static_cast<std::size_t>(sources)),
+        part_out(out.size()),
         hit(out.size()),
-        leverage(static_cast<std::size_t>(sources)),
         influence(static_cast<std::size_t>(sources)),
         noise(static_cast<std::size_t>(sources)),
         sorted(static_cast<std::size_t>(sources)) {
@@ -27,26 +69,36 @@ struct LeverageWorkspace::Room {
     witness.proved.reserve(static_cast<std::size_t>(sources));
   }
 
-  detail::LeastSquares fit;
-  Vector reach;           // of the own ball: bound on |C_j (x - c)|
-  std::vector<char> out;  // sources that are proved
-  std::vector<char> hit;  // sources that a pass refutes
+  Rows known;  // those of `whole`
+  Frame whole, part;
+  Frame* frame = nullptr;      // of the present pass
+  Vector own_at;               // C_j times the centre of the own ball
+  double own_radius = 0.0;     // bG of the own ball
+  std::vector<char> out;       // sources that are proved
+  std::vector<char> part_out;  // those that `part` leaves out; none = it was not made
+  std::vector<char> hit;       // sources that a pass refutes
   int count_out = 0;
-  bool own = false;                                // an own ball exists
-  std::vector<double> leverage, influence, noise;  // sums over the kept rows of a source
+  bool own = false;                      // an own ball exists
+  std::vector<double> influence, noise;  // sums over the kept rows of a source
   std::vector<double> sorted;
   Witness witness;
 
   bool keeps(const Rows& rows, int j) const { return out[static_cast<std::size_t>(rows.source(j))] == 0; }
-  void begin(const Assumption& a);
+  void begin(const Rows& rows, const Assumption& a);
   bool refute(const Rows& rows, const Assumption& a);
   bool fit_rows(const Rows& rows, const Assumption& a);
+  double spare(int left);
   double in_frame(const Rows& rows, const Assumption& a, int left, double mu);
   double top(const std::vector<double>& of, int k);
   void close(const Rows& rows);
 };
 
-void LeverageWorkspace::Room::begin(const Assumption& a) {
+void LeverageWorkspace::Room::begin(const Rows& rows, const Assumption& a) {
+  if (known.follow(rows)) {
+    whole.make(rows, [](int) { return true; });
+    std::fill(part_out.begin(), part_out.end(), 0);
+  }
+  frame = &whole;
   std::fill(out.begin(), out.end(), 0);
   for (const int source : a.proved) out[static_cast<std::size_t>(source)] = 1;
   count_out = static_cast<int>(a.proved.size());
@@ -57,24 +109,27 @@ void LeverageWorkspace::Room::begin(const Assumption& a) {
 }
 
 double LeverageWorkspace::Room::top(const std::vector<double>& of, int k) {
+  if (k > 0 && k <= detail::kFew && k <= static_cast<int>(of.size()))
+    return detail::top_few(of, static_cast<std::size_t>(k));
   std::copy(of.begin(), of.end(), sorted.begin());
   return detail::top(sorted, k);
 }
 
 /// Step 1: a residual outside a valid ball proves an attack. Whether a source was refuted.
 bool LeverageWorkspace::Room::refute(const Rows& rows, const Assumption& a) {
+  const bool prior = a.prior != nullptr && a.prior->answered();
+  if (!own && !prior) return false;
   const int before = count_out;
   const auto outside = [&](int j, double Cc, double room) {
-    const double width = a.bounded ? rows.width(j) : a.levels.z1 * std::sqrt(rows.variance(j));
+    const double width = a.bounded ? rows.width(j) : a.levels.z1 * frame->sigma(j);
     return std::abs(rows.y(j) - Cc) > width + room + 1e-12 * (width + std::abs(rows.y(j)) + std::abs(Cc));
   };
   // All rows are judged before any source leaves: `keeps` must not change within a pass.
   std::fill(hit.begin(), hit.end(), 0);
   for (int j = 0; j < rows.size(); ++j) {
     if (!keeps(rows, j)) continue;
-    bool bad = own && outside(j, rows.c(j).dot(fit.state()), reach(j));
-    if (a.prior != nullptr && a.prior->answered())
-      bad = bad || outside(j, rows.c(j).dot(a.prior->center), rows.c(j).norm() * a.prior->radius);
+    bool bad = own && outside(j, own_at(j), own_radius * frame->reach(j));
+    if (prior) bad = bad || outside(j, rows.c(j).dot(a.prior->center), rows.c(j).norm() * a.prior->radius);
     if (bad) hit[static_cast<std::size_t>(rows.source(j))] = 1;
   }
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -88,22 +143,36 @@ bool LeverageWorkspace::Room::refute(const Rows& rows, const Assumption& a) {
 /// Steps 2 and 3, the sums per source: false when the kept rows do not determine the state.
 bool LeverageWorkspace::Room::fit_rows(const Rows& rows, const Assumption& a) {
   own = false;
-  if (!fit.solve(rows, [&](int j) { return keeps(rows, j); })) return false;
-  std::fill(leverage.begin(), leverage.end(), 0.0);
+  const auto kept = [&](int j) { return keeps(rows, j); };
+  if (count_out > 0) {
+    frame = &part;
+    if (part_out != out) part.make(rows, kept);
+    part_out = out;
+  }
+  if (!frame->determined || !frame->fit.locate(rows, kept)) return false;
   std::fill(influence.begin(), influence.end(), 0.0);
-  std::fill(noise.begin(), noise.end(), 0.0);
+  if (a.bounded) std::fill(noise.begin(), noise.end(), 0.0);
+  const Eigen::Index n = frame->fit.state().size();
+  const double* const x = frame->fit.state().data();
   for (int j = 0; j < rows.size(); ++j) {
-    if (!keeps(rows, j)) continue;
+    if (!kept(j)) continue;
     const auto source = static_cast<std::size_t>(rows.source(j));
-    const double spread2 = fit.spread2(rows, j);
-    const double infl = std::sqrt(spread2) / rows.variance(j);
-    reach(j) = std::sqrt(spread2);
-    const double residual = std::abs(rows.y(j) - rows.c(j).dot(fit.state()));
-    leverage[source] += spread2 / rows.variance(j);
-    influence[source] += infl * residual;
-    if (a.bounded) noise[source] += infl * rows.width(j);
+    const double* const c = rows.c(j).data();
+    double at = 0.0;
+    for (Eigen::Index k = 0; k < n; ++k) at += c[k] * x[k];
+    own_at(j) = at;
+    influence[source] += frame->influence(j) * std::abs(rows.y(j) - at);
+    if (a.bounded) noise[source] += frame->influence(j) * rows.width(j);
   }
   return true;
+}
+
+/// mu: what `left` liars leave of the leverage.
+double LeverageWorkspace::Room::spare(int left) {
+  if (frame->left == left) return frame->mu;
+  frame->left = left;
+  frame->mu = 1.0 - top(frame->leverage, left);
+  return frame->mu;
 }
 
 /// bG of step 3: bound on ||G^1/2 (x - c)||.
@@ -137,7 +206,7 @@ const Witness& leverage_ball(const Rows& rows, const Assumption& a, LeverageWork
   constexpr double kLeast = 1e-6;  // of mu: below it, the attackers hold all the leverage
   LeverageWorkspace::Room& room = *workspace.room_;
   Region& best = room.witness.region;
-  room.begin(a);
+  room.begin(rows, a);
   for (int pass = 0; pass < rows.size() + 2; ++pass) {
     const bool refuted = room.refute(rows, a);
     const int left = a.s - room.count_out;
@@ -147,17 +216,18 @@ const Witness& leverage_ball(const Rows& rows, const Assumption& a, LeverageWork
     }
     if (room.own && !refuted) break;
     if (!room.fit_rows(rows, a)) break;
-    const double mu = 1.0 - room.top(room.leverage, left);
+    const double mu = room.spare(left);
     if (!(mu > kLeast)) break;
     const double bG = room.in_frame(rows, a, left, mu);
-    const double b = bG / std::sqrt(room.fit.least());
+    const detail::LeastSquares& fit = room.frame->fit;
+    const double b = bG / std::sqrt(fit.least());
     if (!std::isfinite(b)) break;
     room.own = true;
-    room.reach *= bG;
+    room.own_radius = bG;
     if (!(b < best.radius)) continue;
     best.radius = b;
-    best.center = room.fit.state();
-    for (Eigen::Index k = 0; k < best.box.size(); ++k) best.box(k) = bG * std::sqrt(room.fit.variance(k));
+    best.center = fit.state();
+    for (Eigen::Index k = 0; k < best.box.size(); ++k) best.box(k) = bG * std::sqrt(fit.variance(k));
   }
   room.close(rows);
   return room.witness;

@@ -53,6 +53,22 @@ bool Rows::add(int source, std::span<const double> c, double y, double variance,
   return true;
 }
 
+bool Rows::follow(const Rows& other) {
+  const auto m = static_cast<std::size_t>(other.size_);
+  const auto numbers = m * static_cast<std::size_t>(C_.rows());
+  if (size_ == other.size_ && std::equal(source_.data(), source_.data() + m, other.source_.data()) &&
+      std::equal(variance_.data(), variance_.data() + m, other.variance_.data()) &&
+      std::equal(C_.data(), C_.data() + numbers, other.C_.data()))
+    return false;
+  size_ = other.size_;
+  present_ = other.present_;
+  std::copy_n(other.source_.data(), m, source_.data());
+  std::copy_n(other.variance_.data(), m, variance_.data());
+  std::copy_n(other.C_.data(), numbers, C_.data());
+  count_ = other.count_;
+  return true;
+}
+
 GivenRows given_rows(const VectorRef& y, const MatrixRef& C, const VectorRef& R, const VectorRef& widths,
                      std::span<const int> sources) {
   const Eigen::Index m = y.size();

@@ -11,6 +11,8 @@ namespace garrison::detail {
 Recorder::Recorder(const Prepared& prepared, int steps, bool truth_known, const RunOptions& options)
     : keep_(options.keep),
       vouch_(options.message_attacks.empty()),
+      direct_(prepared.certificate() != nullptr &&
+              prepared.certificate()->wanted.spread == certificate::Spread::direct),
       outputs_(static_cast<std::size_t>(prepared.model().total_outputs())) {
   const Model& model = prepared.model();
   const AnyFilter& filter = prepared.filter();
@@ -111,15 +113,26 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
   }
   if (keep_.signals) frame.signals = record_.signals.data() + at * N * record_.signal_names.size();
   runner.read(frame);
-  if (!vouch_ && frame.bound != nullptr) {
-    std::fill_n(frame.bound, N, kNaN);
-    if (frame.published != nullptr) std::fill_n(frame.published, N, kNaN);
-    std::fill_n(frame.bound_kind, N, static_cast<std::uint8_t>(CertificateKind::liars));
-  }
+  if (!vouch_ && frame.bound != nullptr) disown(frame);
   if (truth != nullptr) errors(at, frame.estimate, truth);
   if (keep_.report) accusations(trial, t, runner);
   if (keep_.details) details(trial, t, runner);
   if (t >= record_.first_sample) count(trial, t, y);
+}
+
+/// Agents lie: what rests on their word is no bound. A direct certificate does not.
+void Recorder::disown(const Frame& frame) const {
+  const auto of_measurements = [](std::uint8_t kind) {
+    const auto k = static_cast<CertificateKind>(kind);
+    return k == CertificateKind::witness || k == CertificateKind::relayed || k == CertificateKind::too_few ||
+           k == CertificateKind::refuted;
+  };
+  for (std::size_t i = 0; i < static_cast<std::size_t>(record_.agents); ++i) {
+    if (frame.published != nullptr) frame.published[i] = kNaN;
+    if (direct_ && of_measurements(frame.bound_kind[i])) continue;
+    frame.bound[i] = kNaN;
+    frame.bound_kind[i] = static_cast<std::uint8_t>(CertificateKind::liars);
+  }
 }
 
 void Recorder::accusations(int trial, int t, const Runner& runner) {

@@ -60,12 +60,14 @@ class Recorder {
   double* estimate(int trial, int t);
   /// True: truth and errors are so small that the estimates are, too.
   bool errors(std::size_t row, const double* estimate, const double* truth);
+  void disown(const Frame& frame) const;
   void accusations(int trial, int t, const Runner& runner);
   void details(int trial, int t, const Runner& runner);
 
   Record record_;
   Keep keep_;
-  bool vouch_;  // no agent lies in its messages: only then a family's bounds are covered
+  bool vouch_;   // no agent lies in its messages: only then a family's bounds are covered
+  bool direct_;  // the certificate does not rest on what agents say of others
   std::size_t outputs_;
   std::vector<Counts> counts_;                           // per trial
   std::vector<std::vector<AgentSet>> last_;              // per trial: the sets at the last accusation

@@ -26,7 +26,7 @@ def parts(agents: int = 8) -> tuple[gr.Model, gr.Network, gr.Filter]:
     return model, network, gr.filters.ScalarGain(rounds=4)
 
 
-@pytest.mark.parametrize("certificate", ["local", "flooded"])
+@pytest.mark.parametrize("certificate", ["local", "flooded", "direct"])
 @pytest.mark.parametrize("failure", [0.0, 1e-6])
 def test_a_bound_that_holds_although_sensors_lie_and_messages_are_lost(certificate: str, failure: float) -> None:
     attack = gr.attacks.Bias(agents=[2], value=7.0, start=5)
@@ -69,6 +69,29 @@ def test_every_absent_bound_says_why() -> None:
         run.why_no_bound(0, 4)
 
 
+def test_direct_certificates_hold_although_agents_lie_in_their_messages() -> None:
+    lies = [gr.attacks.Forge(agents=[0, 1, 2], offset=5.0, start=1), gr.attacks.Bias(agents=[0], value=5.0, start=1)]
+    asked = {"steps": 40, "attack": lies, "conditions": False, "failure": 0.0, "attacked": 1}
+    direct = gr.simulate(*parts(), certificate="direct", **asked)
+    assert np.isfinite(direct.bound[:, 1:]).all() and (direct.error <= direct.bound)[:, 1:].all()
+    assert set(np.unique(direct.bound_kind[:, 1:])) <= {gr.BoundKind.WITNESS, gr.BoundKind.RELAYED}
+    local = gr.simulate(*parts(), certificate="local", **asked)
+    assert np.isnan(local.bound).all() and "direct" in local.why_no_bound(0, 5)
+
+
+def test_the_data_free_table_bounds_where_the_published_bound_ends() -> None:
+    model, network, _ = parts()
+    options = {"threshold": 1.0, "rounds": 12, "attacked": 1, "initial_error": 2.0, "detector": True}
+    attack = gr.attacks.Bias(agents=[2], value=90.0, start=5)
+    told = {"steps": 30, "attack": attack, "conditions": False}
+    plain = gr.simulate(model, network, gr.filters.Saturation(**options), **told)
+    table = gr.filters.Saturation(**options, table=True)
+    run = gr.simulate(model, network, table, **told)
+    assert np.isnan(plain.bound[0, 10:]).all() and (run.bound_kind[0, 10:] == gr.BoundKind.TABLE).all()
+    assert (run.error <= run.bound).all()
+    assert gr.check(model, network, table)["table bound"] == pytest.approx(run.bound[0, -1].max(), rel=2e-3)
+
+
 def test_the_published_bound_is_kept_beside_the_better_one() -> None:
     model, network, _ = parts()
     filt = gr.filters.Saturation(threshold=1.0, rounds=12, attacked=1, initial_error=2.0, chebyshev=True)
@@ -97,7 +120,7 @@ def test_designs_agents_and_runs_keep_it(tmp_path: Path) -> None:
         assert [a.bound for a in agents] == list(run.bound[0, t])
         assert [a.bound_kind for a in agents] == list(run.bound_kind[0, t])
     said = messages[0].fields
-    assert {"certificate.measurements", "certificate.ball", "certificate.age", "certificate.firm"} <= set(said)
+    assert {"certificate.measurements", "certificate.ball", "certificate.age", "certificate.fresh"} <= set(said)
     run.save(tmp_path / "run.npz")
     assert gr.Run.load(tmp_path / "run.npz") == run == pickle.loads(pickle.dumps(run))
     with pytest.raises(gr.InvalidInput, match="certificate: got 'local' with a design"):

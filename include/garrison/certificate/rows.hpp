@@ -24,6 +24,11 @@ class GARRISON_EXPORT Rows {
   /// finite or beyond kHuge, c = 0, variance not positive, width negative, no such source, or full. A row
   /// left out does not count as attacked.
   bool add(int source, std::span<const double> c, double y, double variance, double width = 0.0);
+  /// Another measurement for a row that is there; finite and at most kHuge.
+  void measure(int row, double y) { y_(row) = y; }
+  /// Takes over the rows of `other`, as many as there is room for; whether these are other ones than before,
+  /// measurements and widths aside. Of the same sizes.
+  bool follow(const Rows& other);
 
   int states() const { return static_cast<int>(C_.rows()); }
   int sources() const { return static_cast<int>(count_.size()); }

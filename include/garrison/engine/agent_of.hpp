@@ -155,8 +155,8 @@ class AgentOf final : public Agent {
   Report report() const noexcept override {
     Report found = F::template report<n>(local_, *gains_, state_);
     const Vec<n>& x = F::template estimate<n>(state_);
-    const Bound bound =
-        certificate::least(found.bound, certifier_.get(), {x.data(), static_cast<std::size_t>(x.size())});
+    const Bound bound = certificate::least(found.bound, found.kind, certifier_.get(),
+                                           {x.data(), static_cast<std::size_t>(x.size())});
     found.bound = bound.value;
     found.kind = bound.kind;
     return found;

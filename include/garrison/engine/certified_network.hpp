@@ -21,12 +21,14 @@ class GARRISON_EXPORT CertifiedNetwork {
   ~CertifiedNetwork();
 
   void reset(std::int64_t t);
-  /// Sample t; y: all measurements, agent by agent.
+  /// Sample t; y: all measurements, agent by agent, that stay there until `finish`.
   void begin(std::int64_t t, const double* y);
-  /// One round in which heard(i, hear) calls hear(j) for every message from j that reached i.
+  /// One round in which heard(i, hear) calls hear(j) for every message from j that reached i. Either all
+  /// rounds of a sample are told so, or none: then all messages arrive, and `finish` does them at once.
   template <class Heard>
   void round(Workers& workers, const Heard& heard) {
     if (rounds_ == 0) return;
+    start();
     say();
     workers.split(agents(), [&](std::int64_t begin, std::int64_t end, int) {
       for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
@@ -34,13 +36,8 @@ class GARRISON_EXPORT CertifiedNetwork {
     });
     end_round(workers);
   }
-  /// The rounds of this sample that are left: all messages arrive.
-  void finish(Workers& workers) {
-    while (round_ < rounds_)
-      round(workers, [&](int i, const auto& hear) {
-        for (const int j : network_.neighbours(i)) hear(j);
-      });
-  }
+  /// Ends the sample: the rounds that are left, in which all messages arrive.
+  void finish(Workers& workers);
 
   const certificate::Certifier* of(int agent) const;
   /// Bytes that the certificate adds to the messages of a sample when none is lost: mean over all samples.
@@ -52,12 +49,16 @@ class GARRISON_EXPORT CertifiedNetwork {
   void say();
   void hear(int agent, int sender);
   void end_round(Workers& workers);
+  void start();
+  void at_once(Workers& workers);
 
   Network network_;
   int rounds_;
   int round_ = 0;
   std::vector<int> listeners_;
-  std::vector<int> first_;  // output of each agent in y
+  std::vector<int> first_;     // output of each agent in y
+  const double* y_ = nullptr;  // of sample t_, while it has not started
+  std::int64_t t_ = 0;
   std::unique_ptr<Agents> all_;
   std::int64_t bytes_ = 0;
   std::int64_t samples_ = 0;

@@ -90,6 +90,7 @@ class Engine final : public Runner {
       if (f.estimate != nullptr)
         std::copy_n(x.data(), x.size(), f.estimate + i * static_cast<std::size_t>(x.size()));
       if (f.bound != nullptr) f.bound[i] = r.bound;
+      if (f.bound_kind != nullptr) f.bound_kind[i] = static_cast<std::uint8_t>(r.kind);
       if (f.statistic != nullptr) f.statistic[i] = r.statistic;
       if (f.threshold != nullptr) f.threshold[i] = r.threshold;
       if (f.verdict != nullptr) f.verdict[i] = static_cast<std::uint8_t>(r.verdict);
@@ -97,7 +98,7 @@ class Engine final : public Runner {
       F::template signals<n>(local(k), *gains_, states_[k], signals.data());
       for (std::size_t s = 0; s < F::signal_count; ++s) f.signals[s * N + i] = signals[s];
     }
-    if (f.bound != nullptr) certify(f);
+    if (f.bound != nullptr && f.bound_kind != nullptr) certify(f);
   }
 
   void expected(int agent, double* out) const override {
@@ -192,7 +193,8 @@ class Engine final : public Runner {
       mail_.collect(t, round, plain, [&](std::size_t k, int sender, Message& m) {
         shape<F, n>(local(k), *gains_, sender, t, m);
       });
-      if (certified_) certified_->round(workers_, [this](int i, const auto& hear) { each_heard(i, hear); });
+      if (certified_ && !(plain && mail_.perfect()))
+        certified_->round(workers_, [this](int i, const auto& hear) { each_heard(i, hear); });
       const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
       if (batch_.fuse(*gains_, locals(), inbox, workers_))
         mail_.post();
@@ -234,18 +236,18 @@ class Engine final : public Runner {
   void certify(const Frame& f) const {
     const std::size_t N = states_.size();
     if (f.published != nullptr) std::copy_n(f.bound, N, f.published);
-    const auto note = [&f](std::size_t i, const Bound& bound) {
-      f.bound[i] = bound.value;
-      if (f.bound_kind != nullptr) f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
-    };
-    if (!certified_) {
-      for (std::size_t i = 0; i < N; ++i) note(i, certificate::least(f.bound[i], nullptr, {}));
-      return;
-    }
     for (std::size_t i = 0; i < N; ++i) {
-      const Vec<n>& x = F::template estimate<n>(states_[position_[i]]);
-      const std::span<const double> estimate(x.data(), static_cast<std::size_t>(x.size()));
-      note(i, certificate::least(f.bound[i], certified_->of(static_cast<int>(i)), estimate));
+      std::span<const double> estimate;
+      const certificate::Certifier* certifier = nullptr;
+      if (certified_) {
+        const Vec<n>& x = F::template estimate<n>(states_[position_[i]]);
+        estimate = {x.data(), static_cast<std::size_t>(x.size())};
+        certifier = certified_->of(static_cast<int>(i));
+      }
+      const auto kind = static_cast<CertificateKind>(f.bound_kind[i]);
+      const Bound bound = certificate::least(f.bound[i], kind, certifier, estimate);
+      f.bound[i] = bound.value;
+      f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
     }
   }
 

@@ -35,6 +35,7 @@ class Saturation(garrison._core.Filter):
     detector_index: which count of proved sensors enters rhobar(t): "t" = d_i(t-1) as printed, "t+1" = d_i(t), sharper and as sound
     adaptive: let the threshold follow the known bound on honest innovations (not in the paper; needs initial_error)
     accuse_missing: detector: a missing (NaN) measurement counts as proof of attack
+    table: also bound errors, and with detector or adaptive threshold honest innovations, by the data-free table (docs/certificates.md, theorem T): a bound that outlives the proof of all attackers. Design takes the time of (agents times states)^3
     """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
@@ -52,6 +53,7 @@ class Saturation(garrison._core.Filter):
         detector_index: str = "t",
         adaptive: bool = False,
         accuse_missing: bool = False,
+        table: bool = False,
     ) -> None: ...
     def __setstate__(self, arg0: dict) -> None: ...
 

@@ -198,8 +198,8 @@ def _certificate(section: Section) -> dict[str, Any]:
     if not section.table:
         return {}
     out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": section.number("failure", 1e-6)}
-    if out["certificate"] not in ("none", "local", "flooded"):
-        raise refusal(section.place("spread"), shown(out["certificate"]), '"none", "local" or "flooded"')
+    if out["certificate"] not in ("none", "local", "flooded", "direct"):
+        raise refusal(section.place("spread"), shown(out["certificate"]), '"none", "local", "flooded" or "direct"')
     if not 0 <= out["failure"] < 1:
         raise refusal(section.place("failure"), shown(out["failure"]), "a probability in [0, 1)", "0 = deterministic")
     if "attacked" in section:

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <tuple>
 
 #include "garrison/certificate/interval.hpp"
 
@@ -53,6 +52,7 @@ AgentCertifier::AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::sp
       id_(id),
       rounds_(rounds),
       flooded_(plan_->wanted.spread == Spread::flooded),
+      direct_(plan_->wanted.spread == Spread::direct),
       agents_(within_reach(*plan_, id, neighbours)),
       rows_(plan_->states(), std::max(1, sizes(*plan_, agents_).sources),
             std::max(1, sizes(*plan_, agents_).rows)),
@@ -76,6 +76,8 @@ AgentCertifier::AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::sp
   for (const std::size_t r : row_) source_.push_back(number.at(plan_->source[r]));
   one_row_each_ = number.size() == row_.size();
   y_.resize(row_.size());
+  present_.resize(row_.size());
+  used_.resize(row_.size());
   ends_.resize(2 * row_.size());
   y1_.resize(row_.size());
   width1_.resize(row_.size());
@@ -93,27 +95,25 @@ void AgentCertifier::reset(std::int64_t t) noexcept {
   memory_.t = t;
   memory_.radius = kInfinity;
   memory_.age = -1;
-  memory_.firm = false;
+  memory_.fresh = 0;
   for (auto* part : {&memory_.center, &memory_.box, &memory_.ball})
     std::fill(part->begin(), part->end(), 0.0);
   memory_.ball_radius = 0.0;
 }
 
-double AgentCertifier::aged(double radius, int age) const {
-  const auto k = static_cast<std::size_t>(age);
-  return age == 0 ? radius : plan_->norm[k] * radius + plan_->added[k];
-}
-
-void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
+/// The relayed region becomes one of sample t, of which nothing is known yet.
+void AgentCertifier::move_to(std::int64_t t) noexcept {
   const std::int64_t passed = t - memory_.t;
   memory_.t = t;
   memory_.radius = kInfinity;
   if (memory_.age >= 0) {
     Eigen::Map<Vector> center(memory_.ball.data(), moved_.size());
-    if (passed > plan_->ages() - memory_.age) {
+    const int oldest = plan_->deterministic() ? memory_.age : memory_.fresh + kChoice;  // that it may be
+    if (passed > plan_->ages() - oldest) {
       memory_.age = -1;
     } else {
       memory_.age += static_cast<int>(passed);
+      memory_.fresh += static_cast<int>(passed);
       for (std::int64_t k = 0; k < passed; ++k) {
         moved_.noalias() = plan_->A * center;
         center = moved_;
@@ -124,10 +124,32 @@ void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
   std::fill(y_.begin(), y_.end(), kNaN);
   known_ = 0;
   judged_ = false;
+}
+
+void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
+  move_to(t);
   const auto me = std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin();
   for (std::size_t k = at_[static_cast<std::size_t>(me)]; k < at_[static_cast<std::size_t>(me) + 1]; ++k)
     learn(k, *y++);
   if (rounds_ == 0) end_sample();
+}
+
+void AgentCertifier::begin_knowing(std::int64_t t, const double* all, const AgentCertifier* same) noexcept {
+  if (same == nullptr) {
+    move_to(t);
+  } else {
+    copy_relayed(*same);
+    memory_.t = t;
+    memory_.radius = kInfinity;
+    judged_ = false;
+  }
+  known_ = 0;
+  for (std::size_t k = 0; k < y_.size(); ++k) {
+    const double y = all[row_[k]];
+    const bool usable = std::abs(y) < kHuge;
+    y_[k] = usable ? y : kNaN;
+    known_ += usable ? 1 : 0;
+  }
 }
 
 void AgentCertifier::learn(std::size_t at, double y) noexcept {
@@ -145,9 +167,10 @@ void AgentCertifier::say(int round, Evidence& out) const noexcept {
     for (std::size_t k = 0; k < out.measurements.size(); ++k)
       out.measurements[k] = round == 0 ? y_[at_[me] + k] : kNaN;
   }
-  const bool has = memory_.age >= 0;
+  const bool has = memory_.age >= 0 && !direct_;
   out.age = has ? memory_.age : 0;
-  out.firm = has && memory_.firm;
+  out.fresh = has ? memory_.fresh : 0;
+  if (direct_) return;
   std::copy(memory_.ball.begin(), memory_.ball.end(), out.ball.begin());
   out.ball.back() = memory_.ball_radius;
   if (!has) std::fill(out.ball.begin(), out.ball.end(), kNaN);
@@ -162,25 +185,10 @@ void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
     for (std::size_t k = 0; k < in.measurements.size(); ++k)
       learn(at_[static_cast<std::size_t>(at)] + k, in.measurements[k]);
   }
-  bool whole = in.age <= std::max(plan_->ages(), 0);
+  if (direct_) return;
+  bool whole = in.age <= std::max(plan_->ages(), 0) && in.fresh <= in.age && eligible(in.age, in.fresh);
   for (const double v : in.ball) whole = whole && !std::isnan(v);
-  if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.ball.back(), in.age, in.firm);
-}
-
-/// Takes over a ball that is better than the own one. Gaussian: which one is used must not depend on the
-/// noise through its age, so first the firm ones, then the freshest; of one age the smallest.
-void AgentCertifier::offer(const double* center, double radius, int age, bool firm) noexcept {
-  if (memory_.age >= 0) {
-    const auto rank = [&](double size, int old, bool is_firm) {
-      const int tier = is_firm && old <= plan_->firm_ages ? 0 : 1;
-      return plan_->deterministic() ? std::tuple(0, 0, aged(size, old)) : std::tuple(tier, old, size);
-    };
-    if (!(rank(radius, age, firm) < rank(memory_.ball_radius, memory_.age, memory_.firm))) return;
-  }
-  std::copy_n(center, memory_.ball.size(), memory_.ball.begin());
-  memory_.ball_radius = radius;
-  memory_.age = age;
-  memory_.firm = firm;
+  if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.ball.back(), in.age, in.fresh);
 }
 
 void AgentCertifier::end_round(int round) noexcept {
@@ -190,21 +198,35 @@ void AgentCertifier::end_sample() noexcept {
   if (!judged_) witness();
 }
 
-void AgentCertifier::witness() noexcept {
-  judged_ = true;
+/// Writes what is known into rows_, anew only where other measurements are missing than the last time.
+void AgentCertifier::gather() noexcept {
+  bool same = true;
+  for (std::size_t k = 0; k < y_.size(); ++k) {
+    const char present = std::isnan(y_[k]) ? 0 : 1;
+    same = same && present == present_[k];
+    present_[k] = present;
+  }
+  int j = 0;
+  if (same) {
+    for (std::size_t k = 0; k < y_.size(); ++k)
+      if (used_[k] != 0) rows_.measure(j++, y_[k]);
+    return;
+  }
   rows_.clear();
   const std::size_t n = memory_.center.size();
   for (std::size_t k = 0; k < y_.size(); ++k) {
-    if (std::isnan(y_[k])) continue;
     const auto r = static_cast<Eigen::Index>(row_[k]);
-    rows_.add(source_[k], {plan_->rows.data() + row_[k] * n, n}, y_[k], plan_->variance(r),
-              plan_->deterministic() ? plan_->width(r) : 0.0);
+    used_[k] = static_cast<char>(
+        present_[k] != 0 && rows_.add(source_[k], {plan_->rows.data() + row_[k] * n, n}, y_[k],
+                                      plan_->variance(r), plan_->deterministic() ? plan_->width(r) : 0.0));
   }
-  // Without a row to spare a single liar passes for the only honest one, and the region reaches to wherever
-  // it says.
-  own_firm_ = rows_.present() > plan_->wanted.attacked + 1 &&
-              rows_.size() - plan_->wanted.attacked > static_cast<int>(n);
+}
+
+void AgentCertifier::witness() noexcept {
+  judged_ = true;
+  gather();
   if (rows_.size() == 0) return;
+  const std::size_t n = memory_.center.size();
   Assumption a;
   a.s = plan_->wanted.attacked;
   a.bounded = plan_->deterministic();
@@ -246,10 +268,6 @@ void AgentCertifier::keep(const Region& region) noexcept {
   std::copy_n(region.box.data(), memory_.box.size(), memory_.box.begin());
 }
 
-void AgentCertifier::relay_own() noexcept {
-  if (std::isfinite(memory_.radius)) offer(memory_.center.data(), memory_.radius, 0, own_firm_);
-}
-
 Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
   const Memory& m = memory_;
   if (std::isnan(m.radius)) return {kNaN, CertificateKind::refuted};
@@ -272,7 +290,7 @@ Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
 }
 
 void AgentCertifier::shape_evidence(int sender, Evidence& out) const {
-  out.ball.resize(memory_.ball.size() + 1, kNaN);
+  out.ball.resize(direct_ ? 0 : memory_.ball.size() + 1, kNaN);
   out.measurements.resize(flooded_ ? y_.size() : static_cast<std::size_t>(plan_->outputs(sender)), kNaN);
 }
 
@@ -282,7 +300,8 @@ bool AgentCertifier::usable() const noexcept {
   };
   return finite(memory_.center) && finite(memory_.box) && finite(memory_.ball) && !(memory_.radius < 0.0) &&
          memory_.ball_radius >= 0.0 && memory_.ball_radius < kHuge &&
-         memory_.age <= std::max(0, plan_->ages());
+         memory_.age <= std::max(0, plan_->ages()) &&
+         (memory_.age < 0 || (memory_.fresh <= memory_.age && eligible(memory_.age, memory_.fresh)));
 }
 
 bool AgentCertifier::knows_the_same(const AgentCertifier& other) const {
@@ -295,7 +314,6 @@ void AgentCertifier::adopt(const AgentCertifier& other) noexcept {
   memory_.radius = other.memory_.radius;
   memory_.center = other.memory_.center;
   memory_.box = other.memory_.box;
-  own_firm_ = other.own_firm_;
   relay_own();
 }
 

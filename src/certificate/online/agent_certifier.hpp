@@ -21,30 +21,48 @@ class AgentCertifier final : public Certifier {
   void end_sample() noexcept override;
   Bound bound(std::span<const double> estimate) const noexcept override;
   void shape_evidence(int sender, Evidence& out) const override;
+  using Certifier::memory;
   Memory& memory() noexcept override { return memory_; }
   bool usable() const noexcept override;
 
   /// The last step of a sample in two, for drivers of whole networks: `witness`, or the one of an agent that
   /// knows the same.
+  void witness() noexcept;
+  void adopt(const AgentCertifier& other) noexcept;
   bool judges_in(int round) const { return flooded_ ? round == rounds_ - 1 : round == 0; }
   int known_rows() const { return known_; }
   bool knows_the_same(const AgentCertifier& other) const;
-  void witness() noexcept;
-  void adopt(const AgentCertifier& other) noexcept;
+
+  /// For drivers that do a sample without losses at once: `begin` with all measurements of the network that
+  /// may arrive, by row of the plan. With `same`, which has begun: the relayed region is its.
+  void begin_knowing(std::int64_t t, const double* all, const AgentCertifier* same) noexcept;
+  void copy_relayed(const AgentCertifier& other) noexcept;
+  /// As if it came in a message.
+  void hear_relayed(const AgentCertifier& other) noexcept;
+  bool relays_the_same(const AgentCertifier& other) const;
+  bool found_the_same(const AgentCertifier& other) const;
+  /// Takes over all that lasts to the next sample.
+  void copy(const AgentCertifier& other) noexcept { memory_ = other.memory_; }
+  bool flooded() const { return flooded_; }
+  bool direct() const { return direct_; }
 
  private:
+  void move_to(std::int64_t t) noexcept;
   void learn(std::size_t at, double y) noexcept;
+  void gather() noexcept;
   void interval_rule() noexcept;
   void keep(const Region& region) noexcept;
   void relay_own() noexcept;
-  void offer(const double* center, double radius, int age, bool firm) noexcept;
+  bool eligible(int age, int fresh) const;
+  void offer(const double* center, double radius, int age, int fresh) noexcept;
+  bool goes_before(const double* center, double radius, int age) const;
   double aged(double radius, int age) const;
 
   std::shared_ptr<const Plan> plan_;
   int id_;
   int rounds_;
   bool flooded_;
-  bool own_firm_ = false;         // see Evidence
+  bool direct_;
   bool judged_ = true;            // the witness of this sample is there
   std::vector<int> agents_;       // whose rows may become known, ascending
   std::vector<std::size_t> at_;   // where each one's rows begin in y_, and their number
@@ -52,7 +70,8 @@ class AgentCertifier final : public Certifier {
   std::vector<int> source_;       // numbered from 0 among the rows that may become known
   std::vector<double> y_;         // NaN = not known (yet)
   int known_ = 0;
-  bool one_row_each_ = true;  // no source has several rows
+  bool one_row_each_ = true;          // no source has several rows
+  std::vector<char> present_, used_;  // of each entry of y_: it was known, and is a row, in rows_
   Rows rows_;
   LeverageWorkspace leverage_;
   SubsetsWorkspace subsets_;

@@ -14,8 +14,8 @@ namespace garrison::certificate {
 namespace {
 
 // Shares of the failure probability: see Plan.
-constexpr double kSampleShare = 0.125;  // three of them, twice
-constexpr double kAgeingShare = 0.25;
+constexpr double kSampleShare = 0.75 / (3.0 * (kChoice + 2));
+constexpr double kAgeingShare = 0.25 / (kChoice + 1);
 
 void require_wanted(const Wanted& wanted, const Model& model) {
   if (!(wanted.failure >= 0.0 && wanted.failure < 1.0))
@@ -90,10 +90,6 @@ void age_table(Plan& plan, const Model& model) {
     plan.norm.push_back(aged.norm(k));
     plan.added.push_back(aged.added(k));
   }
-  // Where the plant grows, a fresh region of few rows is soon the better one.
-  while (plan.firm_ages < std::min(most, 100) &&
-         plan.norm[static_cast<std::size_t>(plan.firm_ages) + 1] <= 2.0)
-    ++plan.firm_ages;
 }
 
 }  // namespace

@@ -164,6 +164,24 @@ void add_adaptive(Check& c, const Setting& s, double varpi) {
        settles ? "limsup ||error|| with the adaptive threshold" : "the bounds do not settle"});
 }
 
+/// The data-free bound, at the start and for ever.
+void add_table(Check& c, const Saturation::Params& p, const Model& model, const Network& network,
+               const saturation::detail::Rates& rates) {
+  const auto table = data_free(
+      model, network,
+      {p.attacked, p.initial_error, p.adaptive ? kNaN : p.threshold, rates.alpha, rates.omega, p.rounds});
+  const double first = table.d.row(1).maxCoeff();
+  const double last = table.d.row(table.d.rows() - 1).maxCoeff();
+  const bool settles = std::isfinite(last);
+  c.quantities.push_back({"table bound, first sample", first, "||error|| of any agent at t = 1, theorem T"});
+  c.quantities.push_back(
+      {"table bound", settles ? last : kNaN,
+       settles ? "||error|| of any agent from t = " + std::to_string(table.d.rows() - 1) +
+                     " on, theorem T, whatever " + std::to_string(p.attacked) +
+                     " sensors say and whoever is informed"
+               : "theorem T gives no bound for ever: take more rounds, or a smaller attacked"});
+}
+
 }  // namespace
 
 Check Saturation::check(const Params& p, const Model& model, const Network& network) {
@@ -233,6 +251,7 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   const auto interval = beta_interval(setting);
   c.quantities.push_back({"threshold from", interval.lo, "least threshold with (9) for this initial error"});
   c.quantities.push_back({"threshold to", interval.hi, "largest one"});
+  if (p.table && (p.adaptive || std::isfinite(p.threshold))) add_table(c, p, model, network, rates);
   if (p.adaptive) add_adaptive(c, setting, facts.varpi);
   if (!(growth < 1.0)) return c;
   if (p.adaptive || !std::isfinite(p.threshold)) return c;

@@ -51,6 +51,9 @@ Saturation::Gains Saturation::design(const Params& p, const Model& model, const 
                                      : saturation::detail::Rates{.alpha = p.step, .omega = {}};
   g.alpha = rates.alpha;
   g.omega = rates.omega;
+  if (p.table && !g.bounded)
+    refuse("saturation.table", "true", "false without initial_error and a finite threshold",
+           "the table starts from a bound on the initial error");
   if (g.detector && !g.bounded)
     refuse("saturation.threshold", text(p.threshold), "a finite number with the detector",
            "thresholds build on it");
@@ -58,6 +61,10 @@ Saturation::Gains Saturation::design(const Params& p, const Model& model, const 
   require_bound_assumptions(model);
   const Facts facts = saturation::detail::facts(model, p.attacked, p.adaptive);
   g.setting = saturation::detail::setting(p, model, facts, rates);
+  if (p.table)
+    g.table = saturation::data_free(
+        model, network,
+        {p.attacked, p.initial_error, p.adaptive ? kNaN : p.threshold, g.alpha, g.omega, g.rounds});
   if (p.adaptive) {
     g.varpi = facts.varpi;
     return g;
@@ -66,6 +73,12 @@ Saturation::Gains Saturation::design(const Params& p, const Model& model, const 
   g.p0 = constants.p0;
   g.q0 = constants.q0;
   return g;
+}
+
+Saturation::Gains Saturation::part(const Gains& gains, int id, std::span<const int>) {
+  Gains part = gains;
+  part.table = gains.table.of(id);
+  return part;
 }
 
 void Saturation::check_start(const Gains& g, const Matrix& x0) {

@@ -159,7 +159,7 @@ class SaturationTrials final : public TrialsRunner {
 
 std::unique_ptr<TrialsRunner> Saturation::trials(std::shared_ptr<const Gains> gains, const Model& model,
                                                  const Network& network) {
-  if (gains->detector || model.states() > 8) return nullptr;
+  if (gains->detector || !gains->table.empty() || model.states() > 8) return nullptr;
   std::unique_ptr<TrialsRunner> runner;
   [&]<int... k>(std::integer_sequence<int, k...>) {
     const auto make = [&]<int n>(std::integral_constant<int, n>) {

@@ -37,10 +37,9 @@ Setup setup(int n, std::uint64_t seed) {
   return {std::move(model), std::move(network), std::move(y)};
 }
 
-const std::vector<Wanted> kWanted{{Spread::local, 0.0, 1, 1000},
-                                  {Spread::local, 1e-6, 1, 1000},
-                                  {Spread::flooded, 1e-6, 1, 1000},
-                                  {Spread::flooded, 1e-6, 1, 0},
+const std::vector<Wanted> kWanted{{Spread::local, 0.0, 1, 1000},    {Spread::local, 1e-6, 1, 1000},
+                                  {Spread::direct, 1e-6, 1, 1000},  {Spread::direct, 0.0, 1, 1000},
+                                  {Spread::flooded, 1e-6, 1, 1000}, {Spread::flooded, 1e-6, 1, 0},
                                   {Spread::flooded, 0.0, 1, 1000}};
 
 /// Bounds of agents driven by hand, [time][agent], with their kinds behind.
@@ -267,6 +266,10 @@ TEST_CASE("more liars than allowed are called that, and too few rows something e
   const Record l = replay(*prepared, Log{rows.data(), nullptr, 1, 3}, lies);
   CHECK(std::isnan(l.bound[4]));
   CHECK(l.bound_kind[4] == static_cast<std::uint8_t>(CertificateKind::liars));
+  const Record d =
+      replay(*certified(*prepared, {Spread::direct, 0.0, 1, 1000}), Log{rows.data(), nullptr, 1, 3}, lies);
+  CHECK(std::isfinite(d.bound[4]));
+  CHECK(d.bound_kind[4] == static_cast<std::uint8_t>(CertificateKind::witness));
 }
 
 TEST_CASE("a certificate that cannot be given is refused by name") {

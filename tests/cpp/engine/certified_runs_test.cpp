@@ -65,6 +65,12 @@ std::vector<Attack> moving_attacks(test::Rng& rng, int agents, int s, int sample
   return attacks;
 }
 
+std::vector<int> all_of(int agents) {
+  std::vector<int> all(static_cast<std::size_t>(agents));
+  for (int i = 0; i < agents; ++i) all[static_cast<std::size_t>(i)] = i;
+  return all;
+}
+
 Counts certified_runs(int systems, std::uint64_t seed, double failure, const std::string& noise) {
   Counts counts;
   const auto filters = test::every_filter(false);
@@ -77,12 +83,15 @@ Counts certified_runs(int systems, std::uint64_t seed, double failure, const std
     const Model model = test::scalar_model(rng, n, N, test::uniform(rng, 0.6, 1.0), 0.02, 0.05);
     const Network network = test::connected_network(rng, N);
     const auto& filter = filters[static_cast<std::size_t>(k) % filters.size()];
-    const Wanted wanted{k % 2 == 0 ? Spread::local : Spread::flooded, failure, s, k % 3 == 0 ? 0 : 1000};
+    const Wanted wanted{static_cast<Spread>(k % 3), failure, s, k % 5 == 0 ? 0 : 1000};
     RunOptions o;
     o.seed = seed;
     o.threads = 1;
     o.attacks = moving_attacks(rng, N, s, samples);
     if (k % 4 != 0) o.link.drop = test::uniform(rng, 0.0, 0.8);
+    // Whatever agents say of their estimates: the bound is on what each makes of it.
+    if (wanted.spread == Spread::direct && s > 0 && k % 2 == 0)
+      o.message_attacks = {forge(Schedule(1, all_of(N)), test::uniform(rng, 0.1, 10.0), false)};
     const PlantOptions plant{samples, Vector::Constant(n, 3.0), 1.0,
                              k % 5 == 0 && failure == 0.0 ? "extreme" : noise};
     const Record r = simulate(*certified(*filter->prepare(model, network), wanted), plant, o);

@@ -24,7 +24,7 @@ struct Memory {
   std::vector<double> ball;
   double ball_radius = kNaN;
   int age = -1;
-  bool firm = false;
+  int fresh = 0;  // see Evidence
 
   template <class V>
   void visit(V& v) {
@@ -35,7 +35,7 @@ struct Memory {
     v("ball", ball);
     v("ball_radius", ball_radius);
     v.range("age", age, -1, kMostAge);
-    v("firm", firm);
+    v.range("fresh", fresh, 0, kMostAge);
   }
 };
 
@@ -65,13 +65,16 @@ class Certifier {
   virtual bool usable() const noexcept = 0;
 };
 
-/// The better of a family's own bound and the certificate's. A refutation leaves neither.
-inline Bound least(double published, const Certifier* certifier, std::span<const double> estimate) noexcept {
-  const bool has = published < kInfinity;
-  const Bound own{published, has ? CertificateKind::published : CertificateKind::none};
+/// The better of a family's own bound, of the kind that it says (none = published), and the certificate's. A
+/// refutation leaves neither.
+inline Bound least(double family, CertificateKind kind, const Certifier* certifier,
+                   std::span<const double> estimate) noexcept {
+  const bool has = family < kInfinity;
+  if (kind == CertificateKind::none) kind = CertificateKind::published;
+  const Bound own{family, has ? kind : CertificateKind::none};
   if (certifier == nullptr) return own;
   const Bound found = certifier->bound(estimate);
-  return has && found.kind != CertificateKind::refuted && !(found.value < published) ? own : found;
+  return has && found.kind != CertificateKind::refuted && !(found.value < family) ? own : found;
 }
 
 /// The certifier of agent `id`, whose messages take `rounds` rounds per sample. @throws InvalidInput when it

@@ -11,6 +11,9 @@ namespace garrison::certificate {
 /// Regions older than this are forgotten.
 inline constexpr int kMostAge = 1000;
 
+/// With Gaussian noise a region may be so many samples older than the freshest that was to be had.
+inline constexpr int kChoice = 3;
+
 /// Fields in the sense of core/fields.hpp; drivers put them behind those of the filter's message.
 struct Evidence {
   /// The sender's own measurements (local; in the first round only), or those of the whole network that it
@@ -19,17 +22,16 @@ struct Evidence {
   /// A region that contains the state unless a named assumption is false: its centre, moved to this sample,
   /// and its radius when it was new; all absent = none.
   std::vector<double> ball;
-  int age = 0;        ///< samples since
-  bool firm = false;  ///< every set of rows that may be the honest one had a row to spare
-
-  bool has_ball() const { return ball.back() == ball.back(); }
+  int age = 0;  ///< samples since
+  /// Age of the freshest region that the sender could have had; losses alone decide it.
+  int fresh = 0;
 
   template <class V>
   void visit(V& v) {
     v.sparse("certificate.measurements", measurements);
     v.sparse("certificate.ball", ball);
     v.count("certificate.age", age, kMostAge);
-    v.flag("certificate.firm", firm);
+    v.count("certificate.fresh", fresh, kMostAge);
   }
 };
 

@@ -13,8 +13,10 @@ namespace garrison::certificate {
 
 /// Which measurements reach an agent.
 enum class Spread : std::uint8_t {
-  local,    ///< its own and its neighbours'
+  local,    ///< its own and its neighbours', and the best region that anybody found from such
   flooded,  ///< all that the rounds of a sample bring: messages carry every measurement known so far
+  direct,   ///< its own and its neighbours', and nothing else that others say: bounds hold also where agents
+            ///< lie in their messages, as long as liars and attacked sources are at most s together
 };
 
 /// What a run is asked to certify: with at most `attacked` sources lying (an agent with all its outputs is
@@ -29,7 +31,7 @@ struct Wanted {
   bool operator==(const Wanted&) const = default;
   template <class V>
   void visit(V& v) {
-    v.choice("spread", spread, 2);
+    v.choice("spread", spread, 3);
     v("failure", failure);
     v.range("attacked", attacked, 0, INT32_MAX);
     v.range("subsets", subsets, 0, 1000000);
@@ -38,11 +40,12 @@ struct Wanted {
 
 /// The rows of some agents, quantiles and how regions age. An agent holds those it can hear of.
 ///
-/// Failure probability, Gaussian. In a sample fail with 3/8 of it: some measurement is beyond z1 (T1), or the
-/// least-squares vector of the full set of rows beyond z2_full, or that of one of the partial sets that
-/// losses and locality leave, one per agent, beyond z2_partial (T2). An agent uses two regions, its own of
-/// this sample and one that was relayed; which one that is depends on losses only: the freshest firm one, of
-/// those the smallest. Process noise since then has the other quarter.
+/// Failure probability, Gaussian. F(t), in sample t: some measurement is beyond z1 (T1), or the least-squares
+/// vector of the full set of rows beyond z2_full, or that of one of the partial sets that losses and locality
+/// leave, one per agent, beyond z2_partial (T2). An agent uses its own region of this sample and one that was
+/// relayed: the smallest of those that are at most kChoice samples older than the freshest to be had, whose
+/// age losses alone decide. So it rests on kChoice + 2 events F, which share three quarters, and on kChoice +
+/// 1 sums of process noise, which share the rest.
 struct GARRISON_EXPORT Plan {
   Wanted wanted;
   int agents = 0;
@@ -61,8 +64,6 @@ struct GARRISON_EXPORT Plan {
   std::vector<double> norm;  ///< ||A^k||, for the ages k = 0..ages()
   std::vector<double>
       added;  ///< what k steps of process noise add to a radius; empty = not known, nothing ages
-
-  int firm_ages = 0;  ///< a firm region goes before fresher ones up to this age
 
   bool deterministic() const { return wanted.failure == 0.0; }
   int ages() const { return static_cast<int>(added.size()) - 1; }
@@ -89,7 +90,6 @@ struct GARRISON_EXPORT Plan {
     v("A", A);
     v("norm", norm);
     v("added", added);
-    v.range("firm_ages", firm_ages, 0, 1000000);
   }
 };
 

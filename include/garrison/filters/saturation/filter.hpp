@@ -7,6 +7,7 @@
 //   test      |h| > phi_i(t) proves an attack (15); a proved sensor never updates again      [Algorithm 2]
 //   saturate  xtilde_i = prediction + sum over rows of C_i' clip(h, -beta, beta)             (3), (4)
 //   average   L rounds of xhat_i <- xhat_i - alpha sum_j (xhat_i - xhat_j)                   (5)
+//             with `table`: the lower one of phi_i(t) and H_i(t) of theorem T (docs/certificates.md)
 //   flood     the same rounds unite the sets of proved sensors
 // Letters: beta saturation level, L rounds, alpha step, s most sensors attacked, I_i set of proved sensors,
 // d_i its size, rhobar_i the bound on the mean error (14), p(t) the bound on the disagreement (10).
@@ -38,6 +39,7 @@
 #include "garrison/core/trials.hpp"
 #include "garrison/filters/consensus_params.hpp"
 #include "garrison/filters/saturation/adaptive.hpp"
+#include "garrison/filters/saturation/data_free.hpp"
 #include "garrison/filters/saturation/detector.hpp"
 #include "garrison/kernel/average.hpp"
 #include "garrison/kernel/block.hpp"
@@ -58,6 +60,7 @@ struct GARRISON_EXPORT Saturation {
     std::string detector_index = "t";
     bool adaptive = false;
     bool accuse_missing = false;
+    bool table = false;
 
     static auto fields();
   };
@@ -77,6 +80,7 @@ struct GARRISON_EXPORT Saturation {
     double p0 = kNaN;     ///< (8)
     double beta = kInfinity;
     saturation::Setting setting;
+    saturation::DataFree table;  ///< empty = not asked for
 
     template <class V>
     void visit(V& v) {
@@ -93,6 +97,7 @@ struct GARRISON_EXPORT Saturation {
       v("p0", p0);
       v("beta", beta);
       v("setting", setting);
+      v("table", table);
     }
   };
 
@@ -103,6 +108,7 @@ struct GARRISON_EXPORT Saturation {
     double level = kNaN;       // in force at t: phi_i of the detector, or the adaptive beta
     double rho = kNaN;         // rho or rhobar_i at t-1
     double p = kNaN;           // p at t-1
+    std::int64_t t = 0;        // sample of x
     int d = 0;                 // |I_i(t-1)|
     bool started = false;      // rho and p have moved on from the start
     bool refuted = false;      // more are proved than can be attacked
@@ -119,6 +125,7 @@ struct GARRISON_EXPORT Saturation {
       v("level", level);
       v("rho", rho);
       v("p", p);
+      v("t", t);
       v.range("d", d, 0, INT32_MAX);
       v("started", started);
       v("refuted", refuted);
@@ -148,6 +155,8 @@ struct GARRISON_EXPORT Saturation {
     std::span<const double> omega;
   };
 
+  /// What agent `id` needs of the gains.
+  static Gains part(const Gains& gains, int id, std::span<const int> neighbours);
   /// Conditions and bounds of theorems 1-5 and propositions 2-4, with what is missing named.
   static Check check(const Params& params, const Model& model, const Network& network);
   /// Validates and prepares; @throws InvalidInput (see the doc of each parameter).
@@ -194,8 +203,10 @@ struct GARRISON_EXPORT Saturation {
   /// once: they keep the estimates themselves, and may be compiled for wider registers (kernel/isa.hpp).
   template <int n, int most = 2>
   GARRISON_INLINE static void update(const Local& l, const Gains& g, State<n>& s, const double* y,
-                                     std::int64_t, const double* prediction, double* estimate) noexcept {
+                                     std::int64_t t, const double* prediction, double* estimate) noexcept {
     advance_bounds(g, s);
+    s.t = t;
+    if (covered(g, s)) s.level = std::fmin(s.level, g.table.level(l.id, t));
     const int nn = dimension<n>(l);
     copy<n, most>(prediction, estimate, nn);
     const bool proved = g.detector && !s.refuted && s.proved.contains(l.id);
@@ -297,6 +308,11 @@ struct GARRISON_EXPORT Saturation {
     r.threshold = g.detector ? s.level : beta_now(g, s);
     if (g.bounded && s.intact && !(g.detector && s.proved.size() >= g.setting.attacked))
       r.bound = rho_now(g, s) + p_now(g, s);
+    if (!covered(g, s)) return r;
+    const double d = g.table.bound(l.id, s.t);
+    if (r.bound <= d || d == kInfinity) return r;
+    r.bound = d;
+    r.kind = CertificateKind::table;
     return r;
   }
 
@@ -314,10 +330,10 @@ struct GARRISON_EXPORT Saturation {
     next_measurement<n>(l, s.x.data(), out);
   }
   template <int n>
-  static double alarm_level(const Local&, const Gains& g, const State<n>& s) noexcept {
-    if (g.detector) return saturation::detection_threshold(g.setting, rho_now(g, s), p_now(g, s));
-    if (g.adaptive) return saturation::adaptive_threshold(g.setting, rho_now(g, s), p_now(g, s));
-    return g.beta;
+  static double alarm_level(const Local& l, const Gains& g, const State<n>& s) noexcept {
+    if (!g.detector && !g.adaptive) return g.beta;
+    const double level = saturation::innovation_bound(g.setting, rho_now(g, s), p_now(g, s));
+    return covered(g, s) ? std::fmin(level, g.table.level(l.id, s.t + 1)) : level;
   }
 
   static constexpr std::size_t signal_count = 7;
@@ -341,6 +357,12 @@ struct GARRISON_EXPORT Saturation {
   template <int n>
   static double beta_now(const Gains& g, const State<n>& s) noexcept {
     return g.adaptive ? s.level : g.beta;
+  }
+
+  /// Whether the data-free table holds for this estimate.
+  template <int n>
+  static bool covered(const Gains& g, const State<n>& s) noexcept {
+    return !g.table.empty() && s.intact && !s.refuted;
   }
 
   /// Moves rho and p to t-1 and sets the level in force at t; data-free without the detector.
@@ -400,7 +422,9 @@ struct GARRISON_EXPORT Saturation {
   template <int n>
   static double p_now(const Gains& g, const State<n>& s) noexcept {
     if (!g.bounded || !s.started) return s.p;
-    return saturation::disagreement_next(g.setting, s.p, beta_now(g, s));
+    // The level that all agents share; an agent's own may be lower.
+    const double beta = g.adaptive ? saturation::adaptive_threshold(g.setting, s.rho, s.p) : g.beta;
+    return saturation::disagreement_next(g.setting, s.p, beta);
   }
 };
 

@@ -53,7 +53,15 @@ inline auto Saturation::Params::fields() {
                 {.name = "accuse_missing",
                  .symbol = "",
                  .unit = "",
-                 .doc = "detector: a missing (NaN) measurement counts as proof of attack"})));
+                 .doc = "detector: a missing (NaN) measurement counts as proof of attack"}),
+          field(
+              &Params::table,
+              {.name = "table",
+               .symbol = "",
+               .unit = "",
+               .doc = "also bound errors, and with detector or adaptive threshold honest innovations, by the "
+                      "data-free table (docs/certificates.md, theorem T): a bound that outlives the proof "
+                      "of all attackers. Design takes the time of (agents times states)^3"})));
 }
 
 }  // namespace garrison

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The data-free table of a saturated consensus filter, as agents read it (theorem T, docs/certificates.md).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "garrison/core/error.hpp"
+#include "garrison/core/model.hpp"
+#include "garrison/core/network.hpp"
+
+namespace garrison::saturation {
+
+/// Bounds that hold whatever s attacked sensors do, for agents that test, are informed or are isolated, as
+/// long as no message is missing behind the estimate. Infinite where there is none.
+struct DataFree {
+  Matrix d;  ///< steps + 2 rows, a column per agent: ||e_i(t)|| <= d(t, i); the last row holds for ever after
+  Matrix H;  ///< the same for honest innovations: |h_j(t)| <= H(t, j); row 0 is NaN
+  int only = -1;  ///< of this agent alone, in column 0; -1 = of all
+
+  bool empty() const { return d.size() == 0; }
+  double bound(int agent, std::int64_t t) const { return d(row(t), column(agent)); }
+  double level(int agent, std::int64_t t) const { return H(row(t), column(agent)); }
+  /// What one agent needs of it.
+  GARRISON_EXPORT DataFree of(int agent) const;
+
+  template <class V>
+  void visit(V& v) {
+    v("d", d);
+    v("H", H);
+    v.range("only", only, -1, INT32_MAX);
+  }
+
+ private:
+  Eigen::Index row(std::int64_t t) const { return std::min(static_cast<Eigen::Index>(t), d.rows() - 1); }
+  Eigen::Index column(int agent) const { return only < 0 ? agent : 0; }
+};
+
+/// What the table is made for, besides model and network.
+struct DataFreeOptions {
+  int attacked = 0;                 ///< s
+  double initial_error = kNaN;      ///< bound on every initial error
+  double beta = kNaN;               ///< saturation level; NaN = adaptive
+  double alpha = 0.0;               ///< consensus step
+  std::span<const double> omega{};  ///< Chebyshev weight per round; empty = plain
+  int rounds = 0;
+};
+
+/// The averaging of a whole sample, N x N: column j is what a unit at agent j becomes.
+GARRISON_EXPORT Matrix averaging(const Network& network, double alpha, std::span<const double> omega,
+                                 int rounds);
+
+/// The table, until it is steady or for some thousand samples. Model: at most one output of length 1 per
+/// agent, both noise bounds. O((N n)^3) per sample of memory. @throws InvalidInput for more than 400 numbers
+/// N n
+GARRISON_EXPORT DataFree data_free(const Model& model, const Network& network,
+                                   const DataFreeOptions& options);
+
+}  // namespace garrison::saturation
