@@ -137,7 +137,7 @@ def prepare(
         never, for noise within its bounds.
     attacked : int, optional
         Most sources that lie, >= 0; default the filter's parameter of that name. A source is an agent, or what
-        the model names as source.
+        the model names as source. More than the filter was told of: its own bound does not count.
 
     Returns
     -------

@@ -187,6 +187,14 @@ certificate::Plan read_plan(std::span<const std::uint8_t> octets, int agents) {
   return plan;
 }
 
+/// A filter's own bound is one for as many liars as it was told of.
+bool covers(const AnyFilter& filter, int attacked) {
+  const ParamMap params = filter.params();
+  const auto own = params.find("attacked");
+  return own == params.end() || !std::holds_alternative<std::int64_t>(own->second) ||
+         attacked <= std::get<std::int64_t>(own->second);
+}
+
 }  // namespace
 
 std::vector<std::byte> write_design(const Prepared& prepared) {
@@ -217,26 +225,13 @@ std::shared_ptr<const Prepared> read_design(std::span<const std::byte> file) {
       std::make_shared<const certificate::Plan>(read_plan(design.certificate, model.agents())));
 }
 
-/// A filter's own bound is one for as many liars as it was told of; beside it a certificate for more would print
-/// both as if they held for those.
-void require_covered(const AnyFilter& filter, int attacked) {
-  const ParamMap params = filter.params();
-  const auto own = params.find("attacked");
-  if (own == params.end() || !std::holds_alternative<std::int64_t>(own->second)) return;
-  const std::int64_t most = std::get<std::int64_t>(own->second);
-  if (attacked > most)
-    refuse("certificate: attacked", std::to_string(attacked),
-           "at most the filter's own, " + std::to_string(most),
-           "the filter's bound holds for no more; raise its parameter `attacked`");
-}
-
 std::shared_ptr<const Prepared> certified(const Prepared& prepared, const certificate::Wanted& wanted) {
   if (prepared.filter().own_states())
     refuse("certificate", "one for " + prepared.filter().name(), "none",
            "its agents have a state each, which the others do not measure; it reports bounds of its own");
-  require_covered(prepared.filter(), wanted.attacked);
-  return prepared.with(std::make_shared<const certificate::Plan>(
-      certificate::make_plan(wanted, prepared.model(), prepared.network())));
+  certificate::Plan plan = certificate::make_plan(wanted, prepared.model(), prepared.network());
+  plan.family = covers(prepared.filter(), wanted.attacked);
+  return prepared.with(std::make_shared<const certificate::Plan>(std::move(plan)));
 }
 
 std::vector<std::uint8_t> certificate_part(const certificate::Plan* plan, const AgentPart& who) {

@@ -92,6 +92,19 @@ def test_the_data_free_table_bounds_where_the_published_bound_ends() -> None:
     assert gr.check(model, network, table)["table bound"] == pytest.approx(run.bound[0, -1].max(), rel=2e-3)
 
 
+def test_a_bound_for_fewer_liars_does_not_stand_in_for_the_certificate() -> None:
+    """One of eight lies; the filter was told of none, the certificate of one."""
+    model, network, _ = parts()
+    filt = gr.filters.Saturation(threshold=50.0, rounds=12, attacked=0, initial_error=2.0)
+    lie = gr.attacks.Bias(agents=[0], value=40.0)
+    options = {"steps": 60, "attack": lie, "certificate": "flooded", "failure": 0.0, "seed": 3}
+    run = gr.simulate(model, network, filt, attacked=1, **options)
+    assert run.error is not None and run.bound is not None and run.published is not None
+    assert (run.error[:, 1:] > run.published[:, 1:]).any()  # what it says holds without liars
+    assert (run.error[:, 1:] <= run.bound[:, 1:]).all()
+    assert (run.bound_kind != gr.BoundKind.PUBLISHED).all()
+
+
 def test_the_published_bound_is_kept_beside_the_better_one() -> None:
     model, network, _ = parts()
     filt = gr.filters.Saturation(threshold=1.0, rounds=12, attacked=1, initial_error=2.0, chebyshev=True)

@@ -236,18 +236,20 @@ class Engine final : public Runner {
   void certify(const Frame& f) const {
     const std::size_t N = states_.size();
     if (f.published != nullptr) std::copy_n(f.bound, N, f.published);
-    for (std::size_t i = 0; i < N; ++i) {
-      std::span<const double> estimate;
-      const certificate::Certifier* certifier = nullptr;
-      if (certified_) {
-        const Vec<n>& x = F::template estimate<n>(states_[position_[i]]);
-        estimate = {x.data(), static_cast<std::size_t>(x.size())};
-        certifier = certified_->of(static_cast<int>(i));
-      }
+    const auto settle = [&f](std::size_t i, const certificate::Certifier* certifier,
+                             std::span<const double> estimate) {
       const auto kind = static_cast<CertificateKind>(f.bound_kind[i]);
       const Bound bound = certificate::least(f.bound[i], kind, certifier, estimate);
       f.bound[i] = bound.value;
       f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
+    };
+    if (!certified_) {
+      for (std::size_t i = 0; i < N; ++i) settle(i, nullptr, {});
+      return;
+    }
+    for (std::size_t i = 0; i < N; ++i) {
+      const Vec<n>& x = F::template estimate<n>(states_[position_[i]]);  // of some families a value
+      settle(i, certified_->of(static_cast<int>(i)), {x.data(), static_cast<std::size_t>(x.size())});
     }
   }
 

@@ -24,6 +24,7 @@ class AgentCertifier final : public Certifier {
   using Certifier::memory;
   Memory& memory() noexcept override { return memory_; }
   bool usable() const noexcept override;
+  bool counts_family() const noexcept override { return plan_->family; }
 
   /// The last step of a sample in two, for drivers of whole networks: `witness`, or the one of an agent that
   /// knows the same.

@@ -57,6 +57,8 @@ class Certifier {
   virtual void end_sample() noexcept = 0;
   /// Bound on the error of any estimate (n numbers) of the present sample.
   virtual Bound bound(std::span<const double> estimate) const noexcept = 0;
+  /// Whether the family's own bound holds for as many attacked sources.
+  virtual bool counts_family() const noexcept = 0;
   /// Sizes what `sender` sends; allocates the first time.
   virtual void shape_evidence(int sender, Evidence& out) const = 0;
   virtual Memory& memory() noexcept = 0;
@@ -66,10 +68,10 @@ class Certifier {
 };
 
 /// The better of a family's own bound, of the kind that it says (none = published), and the certificate's. A
-/// refutation leaves neither.
+/// refutation leaves neither; nor does a certificate for more attacked sources leave the family's.
 inline Bound least(double family, CertificateKind kind, const Certifier* certifier,
                    std::span<const double> estimate) noexcept {
-  const bool has = family < kInfinity;
+  const bool has = family < kInfinity && (certifier == nullptr || certifier->counts_family());
   if (kind == CertificateKind::none) kind = CertificateKind::published;
   const Bound own{family, has ? kind : CertificateKind::none};
   if (certifier == nullptr) return own;

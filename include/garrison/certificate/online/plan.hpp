@@ -48,6 +48,7 @@ struct Wanted {
 /// 1 sums of process noise, which share the rest.
 struct GARRISON_EXPORT Plan {
   Wanted wanted;
+  bool family = true;  ///< the bound of the filter's family holds for as many attacked sources, too
   int agents = 0;
   int sources = 0;           ///< of the whole network
   std::vector<int> ids;      ///< agents whose rows are here, ascending
@@ -75,6 +76,7 @@ struct GARRISON_EXPORT Plan {
   template <class V>
   void visit(V& v) {
     v("wanted", wanted);
+    v("family", family);
     v.range("agents", agents, 1, INT32_MAX);
     v.range("sources", sources, 0, INT32_MAX);
     v("ids", ids);
