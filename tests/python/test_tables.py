@@ -189,6 +189,15 @@ def test_a_single_column_and_a_row_of_missing_values(tmp_path: Path) -> None:
     assert read_rows(write(tmp_path, "1,2\n")).separator == ","
 
 
+def test_times_beyond_the_records_are_noted(wind: Path) -> None:
+    records = read_records(wind / "irish_wind.csv")
+    assert records.between(dt.date(1961, 1, 1), dt.date(1978, 12, 31)).notes == records.notes
+    assert records.between(dt.date(1950, 1, 1), dt.date(1999, 1, 1)).notes[-2:] == [
+        "from 1950-01-01: the records begin later, at 1961-01-01",
+        "to 1999-01-01: the records end earlier, at 1978-12-31",
+    ]
+
+
 def test_records_match_by_name_and_period(wind: Path) -> None:
     records = read_records(wind / "irish_wind.csv").between(None, dt.date(1962, 12, 31))
     found = gr.fit(records, factors=1)

@@ -72,8 +72,16 @@ class Records:
                 f"{max(last - first, 0)} records",
                 f"at least 2; the file has {span}",
             )
-        rest = (self.step, self.units, self.notes)
-        return Records(self.dates[first:last], self.stations, self.values[first:last], *rest)
+        notes = [*self.notes, *self._beyond(start, end)]
+        return Records(self.dates[first:last], self.stations, self.values[first:last], self.step, self.units, notes)
+
+    def _beyond(self, start: Moment | None, end: Moment | None) -> list[str]:
+        found = []
+        if start is not None and seconds_of(start) < seconds_of(self.dates[0]):
+            found.append(f"from {start}: the records begin later, at {self.dates[0]}")
+        if end is not None and seconds_of(end) > seconds_of(self.dates[-1]):
+            found.append(f"to {end}: the records end earlier, at {self.dates[-1]}")
+        return found
 
     def of(self, stations: list[str]) -> "Records":
         """The records of `stations`, matched by name. Raises InvalidInput where one is missing."""
