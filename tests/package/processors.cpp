@@ -57,7 +57,7 @@ void bodies() {
   round_trip("lfre", Lfre::Message<2>{Vec<2>(5.0, 6.0)}, 11);
   platoon::VehicleMessage v;
   for (int k = 0; k < 6; ++k) v.numbers[k] = 0.1 * k;
-  v.alpha = 2.5;
+  v.bound = 2.5;
   v.has_y = true;
   v.sets = {LabelSet(4), LabelSet(4), LabelSet(4)};
   v.sets.attacked.insert(3);

@@ -21,4 +21,5 @@ g++ -std=c++20 tests/package/main.cpp -o "$work/by_pkg_config" $(pkg-config --cf
 "$work/by_pkg_config"
 tests/package/abi.sh "$work"
 tests/package/alone.sh "$work/prefix/include"
+tests/package/processors.sh
 echo "package: both ways build and run"
