@@ -7,7 +7,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 tools/stage.sh "configure release" cmake --preset release
-tools/stage.sh "build library" cmake --build --preset release --target garrison garrison_node
+tools/stage.sh "build library" cmake --build --preset release --target garrison garrison_node \
+  program_garrison_node program_garrison_keygen program_garrison_ctl program_garrison_relay
 tools/stage.sh "install library" cmake --install build/release --prefix "$work/prefix"
 
 tools/stage.sh "package: CMake" cmake -G Ninja -S tests/package -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix"
