@@ -29,13 +29,14 @@ def program(name: str, folder: str | None = None) -> str:
         place = given or f"the PATH, ${VARIABLE} or build/"
         raise _core.IoError(
             f"{name}: got no such program in {place}, expected the node's programs; install the package "
-            "garrison-node, or build with -DGARRISON_BUILD_NODE=ON and name the folder with --programs"
+            "garrison-node, or run `make dev` in a checkout and repeat there, or name the folder with --programs"
         )
     return found
 
 
 def _built(name: str) -> str | None:
-    root = Path(__file__).parents[3]
-    places = [*root.glob(f"build/*/src/node/programs/{name}"), *root.glob(f"build/*/tests/node/{name}")]
+    roots = {Path(__file__).resolve().parents[3], Path.cwd()}  # an installed garrison knows of no checkout
+    folders = ("src/node/programs", "tests/node")
+    places = [place for root in roots for folder in folders for place in root.glob(f"build/*/{folder}/{name}")]
     found = sorted(places, key=lambda path: path.stat().st_mtime)
     return str(found[-1]) if found else None
