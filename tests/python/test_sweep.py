@@ -188,7 +188,10 @@ def test_a_sweep_that_is_ended_goes_on_later(scenario: Path, tmp_path: Path, how
     options = ["--set", "attack.value=1:9:9", "--trials", "400", "--block", "40", "-o"]
     command = [sys.executable, "-m", "garrison", "sweep", str(scenario), *options]
     environment = os.environ | {"PYTHONPATH": str(Path(gr.__file__).parents[1])}
+    # A shell starts what it runs in the background deaf to Ctrl-C, tests too.
+    heard = signal.signal(signal.SIGINT, signal.default_int_handler)
     process = subprocess.Popen([*command, str(out)], env=environment, stderr=subprocess.PIPE, text=True)
+    signal.signal(signal.SIGINT, heard)
     deadline = time.monotonic() + 60
     while len(list(out.glob("parts/*.csv"))) < 3 and time.monotonic() < deadline:
         time.sleep(0.01)
