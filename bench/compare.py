@@ -82,6 +82,7 @@ def tasks(gr: Any) -> dict[str, Callable[[], Any]]:
             model, net, f.PartialSharing(gain=0.05, shared=2, gains="varying"), 200
         ),
         "partial_sharing, N = 1000, 10 % lost": run(model, net, f.PartialSharing(gain=0.05, shared=2), 100, link=lossy),
+        "lfre, N = 20, poles given": run(small, few, f.Lfre(poles=[0.3, 0.4, 0.5, 0.6]), 60000),
         "platoon, N = 200": run(vehicles, string, platoon, 300),
     }
 

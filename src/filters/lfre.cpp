@@ -75,12 +75,19 @@ bool distinct(std::vector<double> poles) {
   return std::adjacent_find(poles.begin(), poles.end()) == poles.end();
 }
 
-/// Gains that place the poles: with each output alone that sees the whole state, and with all of them.
-std::vector<Matrix> gains_for(const Matrix& A, const Matrix& C, const Matrix& R,
-                              const std::vector<double>& poles) {
+/// Outputs that see the whole state alone; C sees it.
+std::vector<Eigen::Index> seeing(const Matrix& A, const Matrix& C) {
+  std::vector<Eigen::Index> found;
+  for (Eigen::Index r = 0; r < C.rows(); ++r)
+    if (C.rows() == 1 || observable(A, C.row(r))) found.push_back(r);
+  return found;
+}
+
+/// Gains that place the poles: with each output of `alone`, and with all of them.
+std::vector<Matrix> gains_for(const Matrix& A, const Matrix& C, const std::vector<Eigen::Index>& alone,
+                              const Matrix& R, const std::vector<double>& poles) {
   std::vector<Matrix> found;
-  for (Eigen::Index r = 0; r < C.rows(); ++r) {
-    if (!observable(A, C.row(r))) continue;
+  for (const Eigen::Index r : alone) {
     found.push_back(Matrix::Zero(A.rows(), C.rows()));
     found.back().col(r) = place_poles(A, C.row(r), poles);
   }
@@ -99,10 +106,11 @@ Matrix quietest(const Lfre::Params& params, const Matrix& A, const Matrix& C, co
   for (int k = 0; k < kChoices && params.poles.empty(); ++k)
     choices.push_back(
         spaced_poles(kFastest + (kSlowest - kFastest) * k / (kChoices - 1), static_cast<int>(A.rows())));
+  const std::vector<Eigen::Index> alone = seeing(A, C);
   Matrix best;
   double least = kInfinity;
   for (const auto& poles : choices)
-    for (const Matrix& H : gains_for(A, C, noise.measurement, poles)) {
+    for (const Matrix& H : gains_for(A, C, alone, noise.measurement, poles)) {
       const double error = steady_trace(A - H * C, noise.process + H * noise.measurement * H.transpose());
       if (best.size() > 0 && !(error < least)) continue;
       least = error;

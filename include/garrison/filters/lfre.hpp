@@ -87,6 +87,8 @@ struct GARRISON_EXPORT Lfre {
     Vec<n> mean;
     std::vector<double> y_before;  // y(t-1), what the observer uses at t
     std::vector<double> y_now;
+    bool measured = false;  // y_now holds a number
+    bool source = false;    // by the gains
     std::vector<double> column;
     AgentSet nobody;
 
@@ -95,6 +97,7 @@ struct GARRISON_EXPORT Lfre {
       v("estimate", x);
       v("y_before", y_before);
       v("y_now", y_now);
+      v("measured", measured);
     }
   };
   template <int n>
@@ -113,12 +116,13 @@ struct GARRISON_EXPORT Lfre {
   static int rounds(const Gains&) { return 1; }
 
   template <int n>
-  static void init(const Local& l, const Gains&, const Vec<n>& x0, State<n>& s, Message<n>& m) {
+  static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
     State<n> fresh;
     fresh.x = fresh.mean = m.x = x0;
     fresh.column.resize(static_cast<std::size_t>(l.degree));
     fresh.y_before.assign(static_cast<std::size_t>(l.outputs), kNaN);
     fresh.y_now = fresh.y_before;
+    fresh.source = is_source(l, g);
     s = std::move(fresh);
   }
 
@@ -126,8 +130,13 @@ struct GARRISON_EXPORT Lfre {
   static void sense(const Local& l, const Gains&, State<n>& s, const double* y, std::int64_t,
                     Message<n>& m) noexcept {
     std::swap(s.y_before, s.y_now);
-    for (int r = 0; r < l.outputs; ++r)
-      s.y_now[static_cast<std::size_t>(r)] = std::abs(y[r]) < kHuge ? y[r] : kNaN;
+    s.measured = false;
+    double* const now = s.y_now.data();
+    for (int r = 0; r < l.outputs; ++r) {
+      const bool here = std::abs(y[r]) < kHuge;
+      now[r] = here ? y[r] : kNaN;
+      s.measured |= here;
+    }
     m.x = s.x;
   }
 
@@ -135,13 +144,12 @@ struct GARRISON_EXPORT Lfre {
   static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
                    Message<n>& m) noexcept {
     const int nn = dimension<n>(l);
-    const bool source = is_source(l, g);
-    if (source)
+    if (s.source)
       s.mean = s.x;
     else
       trimmed_mean(g.parents[static_cast<std::size_t>(l.id)], g.faulty, inbox, nn, s);
     multiply<n>(l.A, s.mean.data(), s.x.data(), nn);
-    if (source) correct(l, g.observer[static_cast<std::size_t>(l.id)], nn, s);
+    if (s.source) correct(l, g.observer[static_cast<std::size_t>(l.id)], nn, s);
     m.x = s.x;
   }
 
@@ -158,10 +166,9 @@ struct GARRISON_EXPORT Lfre {
   }
 
   template <int n>
-  static Report report(const Local& l, const Gains& g, const State<n>& s) noexcept {
-    const bool lost = std::all_of(s.y_now.begin(), s.y_now.end(), [](double y) { return std::isnan(y); });
+  static Report report(const Local&, const Gains&, const State<n>& s) noexcept {
     Report r;
-    r.verdict = lost || !is_source(l, g) ? Verdict::silent : Verdict::not_tested;
+    r.verdict = s.measured && s.source ? Verdict::not_tested : Verdict::silent;
     return r;
   }
   template <int n>
@@ -183,8 +190,8 @@ struct GARRISON_EXPORT Lfre {
   static constexpr std::size_t signal_count = 1;
   static std::vector<std::string> signal_names() { return {"source"}; }
   template <int n>
-  static void signals(const Local& l, const Gains& g, const State<n>&, double* out) noexcept {
-    out[0] = is_source(l, g) ? 1.0 : 0.0;
+  static void signals(const Local&, const Gains&, const State<n>& s, double* out) noexcept {
+    out[0] = s.source ? 1.0 : 0.0;
   }
 
  private:
@@ -198,8 +205,10 @@ struct GARRISON_EXPORT Lfre {
     for (int r = 0; r < l.outputs; ++r) {
       double innovation = s.y_before[static_cast<std::size_t>(r)];
       if (std::isnan(innovation)) continue;
-      for (int k = 0; k < nn; ++k) innovation -= l.C[static_cast<std::ptrdiff_t>(r) * nn + k] * s.mean[k];
-      for (int i = 0; i < nn; ++i) s.x[i] += H(i, r) * innovation;
+      const double* const c = l.C + static_cast<std::ptrdiff_t>(r) * nn;
+      const double* const h = H.data() + static_cast<std::ptrdiff_t>(r) * nn;
+      for (int k = 0; k < nn; ++k) innovation -= c[k] * s.mean[k];
+      for (int i = 0; i < nn; ++i) s.x[i] += h[i] * innovation;
     }
   }
   template <int n>
