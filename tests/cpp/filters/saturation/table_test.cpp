@@ -99,16 +99,23 @@ Counts runs(int systems, std::uint64_t seed, int kind) {
   return c;
 }
 
+/// Random systems per kind; the sanitizers take twenty times as long for the same.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int kSystems = 150;
+#else
+constexpr int kSystems = 2000;
+#endif
+
 }  // namespace
 
 TEST_CASE("no error beyond the data-free table, and nobody honest is accused by its levels") {
   for (const int kind : {0, 1, 2}) {
-    const Counts c = runs(2000, 31000, kind);
+    const Counts c = runs(kSystems, 31000, kind);
     CHECK(c.violations == 0);
     CHECK(c.false_proofs == 0);
-    CHECK(c.table > 50000);
+    CHECK(c.table > 25 * kSystems);
     CHECK(c.closest > 0.5);
-    CHECK((kind != 0 || c.proofs > 1000));
+    CHECK((kind != 0 || c.proofs > kSystems / 2));
   }
 }
 
