@@ -145,10 +145,15 @@ def attacks(value: Any) -> list[_core.Attack]:
     return found
 
 
+#: how far the measurements go on which a certificate rests
+SPREADS = ("none", "local", "flooded", "direct")
+ONE_SPREAD = ", ".join(f'"{name}"' for name in SPREADS[:-1]) + f' or "{SPREADS[-1]}"'
+
+
 def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any) -> dict[str, Any]:
     """What to certify: `attacked` is the filter's own where it has one."""
     if not isinstance(name, str):
-        raise refusal("certificate", shown(name), '"none", "local", "flooded" or "direct"')
+        raise refusal("certificate", shown(name), ONE_SPREAD)
     if name == "none":
         return {}
     if attacked is None:

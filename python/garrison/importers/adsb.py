@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.importers.adsb_files import Track, read_track
-from garrison.importers.bundle import Bundle, Measurements, model_file
+from garrison.importers.bundle import Bundle, Measurements, gate, model_file
 from garrison.importers.earth import Plane
 from garrison.importers.limits import require_positive, require_probability
 from garrison.words import refusal
@@ -68,21 +68,8 @@ def import_adsb(path: Path, aircraft: str | None = None, assumed: Assumptions | 
         "model": {"file": "model.json"},
         "network": {"kind": "complete"},
         "data": {"file": "measurements.csv"},
-        "filter": {
-            "name": "structural",
-            "label": "gate, isolating",
-            "false_alarm": assumed.false_alarm,
-            "test": "innovation",
-            "isolate": True,
-        },
-        "compare": [
-            {
-                "name": "structural",
-                "label": "gate, alarms only",
-                "false_alarm": assumed.false_alarm,
-                "test": "innovation",
-            }
-        ],
+        "filter": gate("gate, isolating", assumed.false_alarm, isolate=True),
+        "compare": [gate("gate, alarms only", assumed.false_alarm, isolate=False)],
         "run": {"start": [float(v) for v in start]},
     }
     values, times = values[first:], times[first:]

@@ -67,6 +67,12 @@ class Bundle:
         (folder / "SOURCE.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
 
 
+def gate(label: str, false_alarm: float, *, isolate: bool) -> dict[str, Any]:
+    """The [filter] table of recordings whose sensors all see the whole state: tests of innovations."""
+    table = {"name": "structural", "label": label, "false_alarm": false_alarm, "test": "innovation"}
+    return {**table, "isolate": True} if isolate else table
+
+
 def sparse(matrix: Array) -> dict[str, Any]:
     """A matrix as its size and its entries that are not zero: [row, column, value]."""
     rows, columns = np.nonzero(matrix)

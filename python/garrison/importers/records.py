@@ -68,7 +68,7 @@ def import_csv(path: Path, choice: Choice | None = None) -> Bundle:
     if (choice.stations is None) != (choice.radius is None):
         raise refusal("--stations, --radius", "one of them", "both or none")
     last, rest = _split(records, choice.clean)
-    years = records.between(None, last).step * len(records.between(None, last).dates) / (365.25 * 86400.0)
+    years = len(records.between(None, last).dates) / records.samples_per_year
     harmonics = choice.harmonics if choice.harmonics is not None else 2 if years >= _YEARS else 0
     copies = {"records.csv": path} | ({"stations.csv": choice.stations} if choice.stations else {})
     tables = {

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.importers.bundle import Bundle, Measurements, model_file
+from garrison.importers.bundle import Bundle, Measurements, gate, model_file
 from garrison.importers.limits import require_positive, require_probability
 from garrison.importers.robot_files import Message, bag_messages, mcap_messages
 from garrison.importers.robot_frames import Signal, in_one_frame
@@ -87,13 +87,7 @@ def _bundle(where: str, messages: Iterable[Message], topics: Sequence[str], assu
         "model": {"file": "model.json"},
         "network": {"kind": "complete"},
         "data": {"file": "measurements.csv"},
-        "filter": {
-            "name": "structural",
-            "label": "gate, isolating",
-            "false_alarm": assumed.false_alarm,
-            "test": "innovation",
-            "isolate": True,
-        },
+        "filter": gate("gate, isolating", assumed.false_alarm, isolate=True),
         "run": {"start": [_first(values, sensors, state) for state in states]},
     }
     facts = [

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.arguments import ONE_SPREAD, SPREADS
 from garrison.fitting import Fit
 from garrison.numeric import numbers
 from garrison.objects import named
@@ -198,8 +199,8 @@ def _certificate(section: Section) -> dict[str, Any]:
     if not section.table:
         return {}
     out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": section.number("failure", 1e-6)}
-    if out["certificate"] not in ("none", "local", "flooded", "direct"):
-        raise refusal(section.place("spread"), shown(out["certificate"]), '"none", "local", "flooded" or "direct"')
+    if out["certificate"] not in SPREADS:
+        raise refusal(section.place("spread"), shown(out["certificate"]), ONE_SPREAD)
     if not 0 <= out["failure"] < 1:
         raise refusal(section.place("failure"), shown(out["failure"]), "a probability in [0, 1)", "0 = deterministic")
     if "attacked" in section:
