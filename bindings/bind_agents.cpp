@@ -433,8 +433,11 @@ std::optional<certificate::Wanted> wanted_of(const std::string& name, double fai
   wanted.failure = failure;
   wanted.attacked = attacked;
   const auto* const found = std::find(std::begin(kSpreads), std::end(kSpreads), name);
-  if (found == std::end(kSpreads))
-    refuse_unknown("certificate", name, std::vector<std::string>{"none", "local", "flooded", "direct"});
+  if (found == std::end(kSpreads)) {
+    std::vector<std::string> known{"none"};
+    known.insert(known.end(), std::begin(kSpreads), std::end(kSpreads));
+    refuse_unknown("certificate", name, known);
+  }
   wanted.spread = static_cast<certificate::Spread>(found - kSpreads);
   return wanted;
 }

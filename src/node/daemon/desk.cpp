@@ -36,10 +36,7 @@ Desk::Desk(Station& station, std::uint64_t boot, Sensor& sensor, Ring& ring, boo
 }
 
 void Desk::run(Loop& loop) {
-  sigset_t ending;
-  sigemptyset(&ending);
-  sigaddset(&ending, SIGTERM);
-  sigaddset(&ending, SIGINT);
+  const sigset_t ending = ending_signals();
   const Descriptor signals(::signalfd(-1, &ending, SFD_NONBLOCK | SFD_CLOEXEC));
   signalfd_siginfo came{};
   saved_at_ = now().steady;

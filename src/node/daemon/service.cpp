@@ -29,6 +29,14 @@ void notify(const std::string& line) noexcept {
            static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + size));
 }
 
+sigset_t ending_signals() noexcept {
+  sigset_t both;
+  sigemptyset(&both);
+  sigaddset(&both, SIGTERM);
+  sigaddset(&both, SIGINT);
+  return both;
+}
+
 Micros watchdog_pause() noexcept {
   const char* micros = std::getenv("WATCHDOG_USEC");
   const char* process = std::getenv("WATCHDOG_PID");

@@ -29,10 +29,7 @@ constexpr const char* kUsage =
 constexpr std::size_t kRing = 4 << 20;
 
 void block_signals() {
-  sigset_t ending;
-  sigemptyset(&ending);
-  sigaddset(&ending, SIGTERM);
-  sigaddset(&ending, SIGINT);
+  const sigset_t ending = ending_signals();
   ::sigprocmask(SIG_BLOCK, &ending, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
 }
@@ -43,10 +40,7 @@ bool wait_for_clock(const Settings& settings) {
   std::fprintf(stderr,
                "<4>garrison-node: the clock is not synchronised; waiting ([clock].require_synchronised)\n");
   notify("STATUS=no clock");
-  sigset_t ending;
-  sigemptyset(&ending);
-  sigaddset(&ending, SIGTERM);
-  sigaddset(&ending, SIGINT);
+  const sigset_t ending = ending_signals();
   const timespec pause{0, 200'000'000};
   while (!clock_synchronised()) {
     if (::sigtimedwait(&ending, nullptr, &pause) > 0) return false;

@@ -86,10 +86,7 @@ class Relay {
   Relay(std::vector<Way> ways, const Weather& weather) : ways_(std::move(ways)), weather_(weather) {}
 
   void run() {
-    sigset_t ending;
-    sigemptyset(&ending);
-    sigaddset(&ending, SIGTERM);
-    sigaddset(&ending, SIGINT);
+    const sigset_t ending = ending_signals();
     ::sigprocmask(SIG_BLOCK, &ending, nullptr);
     const Descriptor signals(::signalfd(-1, &ending, SFD_NONBLOCK | SFD_CLOEXEC));
     std::vector<pollfd> all{{signals.get(), POLLIN, 0}};

@@ -5,9 +5,9 @@
 //   predict   A xhat_i(t-1)
 //   innovate  h = y_i(t) - C_i A xhat_i(t-1), one per row of C_i
 //   test      |h| > phi_i(t) proves an attack (15); a proved sensor never updates again      [Algorithm 2]
+//             with `table`: the lower one of phi_i(t) and H_i(t) of theorem T (docs/certificates.md)
 //   saturate  xtilde_i = prediction + sum over rows of C_i' clip(h, -beta, beta)             (3), (4)
 //   average   L rounds of xhat_i <- xhat_i - alpha sum_j (xhat_i - xhat_j)                   (5)
-//             with `table`: the lower one of phi_i(t) and H_i(t) of theorem T (docs/certificates.md)
 //   flood     the same rounds unite the sets of proved sensors
 // Letters: beta saturation level, L rounds, alpha step, s most sensors attacked, I_i set of proved sensors,
 // d_i its size, rhobar_i the bound on the mean error (14), p(t) the bound on the disagreement (10).
