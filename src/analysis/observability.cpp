@@ -7,6 +7,7 @@
 #include "garrison/analysis/modes.hpp"
 #include "garrison/analysis/subsets.hpp"
 #include "garrison/core/budget.hpp"
+#include "clearly_observable.hpp"
 #include "row_groups.hpp"
 #include "splitting.hpp"
 
@@ -108,6 +109,7 @@ bool all_survive(const Matrix& A, const Matrix& C, const detail::Pair& pair,
 bool observable(const MatrixRef& A, const MatrixRef& C) {
   if (A.cols() != A.rows() || C.cols() != A.rows())
     refuse("C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()), "as many columns as A has rows");
+  if (detail::clearly_observable(A, C)) return true;
   return visibility(A, C, 0.0).all_seen();
 }
 

@@ -227,3 +227,24 @@ TEST_CASE("sensors far from most states of a network: what is seen well is not c
   CHECK(undetectable_agents(model).empty());
   CHECK(undetectable_agents(Model(A, {C[0]})) == std::vector<int>{0});
 }
+
+TEST_CASE("the quick yes of observable() is the answer of visibility() at every distance") {
+  test::Rng rng(21);
+  int yes = 0;
+  int no = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const int n = test::whole(rng, 2, 8);
+    const int hidden = test::whole(rng, 1, n - 1);
+    Case c = with_hidden(rng, n, hidden, test::whole(rng, 1, 3), test::whole(rng, 0, 1) == 1);
+    // Moves the pair away from the one with hidden modes, by 1e-16 to 1.
+    const double away = std::pow(10.0, test::uniform(rng, -16.0, 0.0));
+    c.C += away * test::normal_matrix(rng, static_cast<int>(c.C.rows()), n);
+    if (test::whole(rng, 0, 1) == 1) c = c.in(rotation(rng, n));
+    if (test::whole(rng, 0, 3) == 0) c = c.scaled(units(rng, n), units(rng, static_cast<int>(c.C.rows())));
+    const bool seen = visibility(c.A, c.C, 0.0).all_seen();
+    CHECK_MESSAGE(observable(c.A, c.C) == seen, "trial ", trial, ", moved by ", away);
+    (seen ? yes : no) += 1;
+  }
+  CHECK(yes > 500);
+  CHECK(no > 500);
+}

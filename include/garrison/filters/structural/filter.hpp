@@ -34,8 +34,9 @@ namespace garrison {
 /// then on, until it is stationary again, an agent carries a bound P_i >= cov(e_i) of its own error (Jensen)
 /// and tests against m times the deviation that follows from it: fewer false alarms than asked, never more
 /// (docs/adr/0008). Messages tell P_i and how long their sender is off. Nothing is tested for `settle`
-/// samples after the start, or where the bounded deviation is above 10 times the stationary one, since such a
-/// test would see nothing (threshold NaN, verdict "not tested").
+/// samples after the start (threshold NaN, verdict "not tested"). Where the bounded deviation is above 10 times
+/// the stationary one, a measurement beyond even that is an alarm, and one within says nothing: the verdict
+/// stays "not tested" and no alarm ends.
 ///
 /// With `isolate` innovations are tested before they are used: an agent leaves out every measurement, its own
 /// or one it hears, that is over its level, and withholds its own while its alarm lasts. P_i grows meanwhile,
@@ -201,7 +202,7 @@ struct GARRISON_EXPORT Structural {
       r.verdict = Verdict::attacked;
     else if (l.outputs == 0 || (missing && !g.accuse_missing))
       r.verdict = Verdict::silent;
-    else if (std::isnan(s.threshold) && !missing)
+    else if ((std::isnan(s.threshold) || (s.coarse && s.above == 0)) && !missing)
       r.verdict = Verdict::not_tested;
     else
       r.verdict = s.above > 0 ? Verdict::suspected : Verdict::cleared;
@@ -240,7 +241,7 @@ struct GARRISON_EXPORT Structural {
   }
 
  private:
-  /// Deviations, in stationary ones, above which a test would see nothing.
+  /// Deviations, in stationary ones, above which a test can tell an alarm and nothing else.
   static constexpr double kBlind = 10.0;
   /// The most that P is taken to be, in stationary variances.
   static constexpr double kMostVariance = 1e16;

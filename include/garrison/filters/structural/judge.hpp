@@ -11,6 +11,7 @@ bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double val
                          bool exact) noexcept {
   s.threshold = kNaN;
   s.statistic = std::abs(value);
+  s.coarse = false;
   bool window = false;
   if (g.window > 1) {
     const bool stationary = exact || (s.start > 0 && s.rest <= s.start);
@@ -23,7 +24,9 @@ bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double val
     if (exact) s.threshold = g.level;
   } else {
     const double usual = g.innovation ? g.innovation_std[id] : g.std[id];
-    if (std <= kBlind * usual || (g.isolate && s.alarm)) s.threshold = g.sample_level * std;
+    // What a sensor left out may be up to is in `std`: it must be able to come back.
+    s.coarse = !(std <= kBlind * usual || (g.isolate && s.alarm));
+    s.threshold = g.sample_level * std;
   }
   return s.statistic >= s.threshold;
 }
@@ -33,6 +36,7 @@ void Structural::judge(const Local& l, const Gains& g, State<n>& s, bool over) n
   const bool absent = g.accuse_missing && l.outputs > 0 && std::isnan(s.y);
   if (!absent && std::isnan(s.threshold)) return;
   over = over || absent;
+  if (s.coarse && !over) return;
   s.above = over ? s.above + 1 : 0;
   s.below = over ? 0 : s.below + 1;
   if (s.above >= g.alarm_after) s.alarm = true;

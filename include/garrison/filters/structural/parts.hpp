@@ -103,6 +103,7 @@ struct State {
   int below = 0;
   int filled = 0;  // residuals in the window
   int oldest = 0;
+  bool coarse = false;  // the threshold is so high that only an alarm tells something
   bool broken = false;  // a gap has emptied the window, which is not full yet
   bool alarm = false;
   std::vector<double> last;    // window of residuals, a ring
@@ -134,6 +135,7 @@ struct State {
     v.range("below", below, 0, INT32_MAX);
     v.range("filled", filled, 0, window);
     v.range("oldest", oldest, 0, window - 1);
+    v("coarse", coarse);
     v("broken", broken);
     v("alarm", alarm);
     v("last", last);
