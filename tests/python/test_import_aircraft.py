@@ -100,6 +100,22 @@ def test_the_spoofed_sample_is_noticed_and_forgiven(tmp_path: Path) -> None:
     assert not accused[-100:].any()  # right again since sample 1200
 
 
+@pytest.mark.parametrize("jam", [120, 300])
+def test_a_lie_after_a_jam_is_noticed_at_once(tmp_path: Path, jam: int) -> None:
+    columns = json.loads(gzip.decompress(SAMPLE.read_bytes()))
+    start = columns["timestamp"]["0"]
+    jammed = [k for k, time in columns["timestamp"].items() if 0 <= 900 - (time - start) / 1000 <= jam]
+    heard = {name: {k: v for k, v in column.items() if k not in jammed} for name, column in columns.items()}
+    (tmp_path / "jammed.json").write_text(json.dumps(heard), encoding="utf-8")
+    import_adsb(tmp_path / "jammed.json").write(tmp_path / "air")
+    run = run_scenario(read_scenario(tmp_path / "air" / "scenario.toml"))[0].run
+    assert run is not None and run.verdict is not None
+    accused = np.asarray(run.verdict)[0, 1:] == 2  # Verdict.attacked
+    assert not accused[:900].any()  # spoofed from sample 900 on
+    assert accused[901:905].any()  # by position or by velocity
+    assert not accused[-100:].any()
+
+
 def test_the_plane_keeps_velocities_derivatives_of_positions() -> None:
     plane = Plane(47.0, 8.0)
     latitude, longitude = np.array([55.0, 55.001]), np.array([20.0, 20.003])

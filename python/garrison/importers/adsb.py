@@ -95,8 +95,8 @@ def _gap_note(fresh: NDArray[np.bool_], period: float) -> list[str]:
         return []
     return [
         f"the longest gap without a position takes {longest:g} s; after gaps that make the estimate ten times as "
-        "unsure as usual the filter takes the next reports untested; --position-noise 2000 --manoeuvre 1 lets it test "
-        "velocities at once"
+        "unsure as usual, reports within what the gap allows are taken up untested, and a turn in the gap may be an "
+        "alarm; --position-noise 2000 --manoeuvre 1 lets the filter test velocities at once"
     ]
 
 

@@ -56,7 +56,8 @@ class Bundle:
     notes: list[str] = field(default_factory=list)
 
     def write(self, folder: Path) -> None:
-        """scenario.toml, model.json and measurements.csv (where there are any), SOURCE.md."""
+        """scenario.toml, model.json and measurements.csv (where there are any), SOURCE.md; makes the folder."""
+        folder.mkdir(parents=True, exist_ok=True)
         head = [f"Made by `garrison import`; {self.source}", *self.notes]
         (folder / "scenario.toml").write_text(document(self.tables, head), encoding="utf-8")
         if self.model is not None:
