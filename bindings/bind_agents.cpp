@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Designs, single agents and their messages.
-#include "bindings.hpp"
-#include "garrison/engine/design_file.hpp"
-#include "garrison/node/log.hpp"
+// Single agents.
+#include "agents.hpp"
+#include "bytes.hpp"
 #include "garrison/wire/letter.hpp"
 
 using namespace garrison;
@@ -10,45 +9,6 @@ using wire::Letter;
 
 namespace {
 
-py::bytes to_python(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-/// Any object with a buffer of bytes.
-std::vector<std::byte> from_python(const py::object& given, const char* which) {
-  // A NumPy scalar has a buffer, too, but is a number.
-  if (!PyObject_CheckBuffer(given.ptr()) || PyIndex_Check(given.ptr()))
-    refuse(which, py::str(py::type::of(given).attr("__name__")).cast<std::string>(), "bytes");
-  const auto view = py::bytes(py::module_::import("builtins").attr("bytes")(given));
-  const auto content = static_cast<std::string_view>(view);
-  const auto* first = reinterpret_cast<const std::byte*>(content.data());
-  return {first, first + content.size()};
-}
-
-std::string hex(std::span<const std::byte> bytes) {
-  return to_python(bytes).attr("hex")().cast<std::string>();
-}
-
-/// What an agent in Python is made of, so that it can be pickled: a whole design, or its part of one.
-struct PyAgent {
-  std::shared_ptr<const Prepared> prepared;  // null: from a part
-  std::vector<std::byte> part;
-  std::unique_ptr<Agent> agent;
-  std::int64_t refused = 0;  // messages whose body was
-
-  Agent* operator->() const { return agent.get(); }
-  std::vector<std::byte> file() const { return prepared ? write_part(*prepared, agent->id()) : part; }
-  std::vector<std::byte> snapshot() const {
-    std::vector<std::byte> bytes(agent->snapshot_bytes());
-    if (agent->save(bytes) == 0)
-      refuse("agent", "an agent in the middle of a sample", "one between samples",
-             "call fuse until all " + std::to_string(agent->rounds()) + " rounds are done");
-    return bytes;
-  }
-};
-
-PyAgent agent_from(const std::shared_ptr<const Prepared>& prepared, int id) {
-  return {prepared, {}, prepared->agent(id)};
-}
 PyAgent agent_from(std::vector<std::byte> part) {
   auto agent = read_part(part);
   return {nullptr, std::move(part), std::move(agent)};
@@ -130,109 +90,9 @@ void deliver(PyAgent& a, const Letter& letter) {
   }
 }
 
-py::object value_of(const wire::FieldInfo& info, const wire::FieldValue& value) {
-  if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
-    auto copy = *numbers;
-    const auto size = static_cast<py::ssize_t>(copy.size());
-    return owned(std::move(copy), {size});
-  }
-  if (const auto* number = std::get_if<double>(&value)) return py::float_(*number);
-  if (const auto* flag = std::get_if<bool>(&value)) return py::bool_(*flag);
-  if (const auto* count = std::get_if<int>(&value)) return py::int_(*count);
-  const auto& labels = std::get<wire::Labels>(value);
-  if (info.kind == FieldKind::set) return py::cast(labels.ids);
-  return py::make_tuple(labels.ids, labels.complement);
-}
+}  // namespace
 
-wire::FieldValue field_value(const wire::FieldInfo& info, const py::object& given) {
-  try {
-    switch (info.kind) {
-      case FieldKind::numbers:
-      case FieldKind::sparse:
-        return given.cast<std::vector<double>>();
-      case FieldKind::optional:
-        return given.cast<double>();
-      case FieldKind::flag:
-        return given.cast<bool>();
-      case FieldKind::count:
-        return given.cast<int>();
-      case FieldKind::set:
-        return wire::Labels{given.cast<std::vector<int>>(), false};
-      case FieldKind::labels:
-        break;
-    }
-    const auto pair = given.cast<std::pair<std::vector<int>, bool>>();
-    return wire::Labels{pair.first, pair.second};
-  } catch (const py::cast_error&) {
-    refuse("message field " + info.name, py::repr(given).cast<std::string>(),
-           "a value like the one it has now");
-  }
-}
-
-void bind_message(py::module_& m) {
-  py::class_<Letter>(
-      m, "Message",
-      "A message between agents of the same design; compares by value.\n\n"
-      "What an agent sends is a list of fields: numbers, optional numbers (nan = absent), flags, counts\n"
-      "and sets. sender, sample and round are the driver's, not the agent's.")
-      .def_property_readonly("family", [](const Letter& l) { return l.family; })
-      .def_property_readonly("sender", [](const Letter& l) { return l.envelope.sender; })
-      .def_property_readonly("sample", [](const Letter& l) { return l.envelope.sample; })
-      .def_property_readonly("round", [](const Letter& l) { return l.envelope.round; })
-      .def_property_readonly(
-          "fields",
-          [](const Letter& l) {
-            py::dict all;
-            const auto values = l.values();
-            for (std::size_t k = 0; k < values.size(); ++k)
-              all[py::str(l.fields[k].name)] = value_of(l.fields[k], values[k]);
-            return all;
-          },
-          "Name -> value of every field: arrays, nan where a number is absent, bool, int, list of agents; a "
-          "set of\n"
-          "labels as (ids, complement).")
-      .def_property_readonly(
-          "body", [](const Letter& l) { return to_python(l.body); },
-          "The bytes that travel, without sender, sample and round.")
-      .def(
-          "replace",
-          [](const Letter& l, const std::string& field, const py::object& value) {
-            std::vector<std::string> known;
-            for (const auto& info : l.fields) known.push_back(info.name);
-            const auto at = std::find(known.begin(), known.end(), field);
-            if (at == known.end()) refuse_unknown("message of " + l.family, field, known);
-            return l.with(field, field_value(l.fields[static_cast<std::size_t>(at - known.begin())], value));
-          },
-          py::arg("field"), py::arg("value"), "The same message with another value in one field: a lie.")
-      .def(
-          "to_bytes", [](const Letter& l) { return to_python(l.to_bytes()); },
-          "Everything, to be kept or sent by other means; see from_bytes.")
-      .def_static(
-          "from_bytes",
-          [](const py::object& data) { return Letter::from_bytes(from_python(data, "message")); },
-          py::arg("data"), "The message that to_bytes() wrote. Raises InvalidInput for anything else.")
-      .def(
-          "__eq__",
-          [](const Letter& l, const py::object& other) {
-            return py::isinstance<Letter>(other) && l == other.cast<const Letter&>();
-          },
-          py::arg("other"))
-      .def("__hash__", [](const Letter& l) { return py::hash(to_python(l.to_bytes())); })
-      .def("__repr__",
-           [](const Letter& l) {
-             return "garrison.Message.from_bytes(bytes.fromhex(\"" + hex(l.to_bytes()) + "\"))";
-           })
-      .def("__str__",
-           [](const Letter& l) {
-             return "Message of " + l.family + " from agent " + std::to_string(l.envelope.sender) +
-                    ", sample " + std::to_string(l.envelope.sample) + ", round " +
-                    std::to_string(l.envelope.round) + ", " + std::to_string(l.body.size()) + " bytes";
-           })
-      .def(py::pickle([](const Letter& l) { return to_python(l.to_bytes()); },
-                      [](const py::bytes& b) { return Letter::from_bytes(from_python(b, "message")); }));
-}
-
-void bind_agent(py::module_& m) {
+void bind_agents(py::module_& m) {
   py::class_<PyAgent>(m, "Agent",
                       "One agent on its own: `sense` once per sample, then `fuse` once per round, with the "
                       "same bits as inside\n"
@@ -398,110 +258,4 @@ void bind_agent(py::module_& m) {
            })
       .def(py::pickle([](const PyAgent& a) { return to_python(kept(a)); },
                       [](const py::bytes& b) { return agent_kept(from_python(b, "agent")); }));
-}
-
-void bind_log(py::module_& m) {
-  m.def(
-      "replay_log",
-      [](const py::object& log) {
-        const node::LogReplay r = node::replay_log(from_python(log, "log"));
-        py::dict out;
-        out["agent"] = r.agent;
-        out["family"] = r.family;
-        out["calls"] = r.calls;
-        out["estimates"] = r.estimates;
-        out["differ"] = r.wrong;
-        out["first"] = r.first;
-        out["last"] = r.last;
-        out["ended"] = r.ended;
-        return out;
-      },
-      py::arg("log"),
-      "Do again what the log of a node (bytes of an MCAP file) says. Returns agent, family, calls, estimates "
-      "(compared),\n"
-      "differ (estimates that differ in a bit, and calls that were refused), first and last sample, ended "
-      "(the "
-      "node was\n"
-      "stopped, not killed). Raises InvalidInput for anything but a log.");
-}
-
-constexpr const char* kSpreads[] = {"local", "flooded", "direct"};
-
-std::optional<certificate::Wanted> wanted_of(const std::string& name, double failure, int attacked) {
-  if (name == "none") return std::nullopt;
-  certificate::Wanted wanted;
-  wanted.failure = failure;
-  wanted.attacked = attacked;
-  const auto* const found = std::find(std::begin(kSpreads), std::end(kSpreads), name);
-  if (found == std::end(kSpreads)) {
-    std::vector<std::string> known{"none"};
-    known.insert(known.end(), std::begin(kSpreads), std::end(kSpreads));
-    refuse_unknown("certificate", name, known);
-  }
-  wanted.spread = static_cast<certificate::Spread>(found - kSpreads);
-  return wanted;
-}
-
-}  // namespace
-
-void bind_agents(py::module_& m) {
-  bind_message(m);
-  bind_log(m);
-  bind_agent(m);
-  py::class_<Prepared, std::shared_ptr<Prepared>>(m, "Design", "A filter designed for one model and network.")
-      .def(py::init([](const Model& model, const Network& network, const FilterHandle& filter,
-                       const std::string& certificate, double failure, int attacked) {
-             const auto wanted = wanted_of(certificate, failure, attacked);
-             const py::gil_scoped_release no_gil;
-             auto prepared = filter.filter->prepare(model, network);
-             if (wanted) prepared = certified(*prepared, *wanted);
-             return std::const_pointer_cast<Prepared>(prepared);
-           }),
-           py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("certificate") = "none",
-           py::arg("failure") = 1e-6, py::arg("attacked") = 0)
-      .def_property_readonly(
-          "certificate",
-          [](const Prepared& p) -> py::object {
-            const auto plan = p.certificate();
-            if (plan == nullptr) return py::none();
-            const auto& wanted = plan->wanted;
-            return py::dict(py::arg("certificate") = kSpreads[static_cast<std::size_t>(wanted.spread)],
-                            py::arg("failure") = wanted.failure, py::arg("attacked") = wanted.attacked);
-          },
-          "What its runs certify (certificate, failure, attacked); None = nothing but the family's own "
-          "bound.")
-      .def_property_readonly("model", &Prepared::model)
-      .def_property_readonly("network", &Prepared::network)
-      .def_property_readonly("filter", [](const Prepared& p) { return filter_object(p.filter()); })
-      .def_property_readonly("outline", &Prepared::gains_outline, "What the gains consist of, a line each.")
-      .def(
-          "agent", [](const std::shared_ptr<Prepared>& p, int id) { return agent_from(p, id); },
-          py::arg("id"))
-      .def(
-          "part", [](const Prepared& p, int id) { return to_python(write_part(p, id)); }, py::arg("id"),
-          "What agent `id` needs of the design, as bytes.")
-      .def("to_bytes", [](const Prepared& p) { return to_python(write_design(p)); })
-      .def_static(
-          "from_bytes",
-          [](const py::object& data) {
-            return std::const_pointer_cast<Prepared>(read_design(from_python(data, "design file")));
-          },
-          py::arg("data"));
-  m.def(
-      "design_summary",
-      [](const py::object& data) {
-        const DesignSummary s = summary_of(from_python(data, "design file"));
-        py::dict d;
-        d["agent"] = s.part ? py::object(py::int_(s.agent)) : py::object(py::none());
-        d["garrison"] = s.garrison;
-        d["filter"] = s.filter;
-        d["params"] = from_params(s.params);
-        d["agents"] = s.agents;
-        d["states"] = s.states;
-        d["bytes"] = s.bytes;
-        d["hash"] = hex(s.digest);
-        return d;
-      },
-      py::arg("data"),
-      "What a design file says of itself: filter, params, agents, states, bytes, hash, agent.");
 }

@@ -315,7 +315,7 @@ int agent_of(const Recovery& r, int agent) {
   return agent;
 }
 
-void bind_messages(py::module_& m) {
+void bind_relays(py::module_& m) {
   m.def(
       "averaged",
       [](const VectorRef& weights, const MatrixRef& estimates, const VectorRef& bounds) {
@@ -428,6 +428,6 @@ void bind_certificate(py::module_& m) {
   bind_witness(c);
   bind_system(c);
   bind_tables(c);
-  bind_messages(c);
+  bind_relays(c);
   bind_certificate_memory(c);
 }

@@ -10,7 +10,9 @@ PYBIND11_MODULE(_core, m) {
   bind_core(m);
   bind_filters(m);
   bind_attacks(m);
+  bind_messages(m);
   bind_agents(m);
+  bind_designs(m);
   bind_drivers(m);
   bind_analysis(m);
   bind_fit(m);

@@ -59,6 +59,7 @@ setattr(Network, "_repr_html_", _network_html)  # noqa: B010
 if TYPE_CHECKING:
     from garrison.answers import Analysis, analyze
     from garrison.calibration import Calibration, calibrate
+    from garrison.certifying import Certified, certify
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
     from garrison.fitting import Fit, fit
@@ -73,6 +74,8 @@ _LATER = {
     "analyze": "answers",
     "Calibration": "calibration",
     "calibrate": "calibration",
+    "Certified": "certifying",
+    "certify": "certifying",
     "Fit": "fitting",
     "fit": "fitting",
     "Mitigated": "mitigation",
@@ -95,6 +98,7 @@ __all__ = [
     "Attack",
     "BoundKind",
     "Calibration",
+    "Certified",
     "Check",
     "Comparison",
     "DesignInfeasible",
@@ -121,6 +125,7 @@ __all__ = [
     "calibrate",
     "central_kalman",
     "certificate",
+    "certify",
     "check",
     "compare",
     "design",

@@ -227,10 +227,10 @@ def test_the_command_prints_words_tables_json_and_a_picture(tmp_path, capsys):
 
 def test_a_budget_ends_what_is_computed_inside():
     rng = np.random.default_rng(5)
-    C = rng.normal(size=(300, 6))
+    C = rng.normal(size=(300, 20))
     with gr.budget(1e-6), pytest.raises(gr.InvalidInput, match="used up"):
-        gr.observable(np.eye(6), C)
-    assert gr.observable(np.eye(6), C)
+        gr.observable(np.eye(20), C)
+    assert gr.observable(np.eye(20), C)
     with pytest.raises(gr.InvalidInput, match="seconds"):
         gr.budget(0.0)
     with gr.budget() as endless:

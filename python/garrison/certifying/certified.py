@@ -1,0 +1,73 @@
+"""The answer of gr.certify."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from garrison.numeric import numbers
+from garrison.words import count, refusal
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Certified:
+    """What is sure of the state at every sample: |x_i - center_i| <= box_i for all i, and ||x - center|| <= radius.
+
+    center, box (samples, n), radius (samples,): inf where the measurements so far cannot answer, nan where they refute
+    that at most `attacked` sources lie, or the model. proved: per sample the sources shown to lie. method: "bank" (one
+    Kalman filter per set of sources left out, over all samples so far) or "window" (one regression over the last
+    `window` samples). steady (n,): half widths that the bank never exceeds once its start has decayed, inf where no
+    certificate stays bounded; None with windows, or where there are too many sets to tell. failure: probability that
+    the region of a sample is wrong.
+    """
+
+    center: Array
+    box: Array
+    radius: Array
+    proved: list[list[str]]
+    sources: list[str]
+    attacked: int
+    failure: float
+    method: str
+    window: int
+    steady: Array | None
+
+    @property
+    def answered(self) -> NDArray[np.bool_]:
+        """(samples,): there is a region."""
+        return np.isfinite(self.radius)
+
+    @property
+    def refuted(self) -> NDArray[np.bool_]:
+        """(samples,): the measurements contradict the assumptions."""
+        return np.isnan(self.radius)
+
+    def bound(self, estimate: ArrayLike) -> Array:
+        """Bound on |estimate_i - x_i| per sample and state, for any estimate (samples, n)."""
+        found = numbers("estimate", estimate)
+        if found.shape != self.center.shape:
+            raise refusal("estimate", f"shape {found.shape}", f"{self.center.shape}, as center")
+        return np.where(self.answered[:, None], np.abs(found - self.center) + self.box, self.radius[:, None])
+
+    def __str__(self) -> str:
+        there = self.answered
+        names = sorted({name for some in self.proved for name in some})
+        liars = f"at most {self.attacked} of {count(len(self.sources), 'source')} lie"
+        lines = [
+            f"{self.method}: {liars}, failure probability {self.failure:g} a sample",
+            f"a region at {there.sum()} of {count(len(there), 'sample')}, refuted at {self.refuted.sum()}",
+        ]
+        if there.any():
+            lines.append(f"half widths, median: {_listed(np.median(self.box[there], axis=0))}")
+        if self.steady is not None:
+            lines.append(f"half widths for ever, whatever they say: {_listed(self.steady)}")
+        lines.append(f"proved to lie: {', '.join(names) or 'nobody'}")
+        return "\n".join(lines)
+
+
+def _listed(values: Array) -> str:
+    return ", ".join(f"{v:.3g}" for v in values)

@@ -1,0 +1,124 @@
+"""The two ways of gr.certify through a record: a bank of filters, and windows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison._core import certificate
+from garrison.certifying.plant import Plant
+
+Array = NDArray[np.float64]
+Levels = tuple[float, float, float]
+
+#: sets of sources left out up to which a window goes through all of them; beyond, leverages bound what they do
+MOST_SETS = 500
+
+
+class Record:
+    """What is sure at every sample, filled in as it is found."""
+
+    def __init__(self, samples: int, n: int) -> None:
+        self.center = np.full((samples, n), np.nan)
+        self.box = np.full((samples, n), np.inf)
+        self.radius = np.full(samples, np.inf)
+        self.proved: list[list[int]] = [[] for _ in range(samples)]
+
+    def take(self, t: int, found: certificate.WindowWitness, last: int = -1) -> bool:
+        """Whether there is a region. last: the step of a window that is sample t."""
+        self.radius[t] = found.radius
+        self.proved[t] = list(found.proved) or list(found.proved_at.get(last, []))
+        if found.center is None or found.box is None:
+            self.box[t] = found.radius
+            return False
+        self.center[t], self.box[t] = found.center, found.box
+        return True
+
+
+def in_window(plant: Plant, y: Array, s: int, levels: Levels, *, moving: bool) -> certificate.WindowWitness:
+    """W2M or W3M (docs/certificates.md, section 8) over these samples."""
+    window = plant.window(y)
+    if moving or comb(len(plant.names), s) > MOST_SETS:
+        return certificate.leverage_window(window, s, *levels, moving=moving)
+    return certificate.subsets_window(window, s, *levels, limit=MOST_SETS)
+
+
+def by_window(
+    plant: Plant, y: Array, s: int, failure: float, length: int, moving: bool, tell: Callable[[int], None]
+) -> Record:
+    """A window of the last samples for every sample: nothing older counts."""
+    record = Record(len(y), plant.n)
+    for t in range(len(y)):
+        part = y[max(0, t + 1 - length) : t + 1]
+        levels = certificate.window_levels(failure, max(part.size, 1), plant.n)
+        record.take(t, in_window(plant, part, s, levels, moving=moving), last=len(part) - 1)
+        tell(t + 1)
+    return record
+
+
+def bank_levels(failure: float, samples: int, outputs: int, n: int) -> Levels:
+    """Theorem B, section 9: the member that is right has to pass the tests of all samples so far."""
+    tests = certificate.two_sided(failure / 4.0 / max(samples * outputs, 1))
+    return tests, certificate.chi(failure / 8.0, n), certificate.two_sided(failure / 8.0 / n)
+
+
+def by_bank(
+    plant: Plant,
+    y: Array,
+    s: int,
+    failure: float,
+    length: int,
+    start: tuple[Array, Array] | None,
+    limit: int,
+    tell: Callable[[int], None],
+) -> Record:
+    """A bank over all samples, started from `start` or from the first window that answers; anew once it is refuted.
+
+    At most `failure` for the region of a sample: a quarter for the tests of the member that is right, over all samples;
+    a quarter for its region now; a quarter for the windows that a bank may start from, one a sample.
+    """
+    record = Record(len(y), plant.n)
+    bank = plant.bank(s, limit)
+    levels = bank_levels(failure, len(y), y.shape[1], plant.n)
+    ordered = y[:, plant.order]
+    running, first = start is not None, 0
+    if start is not None:
+        bank.start_gaussian(*start)
+    for t in range(len(y)):
+        if running:
+            found = bank.update(ordered[t], *levels, predict=not (t == 0 and start is not None))
+            running = record.take(t, found)
+            first = t + 1
+        else:
+            part = y[max(first, t + 1 - length) : t + 1]
+            share = certificate.window_levels(failure / 4.0 / len(y), max(part.size, 1), plant.n)
+            found = in_window(plant, part, s, share, moving=False)
+            running = record.take(t, found)
+            if running:
+                bank.restart(found.region)
+            elif np.isnan(found.radius):
+                first = t + 1
+        tell(t + 1)
+    return record
+
+
+def steady(plant: Plant, s: int, failure: float, samples: int, most_pairs: float) -> Array | None:
+    """Theorem B2; None where too many pairs of sets would have to be gone through."""
+    m = len(plant.names)
+    members = comb(m, s)
+    pairs = members * comb(m - s, s) if m >= 2 * s else 0
+    if pairs == 0:
+        return np.full(plant.n, np.inf)
+    if pairs * plant.n**3 > most_pairs:
+        return None
+    z1, _, _ = bank_levels(failure, samples, len(plant.rows), plant.n)
+    z2 = certificate.chi(failure / 8.0 / members, plant.n)
+    zc = certificate.two_sided(failure / 8.0 / plant.n / members)
+    try:
+        return plant.steady(s, (z1, z2, zc), pairs)
+    except _core.InvalidInput:
+        return None

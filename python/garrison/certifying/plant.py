@@ -1,0 +1,100 @@
+"""A plant in the form that certificates with memory take: outputs with independent noise, grouped by source."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison import _core
+from garrison._core import certificate
+from garrison.words import refusal
+
+Array = NDArray[np.float64]
+
+
+class Plant:
+    """A, Gam with Gam Gam' = Q, and rows of unit noise variance, each with its source."""
+
+    def __init__(self, model: _core.Model) -> None:
+        Q, R = model.process_covariance, model.measurement_covariance
+        if Q is None or R is None or isinstance(Q, list):
+            had = "one per agent" if isinstance(Q, list) else "no covariance of the noise"
+            raise refusal("model", had, "one process_covariance for all, and measurement_covariance")
+        self.n = model.states
+        self.A, self.Q = np.asarray(model.A, dtype=float), np.asarray(Q, dtype=float)
+        self.root = _root(self.Q)
+        given = list(model.sources) or [
+            name for name, C in zip(model_agents(model), model.C, strict=True) for _ in range(len(C))
+        ]
+        self.names = list(dict.fromkeys(given))
+        places = {name: k for k, name in enumerate(self.names)}
+        self.source = np.array([places[name] for name in given], dtype=int)
+        self.factors = _factors([np.atleast_2d(r) for r in R], self.source)
+        rows = [np.asarray(C, dtype=float).reshape(-1, self.n) for C in model.C]
+        self.rows = np.concatenate([np.linalg.solve(L, C) for L, C in zip(self.factors, rows, strict=True)])
+        #: outputs in the order of their sources, as a bank takes them
+        self.order = np.argsort(self.source, kind="stable")
+
+    def whitened(self, y: Array) -> Array:
+        """(samples, outputs) of unit variance; an output is missing where one is that its noise depends on."""
+        out, at = np.array(y, dtype=float), 0
+        for L in self.factors:
+            block = out[:, at : at + len(L)]
+            for k in range(len(L)):
+                earlier = np.flatnonzero(L[k, :k])
+                block[:, k] = (block[:, k] - block[:, earlier] @ L[k, earlier]) / L[k, k]
+            at += len(L)
+        return out
+
+    def bank(self, s: int, limit: int) -> certificate.Bank:
+        """One Kalman filter per set of s sources left out."""
+        return certificate.Bank(self.A, self.Q, self._sources(), s, limit)
+
+    def steady(self, s: int, levels: tuple[float, float, float], limit: int) -> Array:
+        """Half widths that a bank never exceeds (theorem B2)."""
+        return certificate.bank_steady(self.A, self.Q, self._sources(), s, *levels, limit)[: self.n]
+
+    def window(self, y: Array) -> certificate.Window:
+        """One regression over these samples (whitened)."""
+        found = certificate.Window(self.n, self.root.shape[1], len(y), len(self.names), max(y.size, 1))
+        found.begin(len(y))
+        for k, sample in enumerate(y):
+            if k > 0:
+                found.advance(self.A, self.root, np.zeros(self.n))
+            for source, row, value in zip(self.source, self.rows, sample, strict=True):
+                found.add(int(source), row, value, 1.0)
+        return found
+
+    def _sources(self) -> list[tuple[Array, Array]]:
+        parts = [self.rows[self.source == k] for k in range(len(self.names))]
+        return [(C, np.ones(len(C))) for C in parts]
+
+
+def model_agents(model: _core.Model) -> list[str]:
+    """What agents are called as sources."""
+    return [f"agent {i}" for i in range(model.agents)]
+
+
+def _root(Q: Array) -> Array:
+    values, vectors = np.linalg.eigh((Q + Q.T) / 2)
+    kept = values > 1e-14 * max(float(values.max()), 0.0)
+    return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+
+
+def _factors(R: list[Array], source: NDArray[np.int_]) -> list[Array]:
+    """L with R_i = L L' per agent; noise that two sources share is refused: each could then falsify the other's."""
+    found: list[Array] = []
+    at = 0
+    for i, covariance in enumerate(R):
+        own = source[at : at + len(covariance)]
+        at += len(covariance)
+        if (covariance[own[:, None] != own[None, :]] != 0).any():
+            raise refusal(
+                f"measurement_covariance[{i}]", "noise that outputs of several sources share", "independent noise",
+                "give these outputs one source",
+            )  # fmt: skip
+        try:
+            found.append(np.asarray(np.linalg.cholesky(covariance), dtype=float))
+        except np.linalg.LinAlgError:
+            raise refusal(f"measurement_covariance[{i}]", "a singular matrix", "a positive definite one") from None
+    return found

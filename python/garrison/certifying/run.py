@@ -1,0 +1,140 @@
+"""gr.certify."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import comb
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from garrison import _core, arguments
+from garrison.certifying.certified import Certified
+from garrison.certifying.methods import by_bank, by_window, steady
+from garrison.certifying.plant import Plant
+from garrison.drivers import output_names
+from garrison.numeric import matched, numbers
+from garrison.words import hinted, refusal, shown
+
+Array = NDArray[np.float64]
+
+#: filters of a bank up to which "auto" takes one
+_MOST_MEMBERS = 3000
+_LONGEST_WINDOW = 1000
+#: pairs of sets, times states cubed, up to which the bank's half widths for ever are worked out
+_MOST_PAIRS = 2e6
+METHODS = ("auto", "bank", "window")
+
+
+@hinted
+def certify(
+    model: _core.Model,
+    measurements: ArrayLike,
+    *,
+    attacked: int,
+    failure: float = 1e-6,
+    method: str = "auto",
+    window: int = 20,
+    moving: bool = False,
+    start: ArrayLike | None = None,
+    start_covariance: ArrayLike | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Certified:
+    """Certify the state from measurements alone: a region that holds whatever at most `attacked` sources say.
+
+    Who can falsify a measurement is its source (`sources` of the model; every agent is one where none are given):
+    redundancy of sources counts, not of numbers. A bank of filters stays bounded exactly where the plant is detectable
+    without any 2 * attacked sources. Definitions and proofs: docs/certificates.md, sections 8 and 9.
+
+    Parameters
+    ----------
+    model : Model
+        With process_covariance and measurement_covariance of white Gaussian noise: noise that remembers its past
+        voids the certificate.
+    measurements : (samples, outputs) array
+        nan or masked = missing. A pandas table with columns named as the model's outputs is matched by name.
+    attacked : int
+        Most sources that lie, >= 0: always the same ones, or (moving) other ones at every sample.
+    failure : float
+        Probability that the region of a sample is wrong, in (0, 1).
+    method : str
+        "bank", "window", or "auto": a bank where the liars do not change and it has at most 3000 filters.
+    window : int
+        Samples of a window, 1..1000; also of the window that a bank starts from, where `start` is not given.
+    moving : bool
+        The liars may change from sample to sample.
+    start, start_covariance : (n,) and (n, n) array, optional
+        For a bank: mean and covariance of the state at the first sample, before its measurements.
+    progress : callable, optional
+        progress(done, total) is called after every sample.
+
+    Returns
+    -------
+    Certified
+        Prints in words.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
+    """
+    if not isinstance(model, _core.Model):
+        raise refusal("model", shown(model), "a garrison.Model")
+    plant = Plant(model)
+    y = numbers("measurements", matched("measurements", measurements, output_names(model)))
+    if y.ndim != 2 or y.shape[1] != len(plant.rows):
+        raise refusal("measurements", f"shape {y.shape}", f"(samples, {len(plant.rows)}), a column per output")
+    if np.isinf(y).any():
+        raise refusal("measurements", "an infinite number", "finite numbers, nan = missing")
+    s = arguments.whole("attacked", attacked, 0, len(plant.names))
+    failure = arguments.number("failure", failure)
+    if not 0.0 < failure < 1.0:
+        raise refusal("failure", f"{failure:g}", "a probability in (0, 1)")
+    moving = arguments.flag("moving", moving)
+    length = arguments.whole("window", window, 1, _LONGEST_WINDOW)
+    chosen = _method(method, moving, comb(len(plant.names), s))
+    first = _start(model.states, start, start_covariance, chosen)
+    tell = arguments.callback("progress", progress)
+    told = (lambda done: tell(done, len(y))) if tell else (lambda _: None)
+    white = plant.whitened(y)
+    if chosen == "bank":
+        record = by_bank(plant, white, s, failure, length, first, _MOST_MEMBERS, told)
+    else:
+        record = by_window(plant, white, s, failure, length, moving, told)
+    return Certified(
+        center=record.center,
+        box=record.box,
+        radius=record.radius,
+        proved=[[plant.names[k] for k in some] for some in record.proved],
+        sources=plant.names,
+        attacked=s,
+        failure=failure,
+        method=chosen,
+        window=length,
+        steady=steady(plant, s, failure, len(y), _MOST_PAIRS) if chosen == "bank" else None,
+    )
+
+
+def _method(method: Any, moving: bool, members: int) -> str:
+    (chosen,) = arguments.choices("method", arguments.text("method", method), METHODS)
+    if chosen == "auto":
+        return "window" if moving or members > _MOST_MEMBERS else "bank"
+    if chosen == "bank" and moving:
+        raise refusal("method", "'bank' with moving = True", "'window'", "a bank needs liars that never change")
+    if chosen == "bank" and members > _MOST_MEMBERS:
+        raise refusal("method", f"a bank of {members} filters", f"at most {_MOST_MEMBERS}", "use method = 'window'")
+    return chosen
+
+
+def _start(n: int, mean: ArrayLike | None, covariance: ArrayLike | None, method: str) -> tuple[Array, Array] | None:
+    if mean is None and covariance is None:
+        return None
+    if mean is None or covariance is None:
+        raise refusal("start, start_covariance", "one of them", "both or none")
+    if method == "window":
+        raise refusal("start", "a start for windows", "none", "a window knows nothing but its own samples")
+    x0, P0 = numbers("start", mean), numbers("start_covariance", covariance)
+    if x0.shape != (n,) or P0.shape != (n, n):
+        raise refusal("start, start_covariance", f"shapes {x0.shape} and {P0.shape}", f"{(n,)} and {(n, n)}")
+    return x0, P0

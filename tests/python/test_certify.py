@@ -1,0 +1,174 @@
+"""gr.certify: regions hold whatever the liars say, and say where there is none."""
+
+import garrison as gr
+import numpy as np
+import pytest
+
+Array = np.ndarray
+
+
+def double_integrator(positions: int = 6, sources: list[str] | None = None) -> gr.Model:
+    """Section 11 of the tables in docs/certificates.md: period .1, acceleration .5, positions 1."""
+    dt = 0.1
+    push = 0.5 * np.array([[dt * dt / 2], [dt]])
+    return gr.Model(
+        [[1, dt], [0, 1]],
+        [[[1.0, 0.0]]] * positions,
+        process_covariance=push @ push.T,
+        measurement_covariance=1.0,
+        sources=sources,
+    )
+
+
+def record(model: gr.Model, samples: int, seed: int) -> tuple[Array, Array]:
+    """States and measurements of a plant from a random start."""
+    rng = np.random.default_rng(seed)
+    Q = np.asarray(model.process_covariance)
+    values, vectors = np.linalg.eigh(Q)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    x, states, rows = rng.normal(size=model.states), [], []
+    for _ in range(samples):
+        x = np.asarray(model.A) @ x + root @ rng.normal(size=model.states)
+        states.append(x)
+        noise = [np.linalg.cholesky(R) @ rng.normal(size=len(R)) for R in model.measurement_covariance]
+        rows.append(np.concatenate([C @ x + v for C, v in zip(model.C, noise, strict=True)]))
+    return np.array(states), np.array(rows)
+
+
+def inside(found: gr.Certified, x: Array) -> bool:
+    there = found.answered
+    return bool((np.abs(found.center - x)[there] <= found.box[there]).all())
+
+
+@pytest.mark.parametrize(("lie", "box", "proved"), [(0.0, 1.09, 0), (2.0, 1.51, 0), (60.0, 0.95, 2)])
+def test_positions_of_a_moving_body_are_certified_within_the_figures_of_the_docs(
+    lie: float, box: float, proved: int
+) -> None:
+    model = double_integrator()
+    x, y = record(model, 300, 1)
+    y[:, :2] += lie
+    found = gr.certify(model, y, attacked=2)
+    assert found.method == "bank"
+    assert inside(found, x)
+    assert found.answered[1:].all()
+    assert not found.answered[0]  # one position is no speed
+    # Levels here are for all samples together, those of the docs for one: 5 % wider.
+    assert np.median(found.box[100:, 0]) == pytest.approx(box, rel=0.12)
+    assert len(found.proved[-1]) == proved
+    assert found.steady is not None
+    assert (np.median(found.box[100:], axis=0) <= found.steady).all()
+
+
+def test_no_region_where_nobody_can_tell() -> None:
+    model = double_integrator(positions=4)
+    _, y = record(model, 60, 2)
+    found = gr.certify(model, y, attacked=2)  # two against two
+    assert found.steady is not None
+    assert np.isinf(found.steady).all()
+    same = gr.certify(double_integrator(6, ["receiver"] * 6), record(double_integrator(), 60, 2)[1], attacked=1)
+    assert not same.answered.any()  # six numbers, one source
+    assert np.isinf(same.radius).all()
+    assert "a region at 0 of 60 samples" in str(same)
+
+
+@pytest.mark.parametrize("method", ["bank", "window"])
+def test_regions_hold_on_random_plants_with_losses_and_any_lies(method: str) -> None:
+    rng = np.random.default_rng(3)
+    answered = violated = innocent = 0
+    for k in range(60):
+        n, agents = int(rng.integers(1, 4)), int(rng.integers(3, 8))
+        A = np.linalg.qr(rng.normal(size=(n, n)))[0] * rng.uniform(0.8, 1.05)
+        outputs = [int(rng.integers(1, 3)) for _ in range(agents)]
+        roots = [rng.normal(size=(m, m)) for m in outputs]
+        model = gr.Model(
+            A,
+            [rng.normal(size=(m, n)) for m in outputs],
+            process_covariance=0.1 * np.eye(n),
+            measurement_covariance=[L @ L.T + 0.1 * np.eye(len(L)) for L in roots],
+            sources=[f"s{i}" for i, m in enumerate(outputs) for _ in range(m)],
+        )
+        x, y = record(model, 40, 100 + k)
+        s = int(rng.integers(0, (agents + 1) // 2))
+        first = np.concatenate([[0], np.cumsum(outputs)])
+        liars = rng.choice(agents, size=s, replace=False)
+        for i in liars:
+            y[5:, first[i] : first[i + 1]] += rng.choice([0.5, 3.0, 100.0]) * rng.normal()
+        y[rng.uniform(size=y.shape) < 0.2] = np.nan
+        found = gr.certify(model, y, attacked=s, method=method, window=8)
+        answered += int(found.answered.sum())
+        violated += int(not inside(found, x))
+        innocent += len({name for some in found.proved for name in some} - {f"s{i}" for i in liars})
+        assert not found.refuted.any()
+    assert answered > 1000
+    assert violated == 0
+    assert innocent == 0
+
+
+def test_too_many_liars_are_told_and_the_bank_starts_anew() -> None:
+    model = double_integrator()
+    x, y = record(model, 200, 5)
+    y[80:100, :3] += np.array([40.0, -60.0, 90.0])  # three of six, at most one was asked for
+    found = gr.certify(model, y, attacked=1)
+    assert found.refuted[80]
+    assert found.answered[-50:].all()
+    assert inside_from(found, x, 130)
+
+
+def inside_from(found: gr.Certified, x: Array, first: int) -> bool:
+    return bool((np.abs(found.center - x)[first:] <= found.box[first:]).all())
+
+
+def test_liars_that_change_every_sample() -> None:
+    model = double_integrator()
+    x, y = record(model, 80, 6)
+    rng = np.random.default_rng(6)
+    for t in range(len(y)):
+        y[t, rng.choice(6, size=1)] += 50.0
+    found = gr.certify(model, y, attacked=1, moving=True)
+    assert found.method == "window"
+    assert inside(found, x)
+    assert found.answered[10:].all()
+    bound = found.bound(x + 1.0)
+    assert (bound[10:] >= 1.0).all()
+
+
+def test_a_known_start_is_used() -> None:
+    model = double_integrator()
+    x, y = record(model, 20, 7)
+    found = gr.certify(model, y, attacked=1, start=[0.0, 0.0], start_covariance=4.0 * np.eye(2))
+    assert found.answered.all()
+    assert inside(found, x)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"attacked": 7}, "attacked: got 7, expected a whole number in 0..6"),
+        ({"attacked": 1, "failure": 0.0}, "failure: got 0, expected a probability"),
+        ({"attacked": 1, "method": "bnak"}, 'did you mean "bank"'),
+        ({"attacked": 1, "method": "bank", "moving": True}, "a bank needs liars that never change"),
+        ({"attacked": 1, "start": [0.0, 0.0]}, "one of them, expected both or none"),
+        ({"attacked": 1, "window": 0}, "window: got 0"),
+    ],
+)
+def test_what_does_not_fit_is_refused(given: dict, message: str) -> None:
+    model = double_integrator()
+    with pytest.raises(gr.InvalidInput, match=message.replace(".", r"\.")):
+        gr.certify(model, record(model, 5, 8)[1], **given)
+
+
+def test_models_that_certificates_cannot_use_are_refused() -> None:
+    y = np.zeros((4, 2))
+    with pytest.raises(gr.InvalidInput, match="no covariance of the noise"):
+        gr.certify(gr.Model([[1.0]], [[[1.0]], [[1.0]]]), y, attacked=0)
+    shared = gr.Model(
+        [[1.0]],
+        [[[1.0], [1.0]]],
+        process_covariance=1.0,
+        measurement_covariance=[[[1.0, 0.5], [0.5, 1.0]]],
+        sources=["a", "b"],
+    )
+    with pytest.raises(gr.InvalidInput, match="several sources share"):
+        gr.certify(shared, y, attacked=0)
+    with pytest.raises(gr.InvalidInput, match="measurements"):
+        gr.certify(double_integrator(), np.zeros((4, 5)), attacked=1)
