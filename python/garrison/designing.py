@@ -12,6 +12,7 @@ import numpy as np
 from garrison import _core, arguments
 from garrison._core import saturation
 from garrison.checks import Check, check
+from garrison.drawing import drawn
 from garrison.drivers import simulate
 from garrison.filters import make_filter
 from garrison.words import hinted, near, refusal, require_plant
@@ -61,10 +62,7 @@ class Designed:
 
     def plot(self) -> Figure:
         """Bytes per sample against the certified error (extra: plot)."""
-        from garrison.figures import design_figure
-
-        figure: Figure = design_figure(self)
-        return figure
+        return drawn("design_figure", self)
 
 
 @hinted

@@ -16,6 +16,7 @@ from garrison.answers.questions import QUESTIONS, Questions
 from garrison.answers.removals import Removal
 from garrison.answers.sensors import sensors_of
 from garrison.answers.watch import Progress, Watch
+from garrison.drawing import drawn
 from garrison.words import count, hinted, refusal, require_plant, shown
 
 if TYPE_CHECKING:
@@ -77,10 +78,7 @@ class Analysis:
 
     def plot(self) -> Figure:
         """Limits, leverages and the network with what must not fail, as a figure (extra: plot)."""
-        from garrison.figures import analysis_figure
-
-        figure: Figure = analysis_figure(self)
-        return figure
+        return drawn("analysis_figure", self)
 
 
 @hinted

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core, arguments
 from garrison.comparison.baselines import BASELINES, DISTRIBUTED, Plant, plant_of
 from garrison.comparison.contestants import attacks_for, filters_for, typical_size
+from garrison.drawing import drawn
 from garrison.drivers import central_kalman, simulate
 from garrison.families import family_of
 from garrison.prepared import prepare
@@ -101,10 +102,7 @@ class Comparison:
 
     def plot(self) -> Figure:
         """95 % quantiles of the errors as a map of filters and attacks (extra: plot)."""
-        from garrison.figures import comparison_figure
-
-        figure: Figure = comparison_figure(self)
-        return figure
+        return drawn("comparison_figure", self)
 
 
 @hinted

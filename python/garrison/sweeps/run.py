@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from garrison import _core, arguments
+from garrison.drawing import drawn
 from garrison.scenario import read_document
 from garrison.scenario.overrides import digest, overridden
 from garrison.sweeps.grid import Point, points_of
@@ -53,10 +54,7 @@ class Sweep:
 
     def plot(self) -> Figure:
         """Errors over the values: bands for one key, maps for two (extra: plot)."""
-        from garrison.figures import sweep_figure
-
-        figure: Figure = sweep_figure(self)
-        return figure
+        return drawn("sweep_figure", self)
 
 
 @hinted
