@@ -1,8 +1,8 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev test test-fast fuzz lint format bench deb board docs clean
+.PHONY: help setup run dev test test-fast fuzz lint format bench deb deb-check wheel abi board docs clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
-cpp = $(shell find include src bindings tests bench -name '*.hpp' -o -name '*.cpp')
+cpp = $(shell find include src bindings tests bench examples -name '*.hpp' -o -name '*.cpp')
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -10,8 +10,8 @@ help: ## this list
 setup: ## install what is missing: Debian packages, .venv, garrison
 	@tools/setup.sh
 
-run: setup ## the main job: Irish wind with hijacked stations, report in out/wind
-	@.venv/bin/garrison run examples/wind/hijacked.toml -o out/wind --force
+run: ## the main job: Irish wind with hijacked stations, report in out/wind
+	@tools/run.sh
 
 dev: ## build quickly for a developer, few dimensions; then PYTHONPATH=python .venv/bin/pytest
 	@tools/dev.sh
@@ -51,6 +51,15 @@ bench: ## measure against the peers; results in bench/results
 
 deb: ## Debian packages for this machine, in dist/
 	@tools/deb.sh
+
+deb-check: ## lintian, then install, run and remove the packages of dist/ in a clean Debian 12, and their own tests
+	@tests/package/debian.sh --all
+
+wheel: ## sdist and wheels in dist/, tried in bare environments; PYTHONS="python3.11 python3.12": more than one
+	@tools/wheel.sh $(PYTHONS)
+
+abi: ## compare the library of dist/ with that of an older release, OLD=folder of its packages
+	@tools/abi.sh $(OLD)
 
 board: ## node programs for a board, BOARD=arm64 or armhf, in build/board-BOARD
 	@tools/board.sh $(BOARD)

@@ -1,12 +1,26 @@
-"""man_pages.py FOLDER: manual pages of the command line, from its own parsers: garrison(1) and one per command."""
+"""man_pages.py FOLDER [PROGRAMS]: manual pages, from what the commands say of themselves.
+
+Of garrison and of every command of it, of garrison-net and garrison-web from their parsers; of the programs of a node,
+which lie in PROGRAMS, from what they print for --help.
+"""
 
 import argparse
 import re
+import subprocess
 import sys
 from pathlib import Path
 
 from garrison import __version__
 from garrison.cli import _parser
+from garrison.net import command as net
+from garrison.net.web import command as web
+
+PROGRAMS = {
+    "garrison-ctl": "ask a running node, or read what it left behind",
+    "garrison-keygen": "make the key of a node",
+    "garrison-node": "run one agent of a network over authenticated datagrams",
+    "garrison-relay": "stand between nodes of one machine, and lose or change what they send",
+}
 
 
 def roff(text: str) -> str:
@@ -54,20 +68,51 @@ def page(parser: argparse.ArgumentParser, name: str, summary: str, commands: lis
     return "\n".join([*lines, ".SH SEE ALSO", others, ""])
 
 
-def main(folder: Path) -> None:
+def program_page(name: str, summary: str, text: str) -> str:
+    """The page of a program that prints `text` for --help: its usage, and the rest as it stands."""
+    usage, _, rest = text.strip().partition("\n\n")
+    as_it_stands = [line.replace("\\", "\\e").replace("-", "\\-") for line in rest.splitlines()]
+    return "\n".join(
+        [
+            f'.TH "{name.upper()}" 1 "" "garrison {__version__}" "User Commands"',
+            ".SH NAME",
+            f"{roff(name)} \\- {roff(summary)}",
+            ".SH SYNOPSIS",
+            ".nf",
+            *(roff(line) for line in usage.removeprefix("usage:").splitlines()),
+            ".fi",
+            ".SH DESCRIPTION",
+            ".nf",
+            *as_it_stands,
+            ".fi",
+            "",
+        ]
+    )
+
+
+def pages_of(parser: argparse.ArgumentParser) -> dict[str, str]:
+    """The page of a command by its name, and one per command below it."""
+    name = parser.prog
+    below = next((a for a in parser._actions if isinstance(a, argparse._SubParsersAction)), None)
+    summaries = {a.dest: a.help or "" for a in below._choices_actions} if below else {}
+    commands = [(f"{name}-{sub}", summary) for sub, summary in summaries.items()]
+    others = ", ".join(f"\\fB{roff(other)}\\fR(1)" for other, _ in commands or [("garrison", "")])
+    pages = {name: page(parser, name, parser.description or "", commands, others)}
+    for sub, summary in summaries.items():
+        pages[f"{name}-{sub}"] = page(below.choices[sub], f"{name}-{sub}", summary, [], f"\\fB{roff(name)}\\fR(1)")
+    return pages
+
+
+def main(folder: Path, programs: Path | None) -> None:
     """Write them all."""
     folder.mkdir(parents=True, exist_ok=True)
-    parser = _parser()
-    (choices,) = (a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
-    summaries = {a.dest: a.help or "" for a in choices._choices_actions}
-    commands = [(f"garrison-{name}", summaries[name]) for name in choices.choices]
-    others = ", ".join(f"\\fB{roff(name)}\\fR(1)" for name, _ in commands)
-    pages = {"garrison": page(parser, "garrison", parser.description or "", commands, others)}
-    for name, sub in choices.choices.items():
-        pages[f"garrison-{name}"] = page(sub, f"garrison-{name}", summaries[name], [], "\\fBgarrison\\fR(1)")
+    pages = pages_of(_parser()) | pages_of(net._parser()) | pages_of(web._parser())
+    for name, summary in PROGRAMS.items() if programs else ():
+        said = subprocess.run([programs / name, "--help"], check=True, capture_output=True, text=True)
+        pages[name] = program_page(name, summary, said.stdout or said.stderr)
     for name, text in pages.items():
         (folder / f"{name}.1").write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]) if len(sys.argv) > 2 else None)

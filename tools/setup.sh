@@ -14,46 +14,7 @@ stop() {
 }
 
 # 1. System packages.
-have() { command -v "$1" >/dev/null; }
-installed() { [[ $(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null) == ii* ]]; }
-python_has_headers() { "$python" -c 'import pathlib, sysconfig as s; assert pathlib.Path(s.get_path("include"), "Python.h").exists()'; }
-missing=()
-need() { # PACKAGE TEST...
-  local package=$1
-  shift
-  "$@" 2>/dev/null || missing+=("$package")
-}
-need g++ have g++
-need cmake have cmake
-need ninja-build have ninja
-need ccache have ccache
-need make have make
-need pkg-config have pkg-config
-need libeigen3-dev installed libeigen3-dev
-need doctest-dev installed doctest-dev
-need nlohmann-json3-dev installed nlohmann-json3-dev
-need libsuitesparse-dev installed libsuitesparse-dev
-need libsodium-dev installed libsodium-dev
-need libtomlplusplus-dev installed libtomlplusplus-dev
-if [[ " $* " == *" bench "* ]]; then need coinor-libipopt-dev installed coinor-libipopt-dev; fi
-need python3 have "$python"
-need python3-venv "$python" -c 'import venv, ensurepip'
-need python3-dev python_has_headers
-
-if ((${#missing[@]})); then
-  line="apt-get install --yes --no-install-recommends ${missing[*]}"
-  have apt-get || stop "missing: ${missing[*]}" "this script installs with apt-get only; install what these Debian packages hold and repeat"
-  if [[ $(id -u) == 0 ]]; then
-    root=()
-  elif have sudo; then
-    root=(sudo)
-  else
-    stop "missing: ${missing[*]}" "neither root nor sudo; ask an administrator for:" "  $line"
-  fi
-  tools/stage.sh "apt-get update" "${root[@]}" apt-get update
-  tools/stage.sh "install ${missing[*]}" "${root[@]}" env DEBIAN_FRONTEND=noninteractive $line ||
-    stop "that line can be run by hand, as root:" "  $line"
-fi
+tools/system.sh "$@"
 
 # 2. The interpreter and its environment.
 version=$("$python" -c 'import sys; print("%d.%d.%d" % sys.version_info[:3])') || stop "$python does not run"
@@ -85,11 +46,18 @@ if ! fresh "$stamp" "$wanted"; then
   printf '%s\n' "$wanted" >"$stamp"
 fi
 
-sources=$(find CMakeLists.txt VERSION pyproject.toml README.md cmake include src bindings python -type f \
-  ! -name '*.pyc' ! -name '*.so' -print0 | LC_ALL=C sort -z | xargs -0 sha256sum | sha256sum)
+sources=$(tools/sources.sh)
 stamp=.venv/stamp-garrison
 if ! fresh "$stamp" "$sources"; then
-  tools/stage.sh "build and install garrison" "${pip[@]}" --no-build-isolation --no-deps \
-    --config-settings=build-dir=build/python .
+  # A wheel that `make wheel` made of these sources for this interpreter saves building them.
+  tag=$(.venv/bin/python -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+  wheel=$(ls dist/garrison-*-"$tag-$tag"-*.whl 2>/dev/null || true)
+  if [[ -n $wheel ]] && fresh dist/sources "$sources"; then
+    tools/stage.sh "install $wheel" "${pip[@]}" --no-deps --force-reinstall "$wheel"
+  else
+    echo "setup: garrison is built now, about four minutes on two cores; a wheel or the Debian packages need no build (docs/install.md)"
+    tools/stage.sh "build and install garrison" .venv/bin/python -m pip install -v --no-build-isolation --no-deps \
+      --config-settings=build-dir=build/python .
+  fi
   printf '%s\n' "$sources" >"$stamp"
 fi

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/engine/workers.hpp"
 
+#include <chrono>
 #include <csignal>
 #include <exception>
 
@@ -25,6 +26,13 @@ class SignalsBlocked {
  private:
   sigset_t before_;
 };
+
+/// What std::condition_variable::wait does. That one, compiled by gcc 12, asks for a libstdc++ of 2022
+/// (GLIBCXX_3.4.30), and a wheel would not run on systems of 2021.
+template <class Condition>
+void wait(std::condition_variable& told, std::unique_lock<std::mutex>& lock, const Condition& condition) {
+  while (!condition()) told.wait_until(lock, std::chrono::system_clock::now() + std::chrono::hours(1));
+}
 
 }  // namespace
 
@@ -57,7 +65,7 @@ void Workers::loop(int thread) {
   while (true) {
     {
       std::unique_lock lock(mutex_);
-      start_.wait(lock, [&] { return stop_ || generation_ != seen; });
+      wait(start_, lock, [&] { return stop_ || generation_ != seen; });
       if (stop_) return;
       seen = generation_;
     }
@@ -85,7 +93,7 @@ void Workers::split(std::int64_t count, Task task) {
   start_.notify_all();
   run(0);
   std::unique_lock lock(mutex_);
-  done_.wait(lock, [&] { return pending_ == 0; });
+  wait(done_, lock, [&] { return pending_ == 0; });
 }
 
 }  // namespace garrison

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs garrison into a temporary prefix, then builds and runs a foreign project against it,
-# by CMake and by pkg-config.
+# Installs garrison into a temporary prefix, then builds and runs foreign projects against it, by CMake and by pkg-config
+# and with other flags, and as a subdirectory of one; the examples of the documentation; nodes under qemu.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d)
@@ -15,12 +15,21 @@ tools/stage.sh "package: CMake" cmake -G Ninja -S tests/package -B "$work/build"
 tools/stage.sh "package: build" cmake --build "$work/build"
 tests/package/programs.sh "$work/build"
 
+tools/stage.sh "examples: CMake" cmake -G Ninja -S examples/cpp -B "$work/examples" -DCMAKE_PREFIX_PATH="$work/prefix"
+tools/stage.sh "examples: build" cmake --build "$work/examples"
+python3 tests/package/examples.py "$work/examples"
+
+tools/stage.sh "subdirectory: CMake" cmake -G Ninja -S tests/package/subdirectory -B build/subdirectory -DCMAKE_BUILD_TYPE=Release
+tools/stage.sh "subdirectory: build" cmake --build build/subdirectory
+build/subdirectory/uses_garrison
+
 PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name garrison.pc)")
 export PKG_CONFIG_PATH
 # shellcheck disable=SC2046  # the flags are meant to be split
 g++ -std=c++20 tests/package/main.cpp -o "$work/by_pkg_config" $(pkg-config --cflags --libs garrison)
 "$work/by_pkg_config"
 tests/package/abi.sh "$work"
+tests/package/flags.sh "$work"
 tests/package/alone.sh "$work/prefix/include"
 tests/package/processors.sh
 echo "package: both ways build and run"

@@ -76,3 +76,17 @@ def test_every_filter_has_a_page_with_its_parameters() -> None:
     text = "".join(p.read_text(encoding="utf-8") for p in (ROOT / "docs" / "filters").glob("*.md"))
     for info in _core.filter_infos():
         assert f"generated/parameters_{info['name']}.md" in text, f"docs/filters: no page shows {info['name']}"
+
+
+def test_every_class_of_the_headers_says_how_threads_may_use_it() -> None:
+    # Not the specialisations of a template, nor the classes inside of one.
+    template = r"(?:template <.*\n(?:  requires .*\n)?)?"
+    opening = re.compile(rf"^(.*)\n{template}class (?:GARRISON_EXPORT )?(\w+)(?: final)?(?: : .*)? \{{$", re.MULTILINE)
+    found = [
+        (path.name, name, before)
+        for path in sorted((ROOT / "include").rglob("*.hpp"))
+        for before, name in opening.findall(path.read_text(encoding="utf-8"))
+    ]
+    assert len(found) > 60
+    silent = [(file, name) for file, name, before in found if not before.startswith("/// Threads: ")]
+    assert not silent, f'got {silent}, expected "/// Threads: ..." as the last line above the class'

@@ -12,7 +12,8 @@ namespace garrison {
 /// Norms ||A^k|| (spectral) for k = 0, 1, ... and their sums. A chain of integrators with a short step has
 /// ||A|| > 1 and ||A||^k without bound, while ||A^k|| grows like a polynomial: after 60 s without measurement
 /// 1200 m, not 4e13.
-class GARRISON_EXPORT PowerNorms {
+/// Threads: constant once made; any number may share it.
+class PowerNorms {
  public:
   /// Table of `most` >= 1 powers of A (n x n, finite); beyond it ||A^(k + j)|| <= ||A^k|| ||A^j|| is used, so
   /// that every number stays an upper bound. @throws InvalidInput

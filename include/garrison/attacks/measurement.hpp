@@ -14,6 +14,7 @@
 namespace garrison {
 
 /// What an informed attacker may read: what each agent will predict and tolerate at the coming sample.
+/// Threads: one at a time.
 class GARRISON_EXPORT Victims {
  public:
   virtual ~Victims() = default;
@@ -29,6 +30,7 @@ struct Sample {
 };
 
 /// A measurement attack in one trial: may keep state from sample to sample.
+/// Threads: one at a time.
 class GARRISON_EXPORT MeasurementAttack {
  public:
   virtual ~MeasurementAttack() = default;
@@ -37,6 +39,7 @@ class GARRISON_EXPORT MeasurementAttack {
 };
 
 /// A recipe: immutable, shared by all trials.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT AttackPlan {
  public:
   explicit AttackPlan(Schedule schedule) : schedule_(std::move(schedule)) {}

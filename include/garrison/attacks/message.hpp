@@ -27,6 +27,7 @@ struct Hop {
 };
 
 /// What lying agents do to a message. Stateless: the result depends on its arguments only.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT MessageAttack {
  public:
   explicit MessageAttack(Schedule schedule) : schedule_(std::move(schedule)) {}

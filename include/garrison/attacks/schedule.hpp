@@ -15,6 +15,7 @@ namespace garrison {
 
 /// Attacked sets over time. Phase k is in force from its `start` until the next phase's start, the last one
 /// until `stop` (excluded). With probability < 1 each agent is attacked at each time independently.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Schedule {
  public:
   static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();

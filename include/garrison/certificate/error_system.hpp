@@ -37,10 +37,9 @@ GARRISON_EXPORT ErrorSystem error_system(const MatrixRef& A, const MatrixRef& C,
 
 /// One step of the covariance of the noise part: M P M' + B_w Q B_w' + B diag(R) B'. Q: n x n; R: N
 /// variances.
-GARRISON_EXPORT Matrix next_covariance(const ErrorSystem& system, const Matrix& P, const MatrixRef& Q,
-                                       const VectorRef& R);
+Matrix next_covariance(const ErrorSystem& system, const Matrix& P, const MatrixRef& Q, const VectorRef& R);
 
 /// sqrt(lmax(P_ii)) of every agent, N numbers.
-GARRISON_EXPORT Vector block_deviations(const ErrorSystem& system, const Matrix& P);
+Vector block_deviations(const ErrorSystem& system, const Matrix& P);
 
 }  // namespace garrison::certificate

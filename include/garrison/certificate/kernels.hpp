@@ -29,6 +29,6 @@ struct Kernels {
 GARRISON_EXPORT Kernels kernels(const ErrorSystem& system, int window);
 
 /// ||block|| (largest singular value), without overflow. Finite entries.
-GARRISON_EXPORT double spectral_norm(const MatrixRef& block);
+double spectral_norm(const MatrixRef& block);
 
 }  // namespace garrison::certificate

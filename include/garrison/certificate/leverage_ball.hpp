@@ -32,6 +32,7 @@ struct Assumption {
 };
 
 /// Room for leverage_ball, sized once. Movable.
+/// Threads: one at a time.
 class GARRISON_EXPORT LeverageWorkspace {
  public:
   /// Enough for every Rows(states, sources, capacity) of these sizes. @throws InvalidInput for sizes < 1
@@ -60,6 +61,6 @@ GARRISON_EXPORT const Witness& leverage_ball(const Rows& rows, const Assumption&
 GARRISON_EXPORT Witness leverage_ball(const Rows& rows, const Assumption& a);
 
 /// What the checked forms of both witnesses refuse. @throws InvalidInput
-GARRISON_EXPORT void require(const Assumption& a, const Rows& rows);
+void require(const Assumption& a, const Rows& rows);
 
 }  // namespace garrison::certificate

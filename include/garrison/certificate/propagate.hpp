@@ -12,6 +12,7 @@ namespace garrison::certificate {
 /// Regions of ages 0..steps, prepared once so that ageing one at run time costs O(n^4) at most and does not
 /// allocate. Box and ellipsoid are carried coordinate by coordinate (G): a mode that only drifts costs what
 /// it drifts, not ||A^k||.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Propagation {
  public:
   /// ||w|| <= bw. A: n x n, finite; bw >= 0; steps >= 0. @throws InvalidInput

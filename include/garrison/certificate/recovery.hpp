@@ -16,6 +16,7 @@ struct LossState {
 
 /// Excess tables, the same for all agents. Functions at run time are O(1) and do not allocate; they expect
 /// states with lam <= t and x >= 0.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Recovery {
  public:
   /// Theorem L and Lemma 2: the homogeneous table (start 1, no noise, adaptive, moving set) with s attacked.

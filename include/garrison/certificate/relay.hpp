@@ -18,6 +18,7 @@ GARRISON_EXPORT Region averaged(const VectorRef& weights, const MatrixRef& estim
 
 /// min(sum |weight_k| b_k, min_k distance_k + b_k) step by step, without allocating: add every message that
 /// arrived, then ask.
+/// Threads: one at a time.
 class RelayedBound {
  public:
   /// `distance`: ||x_new - x_k||; `bound`: b_k, infinity or NaN = none.

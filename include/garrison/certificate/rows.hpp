@@ -12,6 +12,7 @@ namespace garrison::certificate {
 
 /// Rows y = c x + v with a source each. A source (a sensor, or an agent with several outputs) is attacked or
 /// honest as a whole. Sized once; `clear` and `add` do not allocate.
+/// Threads: several may read; whoever changes it is alone, as with standard containers.
 class GARRISON_EXPORT Rows {
  public:
   /// For at most `capacity` rows of sources 0..sources-1 and a state of `states` numbers, all >= 1.

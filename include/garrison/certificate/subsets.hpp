@@ -11,6 +11,7 @@ namespace garrison::certificate {
 inline constexpr int kMostSubsets = 5000;
 
 /// Room for witness_subsets, sized once. Movable.
+/// Threads: one at a time.
 class GARRISON_EXPORT SubsetsWorkspace {
  public:
   /// Enough for every Rows(states, sources, capacity) of these sizes and at most `limit` sets.
@@ -28,17 +29,17 @@ class GARRISON_EXPORT SubsetsWorkspace {
 
 /// How many sets witness_subsets would try; 0 when it answers without: nothing but liars at hand, or a
 /// refutation.
-GARRISON_EXPORT double subsets_to_try(const Rows& rows, const Assumption& a) noexcept;
+double subsets_to_try(const Rows& rows, const Assumption& a) noexcept;
 
 /// Theorem W3, Gaussian noise. Every set of (sources at hand - s) sources whose least-squares state explains
 /// its own rows is consistent; the region encloses their ellipsoids. A source in no consistent set is proved
 /// attacked. Fails with probability <= rows Q(z1) + delta(z2) + delta(z3); with sources at hand >= 2 s no
 /// honest source is reported as proved except with probability rows Q(z1) + 2 delta(z2) + 2 delta(z3). `z3`:
 /// chi(delta3, rows - n) for the rows of such a set, also tests the whole residual (only where the law of the
-/// noise is known); NaN = not used. Assumption::prior and ::bounded are not used. With `proved`, the attacked
-/// set must never change. Radius = infinity also when there are more sets than the workspace has room for:
-/// ask subsets_to_try(). Does not allocate, cannot fail; the answer lives in the workspace until the next
-/// call. O(sets (rows n^2 + n^3)). Expects what leverage_ball expects, and z3 >= 0 or NaN.
+/// noise is known); NaN = not used. Assumption::prior and Assumption::bounded are not used. With `proved`,
+/// the attacked set must never change. Radius = infinity also when there are more sets than the workspace has
+/// room for: ask subsets_to_try(). Does not allocate, cannot fail; the answer lives in the workspace until
+/// the next call. O(sets (rows n^2 + n^3)). Expects what leverage_ball expects, and z3 >= 0 or NaN.
 GARRISON_EXPORT const Witness& witness_subsets(const Rows& rows, const Assumption& a, double z3,
                                                SubsetsWorkspace& room) noexcept;
 

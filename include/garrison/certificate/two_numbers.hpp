@@ -12,6 +12,7 @@ namespace garrison::certificate {
 
 /// ||mean of e|| <= rho, ||stacked e - mean|| <= p, for any J(t) with row and column sums 1 and
 /// ||J(t) - 11'/N|| <= gamma(t). Bounded noise, adaptive level.
+/// Threads: one at a time.
 class GARRISON_EXPORT TwoNumbers {
  public:
   /// The constants of the recursion, in the letters of docs/certificates.md.

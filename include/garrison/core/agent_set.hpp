@@ -12,6 +12,7 @@ namespace garrison {
 
 /// Subset of {0, ..., agents-1}, one bit each. `resize` allocates, and assigning a set of another size.
 /// A single pointer: most filters keep no set, and states are read at every step.
+/// Threads: several may read; whoever changes it is alone, as with standard containers.
 class AgentSet {
  public:
   AgentSet() = default;

@@ -13,6 +13,7 @@ namespace garrison {
 
 /// Seconds from its construction, and a question asked while it is polled ("has somebody pressed Ctrl-C?").
 /// Copies share the clock. Once over, it stays over.
+/// Threads: one at a time.
 class GARRISON_EXPORT Budget {
  public:
   Budget() = default;  ///< without end
@@ -37,6 +38,7 @@ class GARRISON_EXPORT Budget {
 };
 
 /// Everything that this thread computes while the scope lives has this budget.
+/// Threads: of the thread that made it; other threads do not see it.
 class GARRISON_EXPORT BudgetScope {
  public:
   explicit BudgetScope(Budget budget);

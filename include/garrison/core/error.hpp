@@ -15,24 +15,28 @@
 namespace garrison {
 
 /// Base of everything garrison throws. The message says which, got, expected, and what to do.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// A number, shape, index or name that cannot be used (ValueError in Python).
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT InvalidInput : public Error {
  public:
   using Error::Error;
 };
 
 /// No parameters exist that meet what was asked.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT DesignInfeasible : public Error {
  public:
   using Error::Error;
 };
 
 /// A file that cannot be read or written (OSError in Python).
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT IoError : public Error {
  public:
   using Error::Error;

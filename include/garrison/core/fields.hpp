@@ -56,6 +56,7 @@ struct NumbersOf {
 };
 
 /// All fields of one message, in the order in which they are listed.
+/// Threads: one at a time.
 class FieldList : public NumbersOf<FieldList> {
  public:
   static constexpr std::size_t kMost = 12;

@@ -14,6 +14,7 @@ namespace garrison {
 ///
 /// The engine passes the message array of the whole network and one row of slots (no copy); a node
 /// passes its mailbox and the slots that arrived. A message that was lost has no slot.
+/// Threads: several may read; whoever changes it is alone, as with standard containers.
 template <class Message>
 class Inbox {
  public:

@@ -13,6 +13,7 @@ namespace garrison {
 /// A finite set of ids, or the complement of one, as a sorted list in memory that is sized once. Its size
 /// does not depend on the number of vehicles: N vehicles hold three such sets each, which would be N^2 bits.
 /// Operations that need more room than there is change nothing and return false.
+/// Threads: several may read; whoever changes it is alone, as with standard containers.
 class LabelSet {
  public:
   LabelSet() = default;

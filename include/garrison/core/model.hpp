@@ -44,6 +44,7 @@ struct GARRISON_EXPORT Labels {
 /// Immutable once built. C_i may have any number of rows; an agent without sensors (a relay) has none.
 /// Measurements of the whole network are kept flat, agent by agent: agent i owns the entries
 /// offset(i) .. offset(i+1)-1.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Model {
  public:
   /// `A`: n x n, finite. `C`: one m_i x n matrix per agent, finite (m_i = 0 allowed), at least one agent.

@@ -23,6 +23,7 @@ struct LaplacianSpectrum {
 
 /// In-neighbour lists of N agents. Immutable once built; every list is sorted by agent id.
 /// An edge given twice counts once.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Network {
  public:
   /// `names`: what people call the agents, one each; empty = no names. No filter reads them.

@@ -27,6 +27,7 @@ inline std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
 }
 
 /// Random numbers of one purpose and trial. `draw` addresses them by (time, agent, index).
+/// Threads: constant once made; any number may share it.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint32_t trial, Purpose purpose, std::uint32_t salt = 0)

@@ -14,6 +14,7 @@ inline constexpr int kLanes = 8;
 
 /// Steps kLanes independent trials of a whole network at once. Every operation acts lane by lane, so each
 /// trial has the bits it would have alone.
+/// Threads: one at a time.
 class GARRISON_EXPORT TrialsRunner {
  public:
   virtual ~TrialsRunner() = default;

@@ -23,6 +23,7 @@ struct WorldOptions {
 };
 
 /// The plants of all agents in one trial. A driver asks for time 0, 1, 2, ... in this order.
+/// Threads: one at a time.
 class GARRISON_EXPORT World {
  public:
   virtual ~World() = default;

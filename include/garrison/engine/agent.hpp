@@ -18,10 +18,11 @@ namespace garrison {
 
 /// The same agent as inside the engine, with the same bits: `sense` once per sample, then per round `deliver`
 /// what came and `fuse`. Nothing is allocated after construction but by `reset` and what returns vectors. It
-/// holds its own part of the gains only. One thread at a time.
+/// holds its own part of the gains only.
 ///
 /// Time is the driver's. An agent is at sample t, in round r of it, or between samples (round() == rounds()).
 /// It starts, at the first sample less one, with the estimate zero.
+/// Threads: one at a time.
 class GARRISON_EXPORT Agent {
  public:
   /// What a call has to send, or why it was refused. No bytes and no refusal: the estimate is of no use (not

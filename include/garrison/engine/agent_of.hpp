@@ -16,6 +16,7 @@
 
 namespace garrison {
 
+/// Threads: one at a time.
 template <class F, int n>
 class AgentOf final : public Agent {
   static_assert(Filter<F, n>);

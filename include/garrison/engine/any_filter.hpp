@@ -22,8 +22,8 @@ namespace garrison {
 
 class AnyFilter;
 
-/// A filter designed for one model and network; makes any number of runners and agents from it. Constant:
-/// threads may share it.
+/// A filter designed for one model and network; makes any number of runners and agents from it.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Prepared {
  public:
   virtual ~Prepared() = default;
@@ -65,6 +65,7 @@ GARRISON_EXPORT std::shared_ptr<const Prepared> certified(const Prepared& prepar
                                                           const certificate::Wanted& wanted);
 
 /// A filter with its parameters.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT AnyFilter {
  public:
   virtual ~AnyFilter() = default;

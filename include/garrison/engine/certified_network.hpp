@@ -15,6 +15,7 @@ namespace garrison {
 /// The engine says which messages arrived; what they carry for the certificate travels here. Agents are in
 /// order of public id. The same bits as agents that are driven by bytes; nothing is allocated after
 /// construction.
+/// Threads: one at a time.
 class GARRISON_EXPORT CertifiedNetwork {
  public:
   CertifiedNetwork(std::shared_ptr<const certificate::Plan> plan, const Network& network, int rounds);

@@ -23,6 +23,7 @@ struct Links {
   std::span<const int> receivers;
 };
 
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Channel {
  public:
   virtual ~Channel() = default;
@@ -45,6 +46,7 @@ struct Lost {
 
 /// Every message meets its fate independently; drop and delay are probabilities in [0, 1]. The result depends
 /// on sample, round, sender, receiver, seed and trial only.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT SeededFaults final : public Channel {
  public:
   /// @throws InvalidInput when a probability is outside [0, 1]

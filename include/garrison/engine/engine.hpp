@@ -26,6 +26,7 @@ inline constexpr int kAgentsPerThread = 20000;
 /// Runs filter F for all agents. Agents are kept in an order in which neighbours are near (private; public
 /// ids everywhere outside). Each agent writes only its own state and its inbox is in order of sender id, so
 /// the result does not depend on the number of threads. Nothing is allocated after `reset`.
+/// Threads: one at a time.
 template <class F, int n>
 class Engine final : public Runner {
   static_assert(Filter<F, n>);

@@ -35,6 +35,7 @@ std::unique_ptr<Agent> agent_of(Part<F> part) {
   });
 }
 
+/// Threads: constant once made; any number may share it.
 template <class F>
 class PreparedOf final : public Prepared {
  public:
@@ -142,6 +143,7 @@ class PreparedOf final : public Prepared {
   mutable std::uint64_t fingerprint_ = 0;
 };
 
+/// Threads: constant once made; any number may share it.
 template <class F>
 class FilterOf final : public AnyFilter {
  public:

@@ -33,6 +33,7 @@ struct GARRISON_EXPORT LinkCounters {
 };
 
 /// Faults and lies of one run. Decides the fate of one message at a time; the engine turns it into slots.
+/// Threads: one at a time.
 class GARRISON_EXPORT Link {
  public:
   /// @throws InvalidInput when a probability is outside [0, 1], delay_rounds < 1 or an agent does not exist.

@@ -26,6 +26,7 @@ struct Wiring {
 /// place per lying edge. On perfect links every agent reads its neighbours' slots of the current buffer.
 /// Faults only rewrite slots: a lost or late message leaves its slot out, a forged one is written behind the
 /// honest ones and only the victim points to it.
+/// Threads: one at a time.
 template <class Message>
 class Mailroom {
  public:

@@ -24,6 +24,7 @@ struct Frame {
 };
 
 /// All agents of one network, one filter, one trial.
+/// Threads: one at a time.
 class GARRISON_EXPORT Runner {
  public:
   virtual ~Runner() = default;

@@ -15,6 +15,7 @@ namespace garrison {
 /// Keeps `threads - 1` threads waiting, or as many as can be started; `split` cuts [0, count) into one
 /// contiguous part per thread and returns when all are done. With one thread everything runs in the caller.
 /// The threads take no signals of the application.
+/// Threads: one caller at a time; `part` runs in all of its own.
 class GARRISON_EXPORT Workers {
  public:
   explicit Workers(int threads);

@@ -9,6 +9,7 @@
 
 namespace garrison::node {
 
+/// Threads: one at a time.
 class Authors {
  public:
   struct Setup {

@@ -26,6 +26,7 @@ struct Instant {
 };
 
 /// Fresh random keys: the system's in a node, seeded ones in a simulation.
+/// Threads: one at a time.
 class Random {
  public:
   virtual ~Random() = default;

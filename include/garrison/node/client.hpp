@@ -17,6 +17,7 @@
 
 namespace garrison::node {
 
+/// Threads: one at a time.
 class Client {
  public:
   /// @throws std::system_error when nobody answers at `path` ([socket].path of the node)

@@ -42,6 +42,7 @@ struct Sample {
 };
 
 /// What the state machine asks of its surroundings. Nothing here may call it back.
+/// Threads: one at a time.
 class Outlet {
  public:
   virtual ~Outlet() = default;
@@ -54,6 +55,7 @@ class Outlet {
   virtual void ended(const Sample& sample) noexcept = 0;
 };
 
+/// Threads: one at a time.
 class Core {
  public:
   enum class State : std::uint8_t {

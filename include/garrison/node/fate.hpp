@@ -71,6 +71,7 @@ constexpr Fate fate_of(Refusal refusal) {
 }
 
 /// How many of each.
+/// Threads: one at a time.
 class Fates {
  public:
   void count(Fate fate) noexcept { ++counts_[static_cast<std::size_t>(fate)]; }

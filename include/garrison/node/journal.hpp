@@ -69,6 +69,7 @@ inline void read_numbers(Bytes bytes, std::span<double> numbers) noexcept {
 
 /// Does again what a journal says. `wrong()` counts the estimates that differ in a bit and the calls that
 /// were refused this time.
+/// Threads: one at a time.
 class GARRISON_EXPORT Replay {
  public:
   /// `sent`, if there is one, is shown every body that comes of it: sample, round, body.

@@ -18,6 +18,7 @@
 
 namespace garrison::node {
 
+/// Threads: one at a time.
 class GARRISON_EXPORT LogWriter {
  public:
   /// @throws IoError

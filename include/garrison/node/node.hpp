@@ -12,6 +12,7 @@
 namespace garrison::node {
 
 /// What a node asks of the world around it. Nothing here may call it back.
+/// Threads: one at a time.
 class World {
  public:
   virtual ~World() = default;
@@ -31,6 +32,7 @@ struct Neighbour {
 };
 
 /// Changes frames before they are sealed: a liar who has keys. For simulations and tests of a network.
+/// Threads: one at a time.
 class Tamper {
  public:
   virtual ~Tamper() = default;
@@ -48,6 +50,7 @@ struct LinkView {
   bool timed = false;
 };
 
+/// Threads: one at a time.
 class Node final : private Outlet {
  public:
   /// Keeps references to agent, world and random.

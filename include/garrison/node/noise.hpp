@@ -7,6 +7,7 @@
 
 namespace garrison::node {
 
+/// Threads: one at a time.
 class Handshake {
  public:
   enum class Role : std::uint8_t { initiator, responder };

@@ -14,6 +14,7 @@ namespace garrison::node {
 /// up.
 using Prologue = std::array<std::byte, 64>;
 
+/// Threads: one at a time.
 class Peer {
  public:
   static constexpr Micros kRetry = 250'000;        ///< between initiations while there is no session

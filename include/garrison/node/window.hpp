@@ -8,6 +8,7 @@
 
 namespace garrison::node {
 
+/// Threads: one at a time.
 class Window {
  public:
   static constexpr std::uint64_t kWidth = 1024;

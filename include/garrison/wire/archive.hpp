@@ -27,6 +27,7 @@
 namespace garrison::wire {
 
 /// Bytes of known number, e.g. of a snapshot; how many would not have fitted is counted.
+/// Threads: one at a time.
 class FixedSink {
  public:
   explicit FixedSink(std::span<std::byte> room) : room_(room) {}
@@ -43,6 +44,7 @@ class FixedSink {
   std::size_t used_ = 0;
 };
 /// Bytes that grow, e.g. of a design file.
+/// Threads: one at a time.
 class GrowingSink {
  public:
   std::byte* more(std::size_t bytes) {
@@ -68,6 +70,7 @@ template <class T>
 concept Numbers = std::is_same_v<T, std::span<double>>;
 }  // namespace detail
 
+/// Threads: one at a time.
 template <class Sink>
 class Writer {
  public:
@@ -151,6 +154,7 @@ class Writer {
 
 /// Reads what a Writer wrote. `resize` = false: sizes must be those that the object has (a state after
 /// `init`), nothing is allocated. After the first refusal nothing more is read.
+/// Threads: one at a time.
 class Reader {
  public:
   Reader(std::span<const std::byte> bytes, int agents, bool resize)

@@ -23,6 +23,7 @@
 namespace garrison::wire {
 
 /// Counts the bytes of a body: of what its sets hold now, and the most they may hold.
+/// Threads: one at a time.
 class Size : public NumbersOf<Size> {
  public:
   explicit Size(int agents) : agents_(agents) {}
@@ -60,6 +61,7 @@ class Size : public NumbersOf<Size> {
 };
 
 /// Writes fields one behind the other; there must be room (Size::most).
+/// Threads: one at a time.
 class Encoder : public NumbersOf<Encoder> {
  public:
   Encoder(std::byte* out, int agents) : begin_(out), at_(out), agents_(agents) {}
@@ -118,6 +120,7 @@ class Encoder : public NumbersOf<Encoder> {
 
 /// Reads fields into a message whose vectors and sets have their sizes already. After the first refusal
 /// nothing more is read, and what was read is not to be used.
+/// Threads: one at a time.
 class Decoder : public NumbersOf<Decoder> {
  public:
   Decoder(std::span<const std::byte> body, int agents)

@@ -12,6 +12,7 @@
 
 namespace garrison::wire {
 
+/// Threads: one at a time.
 class Outline {
  public:
   explicit Outline(std::vector<std::string>& lines) : lines_(lines) {}

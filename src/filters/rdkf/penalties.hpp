@@ -7,5 +7,5 @@
 #include "garrison/filters/rdkf/step.hpp"
 
 namespace garrison::rdkf {
-GARRISON_EXPORT Penalty penalty_named(const std::string& name);
+Penalty penalty_named(const std::string& name);
 }

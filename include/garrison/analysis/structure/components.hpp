@@ -23,6 +23,6 @@ struct GARRISON_EXPORT Components {
 GARRISON_EXPORT Components strong_components(const Pattern& links);
 
 /// Per component: no link leads out of it to another one. A single state without a link counts.
-GARRISON_EXPORT std::vector<char> parents(const Pattern& links, const Components& components);
+std::vector<char> parents(const Pattern& links, const Components& components);
 
 }  // namespace garrison::structure

@@ -31,8 +31,8 @@ GARRISON_EXPORT Decomposition dulmage_mendelsohn(const Pattern& pattern, Matchin
 /// Columns reachable from `from` by column -> any of its rows -> the column matched to that row, `from`
 /// first. For an unmatched column it is a contraction: the least set Z of columns with fewer rows than
 /// columns.
-GARRISON_EXPORT std::vector<int> reachable_columns(const Pattern& pattern, const Matching& matching,
-                                                   std::span<const int> from);
+std::vector<int> reachable_columns(const Pattern& pattern, const Matching& matching,
+                                   std::span<const int> from);
 
 /// The contractions (one per unmatched column) depend on the matching; which of them overlap does not.
 /// Connected components of the overlaps: sorted lists of columns.

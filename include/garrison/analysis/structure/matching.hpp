@@ -27,7 +27,8 @@ GARRISON_EXPORT Matching maximum_matching(const Pattern& pattern);
 GARRISON_EXPORT Matching maximum_matching(const Pattern& pattern, std::span<const int> last);
 
 /// Augmenting paths from single columns, on a matching of its own. Iterative.
-class GARRISON_EXPORT Augmenter {
+/// Threads: one at a time.
+class Augmenter {
  public:
   /// `pattern` must outlive this.
   Augmenter(const Pattern& pattern, Matching start);

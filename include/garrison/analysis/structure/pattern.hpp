@@ -14,6 +14,7 @@ namespace garrison::structure {
 /// Which entries of a rows x columns matrix are not zero. Column j lists its rows; of a system matrix A the
 /// entry (i, j) is the link j -> i of the system digraph, so column j lists the states that j drives.
 /// Up to 2^31 - 1 entries; an entry given twice counts once.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT Pattern {
  public:
   Pattern() = default;

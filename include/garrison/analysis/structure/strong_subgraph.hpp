@@ -30,7 +30,7 @@ GARRISON_EXPORT StrongSubgraph cheapest_strong_subgraph(int agents,
 
 /// Edges of a cheapest spanning arborescence out of `root` (Chu-Liu/Edmonds); empty when some vertex cannot
 /// be reached (or there is one vertex only).
-GARRISON_EXPORT std::vector<int> cheapest_arborescence(int agents, std::span<const std::pair<int, int>> edges,
-                                                       std::span<const double> weights, int root);
+std::vector<int> cheapest_arborescence(int agents, std::span<const std::pair<int, int>> edges,
+                                       std::span<const double> weights, int root);
 
 }  // namespace garrison::structure

@@ -37,7 +37,7 @@ GARRISON_EXPORT Mitigation mitigate(const System& system, std::span<const int> m
 
 /// Least-cost assignment of every row to a column of its own, infinite entries being forbidden: the column of
 /// each row. rows <= columns. Empty when there is none. Successive shortest paths, O(rows^2 columns).
-GARRISON_EXPORT std::vector<int> cheapest_assignment(const MatrixRef& cost);
+std::vector<int> cheapest_assignment(const MatrixRef& cost);
 
 struct GARRISON_EXPORT Pick {
   int agent, state, group;  ///< group: index of the class covered, -1 where there are none

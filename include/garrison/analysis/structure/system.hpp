@@ -30,6 +30,7 @@ struct GARRISON_EXPORT Observability {
 
 /// The structure of a system matrix, worked out once. States are numbered from 0; entry (i, j) of A is the
 /// link j -> i. All functions that take sensors refuse states out of range.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT System {
  public:
   /// @throws InvalidInput when the pattern is not square or has no state.

@@ -10,6 +10,7 @@
 namespace garrison::certificate {
 
 /// Room for anytime_window, sized once. Movable.
+/// Threads: one at a time.
 class GARRISON_EXPORT AnytimeWindowWorkspace {
  public:
   /// Enough for every window of the sizes of this one and at most `leaves` >= 1 leaves. @throws InvalidInput

@@ -39,6 +39,7 @@ struct BankStep {
 };
 
 /// Movable.
+/// Threads: one at a time.
 class GARRISON_EXPORT Bank {
  public:
   /// A, Q: n x n, Q positive semidefinite; at most `limit` members, C(sources, s) are needed. No start: every

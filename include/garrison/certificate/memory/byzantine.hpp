@@ -12,7 +12,7 @@ namespace garrison::certificate {
 using Path = std::vector<int>;
 
 /// How many of the paths are disjoint but for the owner, `enough` at most.
-GARRISON_EXPORT int disjoint_paths(const std::vector<Path>& paths, int enough);
+int disjoint_paths(const std::vector<Path>& paths, int enough);
 
 /// Unsigned relays, at most `liars` of the agents lie. paths: those that brought the SAME number of one
 /// source. True when the owner is a neighbour (a path of one agent) or liars + 1 paths are disjoint: one of

@@ -11,6 +11,7 @@
 namespace garrison::certificate {
 
 /// Room for leverage_window, sized once. Movable.
+/// Threads: one at a time.
 class GARRISON_EXPORT LeverageWindowWorkspace {
  public:
   /// Enough for every window of the sizes of this one.
@@ -39,6 +40,6 @@ GARRISON_EXPORT WindowWitness leverage_window(const Window& window, const Window
 
 /// What the checked forms refuse: s < 0, levels < 0 or not finite, sources out of range or twice, `proved`
 /// with a moving set, a window whose last step is not reached. @throws InvalidInput
-GARRISON_EXPORT void require(const WindowAssumption& a, const Window& window);
+void require(const WindowAssumption& a, const Window& window);
 
 }  // namespace garrison::certificate

@@ -14,6 +14,7 @@ namespace garrison::certificate {
 inline constexpr int kMostWindowSubsets = 3000;
 
 /// Room for subsets_window, sized once. Movable.
+/// Threads: one at a time.
 class GARRISON_EXPORT SubsetsWindowWorkspace {
  public:
   /// Enough for every window of the sizes of this one and at most `limit` sets. @throws InvalidInput
@@ -31,7 +32,7 @@ class GARRISON_EXPORT SubsetsWindowWorkspace {
 };
 
 /// How many sets subsets_window would try; 0 when the proved sources alone are more than s.
-GARRISON_EXPORT double subsets_to_try(const Window& window, const WindowAssumption& a) noexcept;
+double subsets_to_try(const Window& window, const WindowAssumption& a) noexcept;
 
 /// Theorem W3M, attacked set fixed in the window. A set of sources is kept when its least-squares theta
 /// explains its own rows within z1 of their residuals' deviations (and together within z3); the region

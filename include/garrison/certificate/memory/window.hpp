@@ -23,6 +23,7 @@ enum class RowNoise : char {
 /// and has a source, which is attacked or honest as a whole; process noise and prior are rows of source -1,
 /// always honest. Write `begin`, a prior, then for k = 0..steps-1 the rows of step k and `advance` to the
 /// next. Sized once; nothing but the constructor allocates.
+/// Threads: several may read; whoever changes it is alone, as with standard containers.
 class GARRISON_EXPORT Window {
  public:
   /// For at most `steps` steps of a state of `states` numbers, `noise` >= 0 numbers of process noise per

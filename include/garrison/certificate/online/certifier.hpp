@@ -42,6 +42,7 @@ struct Memory {
 /// A pure state machine, like a filter: `begin` with the measurement, then per round `say`, `hear` what
 /// arrived, `end_round`. Behind a table of functions, so that a node without certificates links none of it.
 /// Nothing is allocated after construction.
+/// Threads: one at a time.
 class Certifier {
  public:
   virtual ~Certifier() = default;

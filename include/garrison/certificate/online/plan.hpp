@@ -98,8 +98,8 @@ struct GARRISON_EXPORT Plan {
 /// @throws InvalidInput when the noise that `wanted` rests on is not known, or a number is out of range
 GARRISON_EXPORT Plan make_plan(const Wanted& wanted, const Model& model, const Network& network);
 /// What agent `id` needs of it.
-GARRISON_EXPORT Plan part_of(const Plan& plan, int id, std::span<const int> neighbours);
+Plan part_of(const Plan& plan, int id, std::span<const int> neighbours);
 /// Whether a plan that was read can be worked with: sizes and indices fit together.
-GARRISON_EXPORT bool consistent(const Plan& plan);
+bool consistent(const Plan& plan);
 
 }  // namespace garrison::certificate

@@ -31,6 +31,7 @@ concept Averages = requires(const Local& l, const typename F::Gains& g, typename
 
 /// The estimates of all agents in one array. They stay there from step to step, and go to the agents' states
 /// once somebody looks at these.
+/// Threads: one at a time.
 template <class F, int n>
 class Averaging {
   using State = typename F::template State<n>;

@@ -66,6 +66,7 @@ struct AgentByAgent {
 
 /// The agents of family F as one object, if F has a faster way than agent by agent; here it has none. Bits
 /// are those of the agents on their own, for any number of threads; nothing is allocated after `start`.
+/// Threads: one at a time.
 template <class F, int n>
 class Batch : public AgentByAgent<F, n> {
  public:

@@ -12,6 +12,7 @@
 namespace garrison {
 
 /// What is read together is one array for all groups (Group::Piece), in the order in which they are stepped.
+/// Threads: one at a time.
 template <class Group, int n>
 class Groups {
  public:

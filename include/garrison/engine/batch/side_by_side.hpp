@@ -35,6 +35,7 @@ concept StepsSideBySide = n != Dynamic && requires { typename F::template SideBy
 /// Agents that follow each other in the engine's order share a group; one with fewer outputs than others has
 /// rows of zeros. Their predictions are in one array: while links are perfect, neighbours read them there and
 /// no message is written. Bits are those of agents on their own, for any number of threads.
+/// Threads: one at a time.
 template <class F, int n>
 class SideBySide {
   using State = typename F::template State<n>;

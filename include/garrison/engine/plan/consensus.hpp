@@ -14,6 +14,7 @@ namespace garrison {
 
 /// L rounds of x_i <- x_i - alpha sum over j in N_i of (x_i - x_j) for all agents, with the same bits as
 /// `average_round` agent by agent.
+/// Threads: constant once made; any number may share it.
 class GARRISON_EXPORT ConsensusPlan {
  public:
   /// Lists of a network in public ids, each sorted: `offsets` N+1 numbers into `lists`. `width` >= 1: numbers

@@ -11,7 +11,6 @@ namespace garrison {
 
 /// Reverse Cuthill-McKee order (position -> id) of an undirected graph given by sorted lists; works for any
 /// lists. Linear in the number of edges up to sorting by degree; deterministic.
-GARRISON_EXPORT std::vector<int> reverse_cuthill_mckee(std::span<const int> offsets,
-                                                       std::span<const int> lists);
+std::vector<int> reverse_cuthill_mckee(std::span<const int> offsets, std::span<const int> lists);
 
 }  // namespace garrison

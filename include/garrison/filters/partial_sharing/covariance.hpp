@@ -27,6 +27,7 @@ inline constexpr double kConverged = 2e-15;
 inline constexpr double kLeastPivot = 1e-290;
 
 /// One step of B agents. Matrices are packed; entries of one agent are `stride` values apart.
+/// Threads: one at a time.
 template <int n, int B>
 class Recursion {
  public:

@@ -14,24 +14,22 @@ namespace garrison::partial_sharing {
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// Lc(k): block (i,i) is the sum of S_j over the neighbours j of i, block (i,j) is -S_j (note 6). N m x N m.
-GARRISON_EXPORT Sparse coupling(const Setting& setting, std::int64_t k);
+Sparse coupling(const Setting& setting, std::int64_t k);
 /// At(k) = blockdiag(A - K_i H_i) - C Lc(k) and Ga(k) = C (E (x) I) S(k) for given gains.
-GARRISON_EXPORT Sparse error_step(const Setting& setting, const std::vector<LocalGains>& gains,
-                                  std::int64_t k);
-GARRISON_EXPORT Sparse attack_step(const Setting& setting, const std::vector<LocalGains>& gains,
-                                   std::int64_t k);
+Sparse error_step(const Setting& setting, const std::vector<LocalGains>& gains, std::int64_t k);
+Sparse attack_step(const Setting& setting, const std::vector<LocalGains>& gains, std::int64_t k);
 /// Qt = blockdiag(K_i R_i K_i') + 11' (x) Q.
-GARRISON_EXPORT Matrix noise_covariance(const Setting& setting, const std::vector<LocalGains>& gains);
+Matrix noise_covariance(const Setting& setting, const std::vector<LocalGains>& gains);
 /// One step of (29); `Sigma` empty: no attack.
-GARRISON_EXPORT Matrix covariance_step(const Setting& setting, const std::vector<LocalGains>& gains,
-                                       std::int64_t k, const Matrix& P, const Matrix& Sigma);
+Matrix covariance_step(const Setting& setting, const std::vector<LocalGains>& gains, std::int64_t k,
+                       const Matrix& P, const Matrix& Sigma);
 
 /// Attack covariance of the network, N m x N m, zero outside the Byzantine agents.
 /// @throws InvalidInput when it is not symmetric positive semidefinite, or nonzero on a regular agent
 GARRISON_EXPORT void check_attack(const Setting& setting, const MatrixRef& Sigma,
                                   const std::vector<int>& byzantine);
 /// Sorted, each once, inside the network. @throws InvalidInput otherwise
-GARRISON_EXPORT void check_byzantine(const Setting& setting, const std::vector<int>& byzantine);
+void check_byzantine(const Setting& setting, const std::vector<int>& byzantine);
 
 struct GARRISON_EXPORT Trajectory {
   std::vector<double> nmse;  ///< tr P(k), k = 0..steps (27)
@@ -54,8 +52,7 @@ GARRISON_EXPORT std::vector<Matrix> periodic_covariance(const Setting& setting,
                                                         const Matrix& Sigma);
 /// The periodic solution of W(f) = I + At(f)' W(f+1) At(f): what one unit of error at phase f costs from then
 /// on.
-GARRISON_EXPORT std::vector<Matrix> periodic_adjoint(const Setting& setting,
-                                                     const std::vector<LocalGains>& gains);
+std::vector<Matrix> periodic_adjoint(const Setting& setting, const std::vector<LocalGains>& gains);
 
 // What the paper calls the error covariance: local recursions (8), (23)-(26) with an attack term.
 

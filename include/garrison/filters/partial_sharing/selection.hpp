@@ -13,6 +13,7 @@ namespace garrison::partial_sharing {
 
 /// Index lists of the shared entries at k = 0; after every sample all of them move on by `shift`
 /// (right-circular shift: entry a goes to a + shift mod m). The list of k = 0 is used at k = 0.
+/// Threads: several may read; whoever changes it is alone, as with standard containers.
 class GARRISON_EXPORT Selection {
  public:
   Selection() = default;

@@ -41,6 +41,7 @@ struct GARRISON_EXPORT LocalGains {
 };
 
 /// (9) and (11) of one agent from a covariance on, by the recursion that the filter itself runs.
+/// Threads: one at a time.
 class GARRISON_EXPORT LocalRecursion {
  public:
   /// From P_0 of the setting.
@@ -69,8 +70,8 @@ class GARRISON_EXPORT LocalRecursion {
 GARRISON_EXPORT LocalGains steady_gains(const Setting& setting, int agent);
 GARRISON_EXPORT std::vector<LocalGains> steady_gains(const Setting& setting);
 /// Agents whose (11) has no limit, sorted.
-GARRISON_EXPORT std::vector<int> undetectable_agents(const Setting& setting);
+std::vector<int> undetectable_agents(const Setting& setting);
 /// W with W R W' = I, lower triangular. @throws InvalidInput when R is not positive definite
-GARRISON_EXPORT Matrix whitener(const Matrix& R, int agent);
+Matrix whitener(const Matrix& R, int agent);
 
 }  // namespace garrison::partial_sharing

@@ -48,6 +48,7 @@ inline double printed_bound(const Setting& s, double beta, double alpha, const W
 
 /// The valid replacement. e = (1 - K/2L)(A e^- - d) + noise and saturated rest, with
 /// the gains of the honest sensors summing to K in [lo, hi]. Gains are numbers, so that it holds for entries.
+/// Threads: one at a time.
 class SafeStep {
  public:
   SafeStep(const Setting& s, double beta, double E, const Window& w) noexcept {

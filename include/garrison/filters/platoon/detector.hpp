@@ -50,6 +50,7 @@ GARRISON_EXPORT int count_runs(std::span<const int> sorted) noexcept;
 
 /// Pairs (j, k) that fired in the window of one vehicle, and what follows from the knowledge that at most
 /// `budget` of the sensors in it are attacked: every attacked set covers all pairs.
+/// Threads: several may read; whoever changes it is alone, as with standard containers.
 class GARRISON_EXPORT Suspicions {
  public:
   /// `size` <= 63 sensors, numbered 0..size-1.
@@ -87,6 +88,6 @@ class GARRISON_EXPORT Suspicions {
 };
 
 /// Least number of vertices of a path that cover the edges (e, e+1), e in the sorted list: greedy, exact.
-GARRISON_EXPORT int path_cover(std::span<const int> edges) noexcept;
+int path_cover(std::span<const int> edges) noexcept;
 
 }  // namespace garrison::platoon

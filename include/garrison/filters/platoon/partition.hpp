@@ -16,11 +16,12 @@ inline bool in_V1(int id, int vehicles, int range) noexcept { return id >= range
 GARRISON_EXPORT std::vector<int> nearest(int id, int vehicles);
 /// The range L of a network in which exactly the vehicles at most L places apart hear each other.
 /// @throws InvalidInput for any other network, or when no vehicle hears 2 L others
-GARRISON_EXPORT int range_of(const Network& network);
+int range_of(const Network& network);
 
 /// (13): the best source of a vehicle outside V_1: of those that are in V_1 or free, the nearest; among two
 /// equally near the one with the smaller error bound when `by_bound`, else (or when equal) the lower id.
 /// `distance` = |i - j| and `alpha` of the candidates, offered in ascending order of id.
+/// Threads: one at a time.
 class BestSource {
  public:
   explicit BestSource(bool by_bound) : by_bound_(by_bound) {}

@@ -19,6 +19,7 @@ struct Seen {
 };
 
 /// The window i-L..i+L; place p stands for vehicle i - L + p, place L for i itself.
+/// Threads: one at a time.
 class View {
  public:
   View(int id, int vehicles, int range, const VehicleState& s, const Inbox<VehicleMessage>& inbox) noexcept

@@ -28,7 +28,7 @@ struct Outputs {
 /// @throws InvalidInput when vehicles < 3 or period is not > 0
 GARRISON_EXPORT Model model(int vehicles, double period, bool inputs = false);
 /// T of such a model. @throws InvalidInput when it is not one
-GARRISON_EXPORT double period_of(const Model& model);
+double period_of(const Model& model);
 
 /// Refuses recordings from which `owner`, a filter that counts on its own commands, cannot tell what the
 /// vehicles did: without inputs, or with gaps in them. @throws InvalidInput
@@ -43,7 +43,7 @@ inline constexpr int kDisturbances = 7;
 /// printed in section 7 of the paper: every component uniform in (0, bound/sqrt 2)), "none", and "auto" =
 /// uniform. x0 left out: everybody on the spot. Refuses a start further than q from the truth, because the
 /// bounds and the detector rest on it. @throws InvalidInput
-GARRISON_EXPORT std::unique_ptr<World> make_world(const Setting& setting, const Formation& formation,
-                                                  const WorldOptions& options);
+std::unique_ptr<World> make_world(const Setting& setting, const Formation& formation,
+                                  const WorldOptions& options);
 
 }  // namespace garrison::platoon

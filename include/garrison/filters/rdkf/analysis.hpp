@@ -36,8 +36,7 @@ struct GARRISON_EXPORT Constants {
 
 /// How far a measurement moves the estimate of agent i from the fused prediction at most: half of (10),
 /// lambda/2 times the largest |Q_i^-1 M' u| over the dual ball (`norm`, `huber`), box or product of balls.
-GARRISON_EXPORT double deviation_bound(const Setting& s, const SteadyState& steady, int i, double lambda,
-                                       Penalty penalty);
+double deviation_bound(const Setting& s, const SteadyState& steady, int i, double lambda, Penalty penalty);
 
 /// All constants for weight lambda >= 0. For `l1` and `group` the deviation bounds are sums over the terms.
 GARRISON_EXPORT Constants constants(const Setting& s, const SteadyState& steady, double lambda,
@@ -45,7 +44,7 @@ GARRISON_EXPORT Constants constants(const Setting& s, const SteadyState& steady,
 
 /// ||Q_i^-1 Pbar_j^-1 A / d_i|| for every j in N_i: what of neighbour j's error enters the prediction of
 /// agent i.
-GARRISON_EXPORT std::vector<double> prior_error_norms(const Setting& s, const SteadyState& steady, int agent);
+std::vector<double> prior_error_norms(const Setting& s, const SteadyState& steady, int agent);
 
 /// max_i e_i' P_i^-1 e_i for errors e, n x N.
 GARRISON_EXPORT double lyapunov(const SteadyState& steady, const MatrixRef& errors);

@@ -13,7 +13,7 @@ namespace garrison::rdkf {
 /// is gone instead.
 ///
 /// @param Q n x n, symmetric positive definite; @param M q x n; @param b q numbers, finite
-/// @param penalty norm or huber
+/// @param penalty norm or huber; @param price of the penalty
 /// @param x n numbers, x0 on entry and the minimiser on return
 /// @throws InvalidInput where Q is not positive definite
 GARRISON_EXPORT Step solve_fresh(const MatrixRef& Q, const MatrixRef& M, Penalty penalty, const Price& price,

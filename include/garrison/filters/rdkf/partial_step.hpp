@@ -24,11 +24,13 @@ struct SensorRows {
 /// Factors of one sensor's step as if it had its present rows only: whitener, M and the rest from the block
 /// of Sv and the rows of C that belong to them. They keep their full shape, missing rows being zeros, so that
 /// nothing is allocated after `resize`; and they are kept for as long as the same rows are missing.
-class GARRISON_EXPORT PartialStep {
+/// Threads: one at a time.
+class PartialStep {
  public:
   /// `box`: for penalty l1, else for the others.
   void resize(const SensorRows& sensor, bool box);
 
+  /// @param sensor as given to `resize`
   /// @param L n x n, lower Cholesky factor of Q; @param present a flag per row, at least one of them set
   /// @param penalty as in step_factors
   const StepFactors& step(const SensorRows& sensor, const Matrix& L, Penalty penalty,

@@ -16,7 +16,7 @@ struct Slopes {
   double Q2;  ///< ((N-s) a c + s) / N; sharp: (sqrt(N-s) a c + s) / N
 };
 /// Reads N, a, g, s and, for Q1, the noise bounds (Q1 = NaN when they are NaN).
-GARRISON_EXPORT Slopes slopes(const Setting& setting);
+Slopes slopes(const Setting& setting);
 
 struct Constants {
   double p0;            ///< (8): limit and supremum of p(t), not attained
@@ -30,13 +30,13 @@ struct Constants {
 GARRISON_EXPORT Constants constants(const Setting& setting);
 
 /// 1 + x + ... + x^(t-1) for x >= 0, t >= 0, without cancellation near x = 1; inf where it overflows.
-GARRISON_EXPORT double geometric_sum(double x, std::int64_t t);
+double geometric_sum(double x, std::int64_t t);
 /// p(t) of (10), t >= 0. Exists for every a g, also for a g >= 1, where it grows without bound.
 /// @throws InvalidInput for a bad setting or t < 0
 GARRISON_EXPORT double p_at(const Setting& setting, std::int64_t t);
 
 /// k* of (8) at rho >= 0, with the limit p0. @throws InvalidInput, see constants()
-GARRISON_EXPORT double k_star(const Setting& setting, double rho);
+double k_star(const Setting& setting, double rho);
 /// F of (8) at rho >= 0, in 0..a. May exceed 1 for large rho if a > 1; (9) makes F <= 1 wherever (7) goes.
 /// @throws InvalidInput, see constants()
 GARRISON_EXPORT double F(const Setting& setting, double rho);

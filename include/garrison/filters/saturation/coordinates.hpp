@@ -31,7 +31,7 @@ struct Coordinates {
 
 /// Any invertible `T`, n x n. `A`: n x n. `C`: N x n without zero rows. `b_w` >= 0. `b_v`: N bounds >= 0.
 /// @throws InvalidInput on a wrong size, a bad number or a T that is singular to working precision
-GARRISON_EXPORT Coordinates transform(MatrixRef A, MatrixRef C, double b_w, VectorRef b_v, MatrixRef T);
+Coordinates transform(MatrixRef A, MatrixRef C, double b_w, VectorRef b_v, MatrixRef T);
 /// z = diag(tau) x, tau: n numbers > 0. Brings ||A|| of a chain of integrators near 1.
 GARRISON_EXPORT Coordinates scale_states(MatrixRef A, MatrixRef C, double b_w, VectorRef b_v, VectorRef tau);
 /// T'T = sum of C_i'C_i, T symmetric: spreads the rows of C over all directions, which raises lambda0.

@@ -47,8 +47,7 @@ struct DataFreeOptions {
 };
 
 /// The averaging of a whole sample, N x N: column j is what a unit at agent j becomes.
-GARRISON_EXPORT Matrix averaging(const Network& network, double alpha, std::span<const double> omega,
-                                 int rounds);
+Matrix averaging(const Network& network, double alpha, std::span<const double> omega, int rounds);
 
 /// The table, until it is steady or for some thousand samples. Model: at most one output of length 1 per
 /// agent, both noise bounds. O((N n)^3) per sample of memory. @throws InvalidInput for more than 400 numbers

@@ -44,21 +44,21 @@ struct Setting {
 };
 
 /// Refuses N, lambda0, s out of range. @throws InvalidInput
-GARRISON_EXPORT void require_sensors(const Setting& setting);
+void require_sensors(const Setting& setting);
 /// The same and a, g. @throws InvalidInput
-GARRISON_EXPORT void require_network(const Setting& setting);
+void require_network(const Setting& setting);
 /// Refuses eta0 <= 0, negative b_w or b_v, and numbers that are not finite. @throws InvalidInput
-GARRISON_EXPORT void require_start_and_noise(const Setting& setting);
+void require_start_and_noise(const Setting& setting);
 /// Refuses a beta that is not finite and > 0 (beta = inf never saturates and has no bound). @throws
 /// InvalidInput
-GARRISON_EXPORT void require_threshold(const Setting& setting);
+void require_threshold(const Setting& setting);
 /// All of the above.
 GARRISON_EXPORT void require(const Setting& setting);
 
 /// a g < 1, the paper's L > ln||A|| / ln(1/gamma) in the form that has no logarithm of 0.
 inline bool contracts(const Setting& setting) noexcept { return setting.a * setting.contraction < 1.0; }
 /// Refuses a g >= 1, where p0 and everything built on it does not exist. @throws InvalidInput
-GARRISON_EXPORT void require_contraction(const Setting& setting);
+void require_contraction(const Setting& setting);
 
 /// Bound on the innovation of an honest sensor when the mean error is at most `rho` and the disagreement at
 /// most `p`, both at t-1: a (rho + p) + b_w + b_v. Unit of the measurement.

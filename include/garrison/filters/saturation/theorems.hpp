@@ -68,6 +68,6 @@ struct InformedBound {
 /// 0..1, and (varpi, tau0) after: proved sensors are silent, gains of honest ones are at most 1. No losses,
 /// no delays. Absent (NaN) without (9). `spread` >= 0: diameter over L, rounded up. @throws InvalidInput as
 /// theorem5
-GARRISON_EXPORT InformedBound informed_bound(const Setting& setting, double tau0, double varpi, int spread);
+InformedBound informed_bound(const Setting& setting, double tau0, double varpi, int spread);
 
 }  // namespace garrison::saturation

@@ -54,11 +54,11 @@ GARRISON_EXPORT std::vector<Exposure> exposure(const Setting& s, const Stationar
 GARRISON_EXPORT Matrix windows_naive(const MatrixRef& residuals, const Vector& residual_std, int w);
 GARRISON_EXPORT Matrix windows_exact(const MatrixRef& residuals, std::span<const Matrix> covariances);
 /// S^-1 of one agent's last w residuals, w x w; pseudo-inverse when the residual does not vary.
-GARRISON_EXPORT Matrix window_precision(std::span<const Matrix> covariances, int agent);
+Matrix window_precision(std::span<const Matrix> covariances, int agent);
 /// cov(q(k+h), q(k)), h = 0..lags, N x N, of the innovations q_i = y_i - c_i'xhat_i(k|k-1): white only where
 /// every gain is the optimal one. `x` = stationary(s, K).
-GARRISON_EXPORT std::vector<Matrix> innovation_covariances(const Setting& s, const GainMatrices& K,
-                                                           const Stationary& x, int lags);
+std::vector<Matrix> innovation_covariances(const Setting& s, const GainMatrices& K, const Stationary& x,
+                                           int lags);
 /// Isolation by templates: (t_j'S^-1 v)^2 / (t_j'S^-1 t_j) for every full window (rows) and agent j, v all
 /// agents' residuals of the window and t_j the steady response to an attack on j. The largest names the
 /// agent.

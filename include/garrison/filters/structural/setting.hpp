@@ -31,8 +31,8 @@ using GainMatrices = std::vector<Matrix>;
 /// diagonal.
 GARRISON_EXPORT void require_graphs(const Setting& s);
 /// The same, and E and R symmetric positive semidefinite.
-GARRISON_EXPORT void require_valid(const Setting& s);
+void require_valid(const Setting& s);
 /// @throws InvalidInput when there is not one n x n matrix of finite numbers per agent.
-GARRISON_EXPORT void require_gains(const Setting& s, const GainMatrices& K);
+void require_gains(const Setting& s, const GainMatrices& K);
 
 }  // namespace garrison::structural

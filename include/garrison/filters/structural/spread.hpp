@@ -18,6 +18,7 @@ inline std::size_t entries(int n) { return static_cast<std::size_t>(n) * static_
 inline std::size_t packed(int n) { return static_cast<std::size_t>(n) * static_cast<std::size_t>(n + 1) / 2; }
 
 /// n numbers that loops add to: in registers where n is known when this is compiled, else in `memory`.
+/// Threads: one at a time.
 template <int n>
 class Sums {
  public:

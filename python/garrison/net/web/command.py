@@ -9,8 +9,7 @@ from garrison.net.web.server import Server
 from garrison.net.web.watcher import Watcher
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Run the command line; returns the exit code."""
+def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="garrison-web",
         description="A live page (/) and metrics for Prometheus (/metrics) of running nodes. Reads only.",
@@ -20,8 +19,13 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("socket", nargs="+", type=Path, help="[socket].path of a node")
     parser.add_argument("--host", default="127.0.0.1", help="address to listen at (default 127.0.0.1)")
     parser.add_argument("--port", type=int, default=9470, help="port to listen at (default 9470)")
+    return parser
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
     try:
-        args = parser.parse_args(argv)
+        args = _parser().parse_args(argv)
     except SystemExit as usage:
         return int(usage.code or 0)
     watcher = Watcher(args.socket, Scene())
