@@ -11,12 +11,17 @@ import numpy as np
 
 from garrison import _core
 from garrison._commands.terminal import NO, OK, REFUSED, console_for, print_table
+from garrison.net.accept import ROWS
+from garrison.net.accept.daemons import ATTACK
+from garrison.net.accept.load import Load
 from garrison.net.outcome import Outcome, write_summary
 from garrison.net.plan import Plan, read_plan
 from garrison.net.programs import is_there
-from garrison.net.rows import ATTACK, ROWS
 from garrison.net.running import carry_out
 from garrison.words import count, near, refusal
+
+#: seconds of a row where all are measured
+_SHORT = 30.0
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -38,12 +43,17 @@ def _parser() -> argparse.ArgumentParser:
         "datagrams, and a flood of 5000 a second",
     )
     up.add_argument("--kills", type=int, default=0, help="kill a daemon, and start it again, so many times")
+    up.add_argument(
+        "--liar", metavar="NAME", help="this agent's daemon lies to some neighbours, with its keys; see docs"
+    )
     up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
     accept = commands.add_parser(
         "accept", help="measure what a network of daemons has to meet, row by row", allow_abbrev=False
     )
-    accept.add_argument("row", nargs="*", help=f"some of {', '.join(row.name for row in ROWS)}; default: all")
-    accept.add_argument("--seconds", type=float, default=30.0, help="length of rows that can be longer (default 30)")
+    names = ", ".join(row.name for row in ROWS)
+    accept.add_argument("row", nargs="*", help=f"some of {names}, in full length; default: all, 30 s each at most")
+    accept.add_argument("--list", action="store_true", help="print the rows with their bars and full lengths, and end")
+    accept.add_argument("--seconds", type=float, help="another length, for rows that have one")
     accept.add_argument("--programs", help="folder of the node's programs")
     return parser
 
@@ -59,6 +69,7 @@ def main(argv: list[str] | None = None) -> int:
             return _accept(args)
         plan = read_plan(args.file)
         plan.relay |= ATTACK if args.attack else {}
+        plan.liar = None if args.liar is None else _named(plan, args.liar)
         if args.out is not None:
             return _up(plan, _empty(Path(args.out)), args)
         with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
@@ -70,6 +81,13 @@ def main(argv: list[str] | None = None) -> int:
         return 130
 
 
+def _named(plan: Plan, name: str) -> int:
+    names = plan.scenario.names
+    if name not in names:
+        raise refusal("--liar", repr(name), f"one of {', '.join(names)}", near(name, names))
+    return names.index(name)
+
+
 def _up(plan: Plan, folder: Path, args: argparse.Namespace) -> int:
     outcome = carry_out(plan, folder, programs=args.programs, page=args.page, kills=args.kills, say=_say)
     write_summary(outcome, folder / "summary.json")
@@ -78,22 +96,34 @@ def _up(plan: Plan, folder: Path, args: argparse.Namespace) -> int:
 
 
 def _accept(args: argparse.Namespace) -> int:
+    if args.list:
+        return _list()
     known = {row.name: row for row in ROWS}
     for name in args.row:
         if name not in known:
             raise refusal("accept", repr(name), f"one of {', '.join(known)}", near(name, known))
-    if not 2 <= args.seconds <= 3600:
+    if args.seconds is not None and not 2 <= args.seconds <= 3600:
         raise refusal("--seconds", f"{args.seconds:g}", "a number in 2..3600")
     missed = 0
     for row in [known[name] for name in args.row] or ROWS:
         if not args.row and not is_there(row.needs, args.programs):
             _say(f"left out  {row.name}: {row.needs} is not installed; it is a program of the tests")
             continue
-        said, met = row.run(args.seconds, args.programs)
-        missed += not met
-        _say(f"{'met ' if met else 'MISS'}  {row.name}: {row.bar}\n      {said}")
+        seconds = args.seconds or (row.seconds if args.row else min(row.seconds, _SHORT))
+        load = Load()
+        measured = row.run(seconds, args.programs)
+        missed += not measured.met
+        _say(f"{'met ' if measured.met else 'MISS'}  {row.name}: {row.bar}\n      {measured.text}")
+        if words := load.words():
+            _say(f"      {words}")
     _say("all met" if not missed else f"{count(missed, 'row')} missed")
     return NO if missed else OK
+
+
+def _list() -> int:
+    for row in ROWS:
+        _say(f"{row.name:13} {f'{row.seconds:g} s' if row.seconds else '':>7}  {row.bar}")
+    return OK
 
 
 def _say(text: str) -> None:
@@ -145,9 +175,13 @@ def show(plan: Plan, outcome: Outcome) -> None:
         )
     if known := sorted(seconds for seconds in outcome.back if seconds is not None):
         print(f"kills: {len(outcome.back)}, back after {np.median(known):.2f} s (median), {known[-1]:.2f} s (longest)")
+    if outcome.proved:
+        print(f"liar: proved by {len(outcome.proved)} nodes, {outcome.proved[0]:.2f} s after its first lie and later")
     for line in outcome.broken:
         print(f"DOES NOT HOLD: {line}")
-    if not outcome.broken:
+    if not outcome.broken and plan.liar is not None:
+        print("held: estimates finite, nobody else convicted, every log gives the same estimates again")
+    elif not outcome.broken:
         print("held: errors within bounds, nobody accused wrongly, every log gives the same estimates again")
 
 

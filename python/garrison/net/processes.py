@@ -13,8 +13,9 @@ from typing import Any, Self
 from garrison import _core
 from garrison.net.client import Client
 from garrison.net.folder import NodeFolder
+from garrison.net.memory import resident
 from garrison.net.plan import Plan
-from garrison.net.programs import NODE, RELAY, program
+from garrison.net.programs import LIAR, NODE, RELAY, program
 
 #: seconds for a process to end after it was asked to
 _PATIENCE = 10.0
@@ -25,6 +26,8 @@ class Ended:
     """What a network left: exit code and last status of every node, and the relay's counters."""
 
     codes: list[int]
+    said: list[str]  # on their standard error
+    memory: list[int]  # bytes, before they were asked to end
     statuses: list[dict[str, Any]]
     relay: dict[str, int]
 
@@ -70,13 +73,15 @@ class Processes:
     def end(self) -> Ended:
         """Ask for every status, end all of them, and collect what they leave."""
         statuses = [Client(node.socket).status() for node in self._nodes]
+        memory = [resident(process.pid) for process in self._daemons]
         for process in self._daemons:
             process.terminate()
         codes = [_awaited(process) for process in self._daemons]
         self._relay.terminate()
         _awaited(self._relay)
         relay = json.loads((self._nodes[0].path.parent / "relay.json").read_text())
-        return Ended(codes, statuses, relay)
+        said = [(node.path / "samples.err").read_text(errors="replace") for node in self._nodes]
+        return Ended(codes, said, memory, statuses, relay)
 
     def _relay_command(self) -> list[str]:
         relay = self._plan.relay
@@ -96,9 +101,10 @@ class Processes:
         ]
 
     def _node(self, stack: ExitStack, node: NodeFolder) -> "subprocess.Popen[bytes]":
+        which = LIAR if node.id == self._plan.liar else NODE
         return self._started(
             stack,
-            [*self.priority, program(NODE, self._programs), "--print", str(node.settings)],
+            [*self.priority, program(which, self._programs), "--print", str(node.settings)],
             node.path / "samples.jsonl",
         )
 

@@ -176,6 +176,20 @@ std::vector<double> Section::numbers(const std::string& key) const {
   return out;
 }
 
+std::vector<std::string> Section::texts(const std::string& key) const {
+  const TomlValue* found = find(key);
+  if (found == nullptr) return {};
+  const auto* list = std::get_if<TomlArray>(&found->value);
+  if (list == nullptr) refuse(where(key), shown(*found), "a list of texts");
+  std::vector<std::string> out;
+  for (const TomlValue& one : *list) {
+    const auto* text = std::get_if<std::string>(&one.value);
+    if (text == nullptr) refuse(where(key), shown(one), "texts");
+    out.push_back(*text);
+  }
+  return out;
+}
+
 std::int64_t Section::moment(const std::string& key) const {
   const TomlValue& found = need(key, "a time, e.g. 2026-01-31T12:00:00Z");
   if (const auto* moment = std::get_if<TomlMoment>(&found.value)) return moment->micros;
