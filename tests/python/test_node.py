@@ -190,6 +190,8 @@ def test_a_liar_with_keys_is_convicted(
 ) -> None:
     if not is_there(LIAR):
         pytest.skip("no garrison_node_liar in build/")
+    scenario = plan.with_name("scenario.toml")
+    scenario.write_text(SCENARIO.replace('kind = "ring"', 'kind = "band"\nrange = 2'))
     assert main(["up", str(plan), "--liar", "x"]) == 2
     assert "--liar" in capsys.readouterr().err
     assert main(["up", str(plan), "-o", str(tmp_path / "net"), "--liar", "3"]) == 0

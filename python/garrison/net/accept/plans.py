@@ -34,7 +34,7 @@ _FIRST_DAY, _DAY_MS = date(1971, 12, 12), 400.0  # as examples/wind/network.toml
 
 
 def wind(seconds: float) -> Plan:
-    """The wind example, a day every 0.4 s, of which the first twenty are without an attack; at least so long as there."""
+    """The wind example, a day every 0.4 s, the first twenty without an attack; at least as long as in its file."""
     paths = [folder / "wind" / "network.toml" for folder in _EXAMPLES]
     days = max(110, round(1000 * seconds / _DAY_MS))
     last = (_FIRST_DAY + timedelta(days=days - 1)).isoformat()
