@@ -3,6 +3,7 @@
 import argparse
 import sys
 import tempfile
+import time
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,12 @@ from garrison._commands.terminal import NO, OK, REFUSED, console_for, print_tabl
 from garrison.net.accept import ROWS
 from garrison.net.accept.daemons import ATTACK
 from garrison.net.accept.load import Load
+from garrison.net.accept.plans import band, carried_out
 from garrison.net.outcome import Outcome, write_summary
 from garrison.net.plan import Plan, read_plan
 from garrison.net.programs import is_there
 from garrison.net.running import carry_out
+from garrison.net.soak import WEATHER, Soak
 from garrison.words import count, near, refusal
 
 #: seconds of a row where all are measured
@@ -47,6 +50,11 @@ def _parser() -> argparse.ArgumentParser:
         "--liar", metavar="NAME", help="this agent's daemon lies to some neighbours, with its keys; see docs"
     )
     up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
+    soak = commands.add_parser(
+        "soak", help="ten daemons for hours, with loss and power cuts: nothing grows", allow_abbrev=False
+    )
+    soak.add_argument("--seconds", type=float, default=600.0, help="how long, 30..86400 (default 600)")
+    soak.add_argument("--programs", help="folder of the node's programs")
     accept = commands.add_parser(
         "accept", help="measure what a network of daemons has to meet, row by row", allow_abbrev=False
     )
@@ -67,6 +75,8 @@ def main(argv: list[str] | None = None) -> int:
     try:
         if args.command == "accept":
             return _accept(args)
+        if args.command == "soak":
+            return _soak(args)
         plan = read_plan(args.file)
         plan.relay |= ATTACK if args.attack else {}
         plan.liar = None if args.liar is None else _named(plan, args.liar)
@@ -79,6 +89,19 @@ def main(argv: list[str] | None = None) -> int:
         return REFUSED
     except KeyboardInterrupt:
         return 130
+
+
+def _soak(args: argparse.Namespace) -> int:
+    if not 30 <= args.seconds <= 86400:
+        raise refusal("--seconds", f"{args.seconds:g}", "a number in 30..86400")
+    plan = band(10, 5, 50.0, args.seconds)
+    plan.relay |= WEATHER
+    soak = Soak(plan, time.time() + args.seconds)
+    outcome = carried_out(plan, args.programs, meanwhile=soak)
+    outcome.broken += soak.broken()
+    show(plan, outcome)
+    print(f"soak: {soak.cuts} power cuts; the node that grew most grew by {soak.growth()} bytes")
+    return NO if outcome.broken else OK
 
 
 def _named(plan: Plan, name: str) -> int:

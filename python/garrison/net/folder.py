@@ -31,6 +31,11 @@ class NodeFolder:
         return self.path / "node.toml"
 
     @property
+    def clock(self) -> Path:
+        """How wrong its clock is, for plans with `wrong_clock`."""
+        return self.path / "clock"
+
+    @property
     def socket(self) -> Path:
         """Of its status."""
         return self.path / "node.sock"
@@ -49,6 +54,7 @@ def write_network(plan: Plan, folder: Path, start: float, programs: str | None) 
         plan.reference.prepared.save(node.path / "part.gdesign", agent=node.id)
         np.savetxt(node.path / "sensor.csv", plan.reference.sensor(node.id), fmt="%.17g", delimiter=",")
         node.settings.write_text(_settings(node))
+        node.clock.write_bytes(bytes(8))
     return nodes
 
 

@@ -47,6 +47,7 @@ class Outcome:
     broken: list[str] = field(default_factory=list)
     back: list[float | None] = field(default_factory=list)  # s after every kill until a complete sample
     proved: list[float] = field(default_factory=list)  # s from a liar's first lie, for every node with a proof
+    start: float = 0.0  # of sample 0, s since 1970
     cores: float = 0.0  # CPU time of all processes, the relay's, too, per second
 
     def share(self, name: str) -> float:

@@ -1,6 +1,7 @@
 """Starts the daemons and the relay, waits, and ends what it started, by its handle and nothing else."""
 
 import json
+import os
 import shutil
 import subprocess
 import time
@@ -39,7 +40,7 @@ class Processes:
         self._plan, self._nodes, self._programs = plan, nodes, programs
         self._stack = ExitStack()
         #: what the commands begin with: real-time priority where that is allowed, as the service unit gives it
-        self.priority = _real_time()
+        self.priority = real_time()
         self._daemons: list[subprocess.Popen[bytes]] = []
 
     def __enter__(self) -> Self:
@@ -60,6 +61,10 @@ class Processes:
             if process.poll() is not None:
                 said = path.with_suffix(".err").read_text(errors="replace").strip()
                 raise _core.IoError(f"{path.parent.name}: got an end with exit code {process.returncode}: {said}")
+
+    def id_of(self, k: int) -> int:
+        """Of the process of node k."""
+        return self._daemons[k].pid
 
     def kill(self, k: int) -> None:
         """End node k at once, as a power cut would."""
@@ -106,12 +111,19 @@ class Processes:
             stack,
             [*self.priority, program(which, self._programs), "--print", str(node.settings)],
             node.path / "samples.jsonl",
+            self._surroundings(node),
         )
 
-    def _started(self, stack: ExitStack, command: list[str], out: Path) -> "subprocess.Popen[bytes]":
+    def _surroundings(self, node: NodeFolder) -> dict[str, str] | None:
+        library = self._plan.wrong_clock
+        return None if library is None else {**os.environ, "LD_PRELOAD": library, "GARRISON_CLOCK": str(node.clock)}
+
+    def _started(
+        self, stack: ExitStack, command: list[str], out: Path, surroundings: dict[str, str] | None = None
+    ) -> "subprocess.Popen[bytes]":
         written = stack.enter_context(out.open("ab"))
         said = stack.enter_context(out.with_suffix(".err").open("ab"))
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=written, stderr=said)
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=written, stderr=said, env=surroundings)
         stack.callback(_end, process)
         return process
 
@@ -120,7 +132,8 @@ class Processes:
         return [(self._relay, self._nodes[0].path.parent / "relay.json"), *nodes]
 
 
-def _real_time() -> list[str]:
+def real_time() -> list[str]:
+    """What a command begins with for the priority that the service unit gives; nothing where it is not allowed."""
     command = ["chrt", "--fifo", "20"]
     allowed = shutil.which("chrt") and subprocess.run([*command, "true"], capture_output=True).returncode == 0
     return command if allowed else []

@@ -10,6 +10,7 @@ NODE, KEYGEN, RELAY, CTL = "garrison-node", "garrison-keygen", "garrison-relay",
 #: of the tests, which are not installed
 HOSTILE, SIMULATION, UNITS = "garrison_node_hostile", "garrison_node_sim", "garrison_node_tests"
 BODIES, FUZZ, LIAR = "garrison_tests", "garrison_node_fuzz", "garrison_node_liar"
+LATENCY, WRONG_CLOCK = "garrison_node_latency", "garrison_node_wrong_clock.so"
 #: environment variable that names their folder
 VARIABLE = "GARRISON_PROGRAMS"
 

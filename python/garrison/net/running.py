@@ -28,12 +28,12 @@ def carry_out(
     programs: str | None = None,
     page: int | None = None,
     kills: int = 0,
-    meanwhile: Callable[[list[NodeFolder]], None] | None = None,
+    meanwhile: Callable[[Processes, list[NodeFolder]], None] | None = None,
     say: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
     """Run the plan in the empty `folder`, with a live page on port `page`; `say` hears how it goes.
 
-    meanwhile: called when sample 0 begins, with the nodes; should end before the run does.
+    meanwhile: called when sample 0 begins, with processes and nodes; should end before the run does.
     """
     start = time.time() + _LEAD
     nodes = write_network(plan, folder, start, programs)
@@ -46,13 +46,14 @@ def carry_out(
         say(f"{size}: {plan.seconds:.0f} s, {how}")
         if meanwhile is not None:
             wait_until(processes, start)
-            meanwhile(nodes)
+            meanwhile(processes, nodes)
         killed = kill_some(processes, plan, start, kills)
         wait_until(processes, start + plan.seconds)
         ended = processes.end()
     outcome = read_outcome(plan, nodes, ended, shares=not kills)  # neighbours of a node that is away miss samples, too
     if plan.liar is not None:
         judge_liar(plan, nodes, outcome, start, programs)
+    outcome.start = start
     outcome.cores = (_cpu() - before) / plan.seconds
     outcome.back = [seconds_back(kill, nodes) for kill in killed]
     outcome.broken += [

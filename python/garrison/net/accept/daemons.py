@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from garrison.net.accept.clock import clock
 from garrison.net.accept.flood import Flood
 from garrison.net.accept.plans import band, carried_out, wind
 from garrison.net.accept.row import Measured, Row
 from garrison.net.outcome import Outcome
-from garrison.net.programs import LIAR
+from garrison.net.programs import LIAR, WRONG_CLOCK
 
 #: what an attacker without keys adds at the relay: shares of all datagrams, and datagrams per second
 ATTACK = {"replay": 0.2, "mutate": 0.2, "forge": 0.2, "flood": 5000.0}
@@ -99,6 +100,12 @@ ROWS = (
         _equivocation,
         20.0,
         LIAR,
+    ),
+    Row(
+        "clock",
+        "10 daemons, one clock steps by an hour both ways: no round with two bodies, back in three samples",
+        clock,
+        needs=WRONG_CLOCK,
     ),
     Row("memory", "10 nodes, 100 rounds/s: at most 5 MB resident each", _memory, 60.0),
 )

@@ -4,6 +4,7 @@ import json
 import subprocess
 
 from garrison.net.folder import NodeFolder, free_ports
+from garrison.net.processes import Processes
 from garrison.net.programs import RELAY, program
 
 
@@ -14,7 +15,7 @@ class Flood:
         self._rate, self._seconds, self._programs = rate, seconds, programs
         self.sent = 0
 
-    def on_first(self, nodes: list[NodeFolder]) -> None:
+    def on_first(self, _processes: Processes, nodes: list[NodeFolder]) -> None:
         """Flood the first node, and return when that is over. The flood has no real-time priority."""
         way = f"{free_ports(1)[0]}:{nodes[0].port}"
         words = ["--flood", str(self._rate), "--seconds", str(self._seconds), way]

@@ -5,9 +5,13 @@ from collections.abc import Callable
 from datetime import date, timedelta
 from pathlib import Path
 
+from garrison.net.folder import NodeFolder
 from garrison.net.outcome import Outcome
 from garrison.net.plan import Plan, read_plan
+from garrison.net.processes import Processes
 from garrison.net.running import carry_out
+
+Meanwhile = Callable[[Processes, list[NodeFolder]], None]
 
 _PLANT = """
 [model]
@@ -54,9 +58,7 @@ def band(agents: int, rounds: int, period_ms: float, seconds: float) -> Plan:
         return read_plan(folder / "network.toml")
 
 
-def carried_out(
-    plan: Plan, programs: str | None, kills: int = 0, meanwhile: Callable[..., None] | None = None
-) -> Outcome:
+def carried_out(plan: Plan, programs: str | None, kills: int = 0, meanwhile: Meanwhile | None = None) -> Outcome:
     """Run it in a folder that is removed."""
     with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
         return carry_out(plan, Path(folder), programs=programs, kills=kills, meanwhile=meanwhile)

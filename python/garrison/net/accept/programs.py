@@ -3,10 +3,13 @@
 import os
 import re
 import subprocess
+import sys
 from collections.abc import Callable
+from pathlib import Path
 
 from garrison.net.accept.row import Measured, Row
-from garrison.net.programs import BODIES, FUZZ, HOSTILE, SIMULATION, UNITS, program
+from garrison.net.processes import real_time
+from garrison.net.programs import BODIES, FUZZ, HOSTILE, LATENCY, SIMULATION, UNITS, VARIABLE, program
 
 #: seeds of the simulation for each second of --seconds: less than one core does in one
 _SEEDS_A_SECOND = 10
@@ -47,6 +50,21 @@ def _simulated(mode: str, seeds: float, programs: str | None) -> Measured:
     return _printed([program(SIMULATION, programs), "1", str(int(seeds)), mode])
 
 
+def _latency(_seconds: float, programs: str | None) -> Measured:
+    """Of ten and of thirty, with the priority that a node has."""
+    runs = [_printed([*real_time(), program(LATENCY, programs), *size]) for size in (["10", "1000"], ["30", "200"])]
+    return Measured("\n      ".join(run.text for run in runs), all(run.met for run in runs))
+
+
+def _processors(_seconds: float, programs: str | None) -> Measured:
+    script = Path(__file__).parents[4] / "tests" / "node" / "processors.sh"
+    if not script.is_file():
+        return Measured("a checkout is needed, for tests/node/processors.sh", False)
+    environment = {**os.environ, "PYTHON": sys.executable} | ({VARIABLE: programs} if programs else {})
+    done = _printed([str(script)], environment)
+    return Measured(done.text, done.met and "left out" not in done.text)
+
+
 def _fuzz(seconds: float, programs: str | None) -> Measured:
     return _printed([program(FUZZ, programs), str(seconds / _PARSERS)])
 
@@ -74,6 +92,13 @@ QUICK = (
 )
 _WHOLE = 1000.0
 LONG = (
+    Row(
+        "latency",
+        "a round of 10 and of 30 processes: <= 1.3 of raw datagrams, <= 0.5 of ZeroMQ CURVE, in one run",
+        _latency,
+        needs=LATENCY,
+    ),
+    Row("processors", "logs of daemons give the same bits under qemu on s390x and aarch64", _processors, needs=UNITS),
     Row("bodies", "1e6 mutated bodies per family and dimension: refused by name, or canonical", _bodies, 300.0, BODIES),
     Row("fuzz", "mutated bytes at every parser, 60 s each: taken or refused", _fuzz, 60.0 * _PARSERS, FUZZ),
     Row("seeds", "10 000 seeds of all faults: nothing wrong, 1000 a minute and core", _speed, _WHOLE, SIMULATION),
