@@ -9,15 +9,9 @@
 
 #include "hostile.hpp"
 
-#ifdef GARRISON_HAVE_ZMQ
-#include <zmq.h>
-#endif
-
 namespace garrison::node::test {
 
 namespace {
-
-constexpr int kPatienceMs = 10'000;
 
 Address local(int port) { return address_from("mesh", "127.0.0.1:" + std::to_string(port)); }
 
@@ -118,68 +112,6 @@ class Sealed final : public Raw {
   std::array<std::byte, kMostDatagram> plain_{};
 };
 
-#ifdef GARRISON_HAVE_ZMQ
-/// A ROUTER to hear, and a DEALER to everybody else.
-class Curve final : public Mesh {
- public:
-  Curve(MeshPlan& plan, int own) : plan_(plan), own_(own) {}
-  ~Curve() override {
-    for (void* socket : all_) ::zmq_close(socket);
-    if (context_ != nullptr) ::zmq_ctx_term(context_);
-  }
-  bool open() override {
-    context_ = ::zmq_ctx_new();
-    hears_ = made(ZMQ_ROUTER);
-    const int server = 1;
-    set(hears_, ZMQ_CURVE_SERVER, &server, sizeof server);
-    set(hears_, ZMQ_CURVE_SECRETKEY, secret(own_), 41);
-    set(hears_, ZMQ_RCVTIMEO, &kPatienceMs, sizeof kPatienceMs);
-    if (::zmq_bind(hears_, place(own_).c_str()) != 0) return false;
-    for (int j = 0; j < plan_.nodes; ++j) {
-      if (j == own_) continue;
-      void* socket = made(ZMQ_DEALER);
-      set(socket, ZMQ_CURVE_SERVERKEY, plan_.open[static_cast<std::size_t>(j)].data(), 41);
-      set(socket, ZMQ_CURVE_PUBLICKEY, plan_.open[static_cast<std::size_t>(own_)].data(), 41);
-      set(socket, ZMQ_CURVE_SECRETKEY, secret(own_), 41);
-      if (::zmq_connect(socket, place(j).c_str()) != 0) return false;
-      tells_.push_back(socket);
-    }
-    return true;
-  }
-  void send(int round) override {
-    std::array<std::byte, kBytes> bytes{};
-    put_round(round, bytes.data());
-    for (void* socket : tells_) ::zmq_send(socket, bytes.data(), bytes.size(), 0);
-  }
-  int receive() override {
-    std::array<std::byte, 256> bytes{};
-    if (::zmq_recv(hears_, bytes.data(), bytes.size(), 0) < 0) return -1;  // who
-    return ::zmq_recv(hears_, bytes.data(), bytes.size(), 0) < 0 ? -1 : round_in(bytes.data());
-  }
-
- private:
-  void* made(int kind) {
-    all_.push_back(::zmq_socket(context_, kind));
-    const int none = 0;
-    set(all_.back(), ZMQ_LINGER, &none, sizeof none);
-    return all_.back();
-  }
-  static void set(void* socket, int option, const void* value, std::size_t size) {
-    if (::zmq_setsockopt(socket, option, value, size) != 0) std::abort();
-  }
-  const char* secret(int who) const { return plan_.secret[static_cast<std::size_t>(who)].data(); }
-  std::string place(int who) const {
-    return "tcp://127.0.0.1:" + std::to_string(plan_.ports[static_cast<std::size_t>(2 * who + 1)]);
-  }
-
-  MeshPlan& plan_;
-  int own_;
-  void* context_ = nullptr;
-  void* hears_ = nullptr;
-  std::vector<void*> tells_, all_;
-};
-#endif
-
 /// A session between both, as two nodes make it.
 void link(Peer& from, Peer& to, Seeded& random) {
   const Instant now = garrison::node::now();
@@ -212,20 +144,13 @@ std::unique_ptr<MeshPlan> MeshPlan::of(int nodes) {
           std::make_unique<Peer>(i, j, keys[at(i)], keys[at(j)].open, Prologue{}, 1));
   for (int i = 0; i < nodes; ++i)
     for (int j = 0; j < i; ++j) link(*plan->peers[at(i)][at(j)], *plan->peers[at(j)][at(i)], random);
-#ifdef GARRISON_HAVE_ZMQ
-  for (int i = 0; i < nodes; ++i)
-    ::zmq_curve_keypair(plan->open.emplace_back().data(), plan->secret.emplace_back().data());
-#endif
+  add_curve_keys(*plan);
   return plan;
 }
 
 const std::vector<Mesh::Kind>& Mesh::kinds() {
-#ifdef GARRISON_HAVE_ZMQ
-  static const std::vector<Kind> all{Kind::raw, Kind::sealed, Kind::curve};
-#else
-  static const std::vector<Kind> all{Kind::raw, Kind::sealed};
-#endif
-  return all;
+  static const std::vector<Kind> with{Kind::raw, Kind::sealed, Kind::curve}, without{Kind::raw, Kind::sealed};
+  return curve_is_built() ? with : without;
 }
 
 const char* Mesh::word(Kind kind) {
@@ -235,11 +160,7 @@ const char* Mesh::word(Kind kind) {
 std::unique_ptr<Mesh> Mesh::of(Kind kind, MeshPlan& plan, int own) {
   if (kind == Kind::raw) return std::make_unique<Raw>(plan, own);
   if (kind == Kind::sealed) return std::make_unique<Sealed>(plan, own);
-#ifdef GARRISON_HAVE_ZMQ
-  return std::make_unique<Curve>(plan, own);
-#else
-  return nullptr;
-#endif
+  return curve_mesh(plan, own);
 }
 
 }  // namespace garrison::node::test

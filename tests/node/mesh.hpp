@@ -42,4 +42,11 @@ class Mesh {
   virtual int receive() = 0;
 };
 
+/// ZeroMQ with CURVE, where libzmq was there at the build; else false, nothing and null.
+bool curve_is_built();
+void add_curve_keys(MeshPlan& plan);
+std::unique_ptr<Mesh> curve_mesh(MeshPlan& plan, int own);
+/// Milliseconds without a message after which a process gives up.
+inline constexpr int kPatienceMs = 10'000;
+
 }  // namespace garrison::node::test

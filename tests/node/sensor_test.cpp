@@ -87,6 +87,10 @@ TEST_CASE("a table has a row a sample, from the first sample on") {
     CHECK(std::isnan(y[0]));
   }
   CHECK_THROWS_WITH_AS(Sensor(settings, 3, "node.toml"), doctest::Contains("line 1"), InvalidInput);
+  const std::string zeros("1,2\n\0\x1b[1m\n", 11);
+  replace_file(folder / "y.csv", text_bytes(zeros));
+  CHECK_THROWS_WITH_AS(Sensor(settings, 2, "node.toml"),
+                       doctest::Contains(R"(line 2: got "\x00\x1b[1m", expected)"), InvalidInput);
 }
 
 TEST_CASE("the machine itself: load, clock, temperature and traffic") {

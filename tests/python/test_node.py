@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import ROOT
 from garrison import _core
 from garrison.cli import main as garrison
 from garrison.net import Client
@@ -24,33 +25,7 @@ from garrison.net.plan import read_plan
 from garrison.net.programs import LIAR, is_there, program
 from test_node_web import status as example
 
-SCENARIO = """
-[model]
-A = [[0.99, 0.05], [0.0, 0.95]]
-C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
-process_bound = 0.02
-measurement_bound = 0.01
-[network]
-kind = "ring"
-[filter]
-name = "saturation"
-threshold = 1.5
-rounds = 3
-attacked = 1
-initial_error = 2.0
-detector = true
-[certificate]
-failure = 0
-[[attack]]
-kind = "bias"
-agents = [2]
-value = 40.0
-start = 8
-[run]
-steps = 30
-seed = 3
-x0 = [1.0, 1.0]
-"""
+SCENARIO = (ROOT / "tests" / "node" / "ring.toml").read_text()
 PLAN = """
 scenario = "scenario.toml"
 [run]

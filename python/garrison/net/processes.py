@@ -132,9 +132,9 @@ class Processes:
         return [(self._relay, self._nodes[0].path.parent / "relay.json"), *nodes]
 
 
-def real_time() -> list[str]:
-    """What a command begins with for the priority that the service unit gives; nothing where it is not allowed."""
-    command = ["chrt", "--fifo", "20"]
+def real_time(priority: int = 20) -> list[str]:
+    """What a command begins with for this priority, by default the service unit's; nothing where it is not allowed."""
+    command = ["chrt", "--fifo", str(priority)]
     allowed = shutil.which("chrt") and subprocess.run([*command, "true"], capture_output=True).returncode == 0
     return command if allowed else []
 

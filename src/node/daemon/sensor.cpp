@@ -92,7 +92,7 @@ void Sensor::measure(std::int64_t sample, Micros now, std::span<double> y) const
 
 /// A table is read at once: nothing of it can be late.
 void Sensor::read_table() {
-  const std::string text = read_text(settings_.path);
+  const std::string text = read_text(settings_.path, "a CSV file, a row a sample ([sensor].path)");
   std::string_view rest = text;
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());

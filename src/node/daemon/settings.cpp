@@ -116,6 +116,8 @@ Settings parse_settings(const std::string& text, const std::string& path) {
   return s;
 }
 
-Settings read_settings(const std::string& path) { return parse_settings(read_text(path), path); }
+Settings read_settings(const std::string& path) {
+  return parse_settings(read_text(path, "a node.toml; docs/how-to/deploy-three-nodes.md has one"), path);
+}
 
 }  // namespace garrison::node

@@ -80,7 +80,8 @@ Station read_station(const std::string& path) {
     refuse(s.settings.key, "the key " + base64(s.identity.open),
            base64(s.self.open) + ", as " + s.roster.path + " has for " + s.self.name,
            "put the line that garrison-keygen printed into the roster, on all nodes");
-  s.part = read_bytes(s.settings.part);
+  s.part = read_bytes(s.settings.part, 64U << 20U,
+                      "the agent's part of a design, which Prepared.save(path, agent=i) writes");
   s.agent = agent_in(s.settings.part, s.part);
   if (s.agent->id() != s.self.id)
     refuse(s.settings.part, "the part of agent " + std::to_string(s.agent->id()),

@@ -4,7 +4,7 @@ import json
 import subprocess
 
 from garrison.net.folder import NodeFolder, free_ports
-from garrison.net.processes import Processes
+from garrison.net.processes import Processes, real_time
 from garrison.net.programs import RELAY, program
 
 
@@ -16,8 +16,9 @@ class Flood:
         self.sent = 0
 
     def on_first(self, _processes: Processes, nodes: list[NodeFolder]) -> None:
-        """Flood the first node, and return when that is over. The flood has no real-time priority."""
+        """Flood the first node, and return when that is over. The flood goes before other work, and behind nodes."""
         way = f"{free_ports(1)[0]}:{nodes[0].port}"
         words = ["--flood", str(self._rate), "--seconds", str(self._seconds), way]
-        done = subprocess.run([program(RELAY, self._programs), *words], capture_output=True, text=True, check=True)
+        command = [*real_time(1), program(RELAY, self._programs), *words]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
         self.sent = int(json.loads(done.stdout)["flooded"])
