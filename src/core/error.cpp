@@ -20,10 +20,28 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
+namespace {
+/// A zero would end a message, and a terminal would obey what else may stand in somebody's file.
+std::string printable(const std::string& given) {
+  std::string out;
+  for (const char c : given) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7f) {
+      out += c;
+      continue;
+    }
+    constexpr const char* digits = "0123456789abcdef";
+    out.append("\\x") += digits[byte >> 4U];
+    out += digits[byte & 15U];
+  }
+  return out;
+}
+}  // namespace
+
 void refuse(const std::string& which, const std::string& got, const std::string& expected,
             const std::string& advice) {
   std::string message = which;
-  message.append(": got ").append(got).append(", expected ").append(expected);
+  message.append(": got ").append(printable(got)).append(", expected ").append(expected);
   if (!advice.empty()) message.append("; ").append(advice);
   throw InvalidInput(message);
 }

@@ -24,6 +24,7 @@ class Seeded : public Random {
   }
   std::size_t below(std::size_t n) noexcept { return static_cast<std::size_t>(next() % n); }
   double uniform() noexcept { return static_cast<double>(next() >> 11) * 0x1p-53; }
+  double signed_unit() noexcept { return 2 * uniform() - 1; }
   Key key() noexcept override {
     Key made;
     for (std::size_t k = 0; k < 4; ++k) wire::store(made.data() + 8 * k, next());

@@ -7,32 +7,15 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cat >"$work/scenario.toml" <<'END'
-[model]
-A = [[0.99, 0.05], [-0.05, 0.97]]
-C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
-process_bound = 0.02
-measurement_bound = 0.01
-[network]
-kind = "ring"
-[filter]
-name = "saturation"
-threshold = 1.5
-rounds = 3
-attacked = 1
-initial_error = 2.0
-detector = true
-[[attack]]
-kind = "bias"
-agents = [2]
-value = 40.0
-start = 20
+cat >"$work/network.toml" <<END
+scenario = "$PWD/tests/node/ring.toml"
+[set]
+"run.steps" = 60
 [run]
-steps = 60
-seed = 3
-x0 = [1.0, 1.0]
+period_ms = 100
+[relay]
+loss = 0.1
 END
-printf 'scenario = "scenario.toml"\n[run]\nperiod_ms = 100\n[relay]\nloss = 0.1\n' >"$work/network.toml"
 "${PYTHON:-.venv/bin/python}" -m garrison.net up "$work/network.toml" -o "$work/net" >/dev/null
 sources=(tests/node/elsewhere.cpp src/node/journal.cpp src/node/log.cpp src/core/error.cpp)
 flags=(-std=c++20 -O2 -ffp-contract=off -DGARRISON_HEADERS_ONLY -Iinclude -isystem /usr/include/eigen3)

@@ -14,6 +14,7 @@
 #include "mutants.hpp"
 #include "node/daemon/files.hpp"
 #include "node/daemon/ring.hpp"
+#include "node/daemon/service.hpp"
 
 using namespace garrison;
 using namespace garrison::node;
@@ -86,6 +87,35 @@ TEST_CASE("a table has a row a sample, from the first sample on") {
     CHECK(std::isnan(y[0]));
   }
   CHECK_THROWS_WITH_AS(Sensor(settings, 3, "node.toml"), doctest::Contains("line 1"), InvalidInput);
+  const std::string zeros("1,2\n\0\x1b[1m\n", 11);
+  replace_file(folder / "y.csv", text_bytes(zeros));
+  CHECK_THROWS_WITH_AS(Sensor(settings, 2, "node.toml"),
+                       doctest::Contains(R"(line 2: got "\x00\x1b[1m", expected)"), InvalidInput);
+}
+
+TEST_CASE("the machine itself: load, clock, temperature and traffic") {
+  SensorSettings settings;
+  settings.source = SensorSettings::Source::procfs;
+  settings.read = {"load", "clock", "net:lo", "temp:zone999"};
+  settings.max_age = INT64_MAX / 2;
+  Sensor sensor(settings, 4, "node.toml");
+  std::array<double, 4> y{};
+  sensor.tick(0);
+  sensor.measure(1, garrison::node::now().wall, y);
+  CHECK(y[0] >= 0.0);
+  CHECK(std::isfinite(y[1]));
+  CHECK(std::isnan(y[2]));  // a rate needs two readings
+  CHECK(std::isnan(y[3]));  // there is no such zone
+  sensor.tick(50'000);      // not yet
+  CHECK(sensor.counters().taken == 1);
+  sensor.tick(1'000'000);
+  sensor.measure(1, garrison::node::now().wall, y);
+  CHECK(sensor.counters().taken == 2);
+  CHECK(y[2] >= 0.0);
+  CHECK_THROWS_WITH_AS(Sensor(settings, 3, "node.toml"), doctest::Contains("4 names"), InvalidInput);
+  for (const char* bad : {"", "lod", "temp:zone", "temp:zone1/../2", "net:", "net:..", "net:a/b"})
+    CHECK_THROWS_WITH_AS(Machine("[sensor].read", {bad}), doctest::Contains("expected \"load\""),
+                         InvalidInput);
 }
 
 TEST_CASE("lines of a command, which is started again when it ends") {

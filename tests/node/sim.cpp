@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// garrison_node_sim FIRST COUNT: that many seeds of the simulation; ends with 1 when anything did not hold.
+// garrison_node_sim FIRST COUNT [all|cold|clock|liar|honest]: that many seeds of the simulation; ends with 1
+// when anything did not hold.
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -9,15 +10,16 @@
 using namespace garrison::node::test;
 
 int main(int count, char** arguments) {
-  if (count != 3 || !garrison::node::start_crypto()) {
-    std::fprintf(stderr, "usage: garrison_node_sim FIRST COUNT\n");
+  const auto weather = weather_of(count == 4 ? arguments[3] : "all");
+  if ((count != 3 && count != 4) || !weather || !garrison::node::start_crypto()) {
+    std::fprintf(stderr, "usage: garrison_node_sim FIRST COUNT [all|cold|clock|liar|honest]\n");
     return 2;
   }
   const std::uint64_t first = std::strtoull(arguments[1], nullptr, 10);
   const std::uint64_t seeds = std::strtoull(arguments[2], nullptr, 10);
   Totals t;
   const std::clock_t before = std::clock();
-  for (std::uint64_t seed = first; seed < first + seeds; ++seed) Simulation(seed, t, true).run();
+  for (std::uint64_t seed = first; seed < first + seeds; ++seed) Simulation(seed, t, true, *weather).run();
   const double cpu = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   const auto n = [](std::int64_t v) { return static_cast<long long>(v); };
   std::printf(
@@ -42,6 +44,8 @@ int main(int count, char** arguments) {
   row("samples in which an honest sensor is proved", t.proofs, t.proofs_wrong);
   row("statements of honest nodes that contradict something", t.statements, t.statements_wrong);
   std::printf("%-58s %12lld\n", "convictions of liars who signed two things", n(t.convictions));
+  row("liars not proved by two nodes within three batches", t.equivocations, t.equivocations_wrong);
+  row("clocks right again, but no complete sample in three", t.steps, t.steps_wrong);
   row("nodes not back with all links at the end", t.nodes, t.nodes_wrong);
   row("estimates that the log does not give again", t.replayed, t.replayed_wrong);
   row("estimates other than the plain loop's", t.plain, t.plain_wrong);

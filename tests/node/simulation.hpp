@@ -5,74 +5,23 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <queue>
 #include <set>
 #include <unordered_set>
 #include <vector>
 
-#include "garrison/engine/any_filter.hpp"
 #include "garrison/node/node.hpp"
-#include "hostile.hpp"
+#include "plant.hpp"
+#include "totals.hpp"
 
 namespace garrison::node::test {
 
-/// What a run has shown; every `*_wrong` must be 0.
-struct Totals {
-  std::int64_t seeds = 0, events = 0, datagrams = 0, samples = 0, complete = 0, missing = 0, wants = 0,
-               resent = 0;
-  std::int64_t injected = 0, mutated = 0, refused = 0, conflicts = 0, crashes = 0, joins = 0, clock_steps = 0;
-  std::int64_t taken_twice_wrong = 0;  ///< a datagram accepted a second time
-  std::int64_t mutants_wrong = 0;      ///< a changed one accepted
-  std::int64_t fused = 0,
-               fused_wrong = 0;  ///< bodies that their sender did not produce for that sample and round
-  std::int64_t bodies = 0, bodies_wrong = 0;          ///< samples and rounds with two bodies of one node
-  std::int64_t estimates = 0, estimates_wrong = 0;    ///< not finite
-  std::int64_t bounds = 0, bounds_wrong = 0;          ///< errors beyond a reported bound
-  std::int64_t proofs = 0, proofs_wrong = 0;          ///< node-samples that hold an honest sensor for proved
-  std::int64_t nodes = 0, nodes_wrong = 0;            ///< not back with all links at the end
-  std::int64_t convictions = 0;                       ///< of liars who signed two things, by one node each
-  std::int64_t statements = 0, statements_wrong = 0;  ///< of honest nodes that seemed to contradict something
-  std::int64_t replayed = 0, replayed_wrong = 0;
-  std::int64_t plain = 0, plain_wrong = 0;  ///< compared with the agents driven by a plain loop
-
-  std::int64_t wrong() const {
-    return taken_twice_wrong + mutants_wrong + fused_wrong + bodies_wrong + estimates_wrong + bounds_wrong +
-           proofs_wrong + statements_wrong + nodes_wrong + replayed_wrong + plain_wrong;
-  }
-};
-
-/// Drawn from the seed.
-struct Faults {
-  double loss = 0, duplicates = 0, inject = 0, mutate = 0;
-  Micros jitter = 0;
-  int liar = -1;
-  std::optional<int> attacked;
-  std::vector<Micros> skew;
-  struct Cut {
-    Micros from, to;
-    int sender, receiver;  ///< receiver -1: nothing reaches or leaves the sender
-  };
-  std::vector<Cut> cuts;
-  struct Crash {
-    Micros at, back;
-    int node;
-    bool lost;  ///< its snapshot
-  };
-  std::vector<Crash> crashes;
-  struct Step {
-    Micros at, by;
-    int node;
-  };
-  std::vector<Step> steps;  ///< of a node's clock
-
-  Faults(int agents, Seeded& random);
-  bool none() const { return loss == 0 && cuts.empty() && crashes.empty() && steps.empty() && liar < 0; }
-};
+/// By which bodies and datagrams are told apart.
+std::uint64_t digest(Bytes bytes);
 
 class Simulation {
  public:
-  Simulation(std::uint64_t seed, Totals& totals, bool verbose = false);
+  Simulation(std::uint64_t seed, Totals& totals, bool verbose = false, Weather weather = Weather::all);
   ~Simulation();
   void run();
 
@@ -83,6 +32,7 @@ class Simulation {
   /// again (Peer::kSilence + Peer::kRetryLive).
   static constexpr int kQuiet = 70;
   static constexpr Micros kPoll = 5000;
+  static constexpr int kBatch = 10;  ///< samples that a statement is about
 
   struct Event {
     enum class What { tick, datagram, crash, restart, step };
@@ -97,7 +47,6 @@ class Simulation {
   };
   class Station;
 
-  void make_plant();
   void push(Micros at, Event::What what, int node, std::shared_ptr<const Octets> bytes = nullptr,
             Event::Mark mark = Event::Mark::genuine, Micros by = 0);
   void happen(const Event& event);
@@ -107,6 +56,8 @@ class Simulation {
   bool cut(int from, int to) const;
   void boot(int node);
   void check_sample(int node, const Sample& sample);
+  void check_clock(int node, const Sample& sample);
+  void convicted(int node);
   void finish();
   void check_bodies();
   void check_plain_loop();
@@ -119,17 +70,20 @@ class Simulation {
   std::shared_ptr<const Prepared> prepared_;
   Schedule schedule_;
   Faults faults_;
+  Plant plant_;
+  Weather weather_;
   std::vector<KeyPair> keys_;
   std::vector<SigningKey> signing_;  ///< empty: nobody signs
   std::vector<Key> signing_open_;
   Prologue prologue_{};
-  Vector x0_;
-  std::vector<Vector> states_;
-  std::vector<std::vector<double>> measurements_;  ///< [sample][agent]
   std::vector<std::unique_ptr<Station>> stations_;
   std::priority_queue<Event> queue_;
   std::uint64_t order_ = 0;
   Micros now_ = 0;
+  Micros right_at_ =
+      -1;  ///< the stepped clock was right again; -1 = nobody's, or a complete sample came of it
+  Micros lied_at_ = -1;      ///< the first statement that was not shown to all alike
+  std::set<int> convicted_;  ///< nodes that had a proof in time
   std::vector<std::pair<int, std::shared_ptr<const Octets>>> captured_;
 };
 

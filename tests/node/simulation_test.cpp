@@ -28,6 +28,28 @@ TEST_CASE("300 seeds of faults: what must hold holds") {
     CHECK(seen > 100);
 }
 
+TEST_CASE("weathers of their own: cold restarts, clocks an hour off, liars, and honest ones who sign") {
+  const auto run = [](Weather weather) {
+    Totals totals;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) Simulation(seed, totals, false, weather).run();
+    CHECK(totals.wrong() == 0);
+    return totals;
+  };
+  const Totals cold = run(Weather::cold);
+  CHECK(cold.crashes >= 40);
+  CHECK(cold.joins >= 40);
+  CHECK(cold.proofs > 1000);
+  const Totals hours = run(Weather::clock);
+  CHECK(hours.clock_steps >= 80);
+  CHECK(hours.steps == 40);
+  const Totals liars = run(Weather::liar);
+  CHECK(liars.equivocations == 40);
+  CHECK(liars.convictions >= 80);
+  const Totals honest = run(Weather::honest);
+  CHECK(honest.convictions == 0);
+  CHECK(honest.statements > 1000);
+}
+
 // A clock that goes back while the node listens: it stayed in a loop, or ahead of everybody. 2114: ends with
 // different sessions, of which one was heard and the other was not.
 TEST_CASE("seeds that went wrong before") {

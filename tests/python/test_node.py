@@ -15,42 +15,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import ROOT
 from garrison import _core
 from garrison.cli import main as garrison
 from garrison.net import Client
 from garrison.net.command import main
 from garrison.net.folder import write_network
 from garrison.net.plan import read_plan
-from garrison.net.programs import program
+from garrison.net.programs import LIAR, is_there, program
 from test_node_web import status as example
 
-SCENARIO = """
-[model]
-A = [[0.99, 0.05], [0.0, 0.95]]
-C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
-process_bound = 0.02
-measurement_bound = 0.01
-[network]
-kind = "ring"
-[filter]
-name = "saturation"
-threshold = 1.5
-rounds = 3
-attacked = 1
-initial_error = 2.0
-detector = true
-[certificate]
-failure = 0
-[[attack]]
-kind = "bias"
-agents = [2]
-value = 40.0
-start = 8
-[run]
-steps = 30
-seed = 3
-x0 = [1.0, 1.0]
-"""
+SCENARIO = (ROOT / "tests" / "node" / "ring.toml").read_text()
 PLAN = """
 scenario = "scenario.toml"
 [run]
@@ -143,6 +118,62 @@ def test_a_client_measures_and_watches(folder: Path, programs: str) -> None:
     assert not (folder / "node.sock").exists()
 
 
+def test_a_running_node_reads_its_sensor_anew(folder: Path, programs: str) -> None:
+    settings = (folder / "node.toml").read_text()
+
+    def reloaded(text: str) -> subprocess.CompletedProcess[str]:
+        (folder / "node.toml").write_text(text)
+        command = [program("garrison-ctl", programs), "reload", str(folder / "node.sock")]
+        return subprocess.run(command, capture_output=True, text=True, timeout=20)
+
+    command = [program("garrison-node", programs), str(folder / "node.toml")]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL) as process:
+        try:
+            client = Client(folder / "node.sock")
+            _patiently(client)
+            with pytest.raises(_core.InvalidInput, match='source = "socket"'):
+                client.measure([1.5])
+            socketed = settings.replace('source = "file"\npath = "sensor.csv"', 'source = "socket"')
+            assert reloaded(socketed).returncode == 0
+            assert client.measure([1.5]) == {"ok": True}
+            time.sleep(0.2)  # the loop has let go of the sensor before
+            refused = reloaded(socketed.replace('"socket"', '"sokket"'))
+            assert refused.returncode == 2
+            assert "sokket" in refused.stderr
+            refused = reloaded(socketed.replace("require_synchronised = false", "require_synchronised = true"))
+            assert refused.returncode == 2
+            assert "restart the node" in refused.stderr
+            assert client.measure([2.5]) == {"ok": True}
+        finally:
+            process.terminate()
+    assert process.returncode == 0
+
+
+def test_names_of_agents_may_be_anything(plan: Path, programs: str, tmp_path: Path) -> None:
+    names = ['a "b"', "c/d", "..", "e\\f", "g\x7f\n", "h"]
+    network = read_plan(plan)
+    network.scenario.names = names
+    (tmp_path / "net").mkdir()
+    nodes = write_network(network, tmp_path / "net", time.time() + 3600, programs)
+    assert sorted(path.name for path in (tmp_path / "net").iterdir()) == [*map(str, range(6)), "roster.toml"]
+    assert [node.name for node in nodes] == names
+    assert all(check(node.path, programs).returncode == 0 for node in nodes)
+
+
+def test_a_liar_with_keys_is_convicted(
+    plan: Path, programs: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if not is_there(LIAR):
+        pytest.skip("no garrison_node_liar in build/")
+    scenario = plan.with_name("scenario.toml")
+    scenario.write_text(SCENARIO.replace('kind = "ring"', 'kind = "band"\nrange = 2'))
+    assert main(["up", str(plan), "--liar", "x"]) == 2
+    assert "--liar" in capsys.readouterr().err
+    assert main(["up", str(plan), "-o", str(tmp_path / "net"), "--liar", "3"]) == 0
+    assert re.search(r"liar: proved by [2-5] nodes", capsys.readouterr().out)
+    assert list(tmp_path.glob("net/*/state/proofs/3-1-*.proof"))
+
+
 def test_a_service_is_told_where_files_are_and_tells_how_it_is(folder: Path, programs: str, tmp_path: Path) -> None:
     settings = (folder / "node.toml").read_text()
     for words in ('key = "node.key"\n', '[socket]\npath = "node.sock"\n'):
@@ -194,11 +225,17 @@ def test_check_says_what_fits(folder: Path, programs: str) -> None:
 @pytest.mark.parametrize(
     ("file", "old", "new", "words"),
     [
-        ("node.toml", 'source = "file"', 'source = "flie"', ["line 8, [sensor].source", '"flie"', '"lines", "udp"']),
+        ("node.toml", 'source = "file"', 'source = "flie"', ["line 10, [sensor].source", '"flie"', '"lines", "udp"']),
+        (
+            "node.toml",
+            'source = "file"\npath = "sensor.csv"',
+            'source = "procfs"\nread = ["lod"]',
+            ["[sensor].read", '"lod"', '"load", "clock"'],
+        ),
         ("node.toml", 'name = "0"', 'name = "9"', ["node.toml, name", "an agent of", "0, 1, 2"]),
         ("node.toml", "part.gdesign", "nothing.gdesign", ["nothing.gdesign", "No such file"]),
         ("sensor.csv", "\n", "\nwords\n", ["sensor.csv, line 2", '"words"', "1 numbers"]),
-        ("../roster.toml", "period_ms = 100", "period_ms = 2", ["3 rounds", "a longer period_ms"]),
+        ("../roster.toml", "period_ms = 100.0", "period_ms = 2", ["3 rounds", "a longer period_ms"]),
         ("../roster.toml", "initial = [0.0, 0.0]", "initial = [0.0]", ["[run].initial", "got 1 numbers", "2, one per"]),
         ("../roster.toml", "hears = [1, 5]", "hears = [1]", ["hears", "a list without 5", "from the same design"]),
         ("../roster.toml", "period_ms", "perod_ms", ["line 3, [run].perod_ms", 'did you mean "period_ms"?']),
@@ -260,6 +297,9 @@ def test_accept_measures_a_row_and_refuses_unknown_ones(programs: str, capsys: p
     assert "a number in 2..3600" in capsys.readouterr().err
     assert main(["accept", "kills", "--seconds", "2.5", "--programs", programs]) in (0, 1)  # 1: a busy machine
     assert re.search(r"kills: .*\n +5 of 5 back; median", capsys.readouterr().out)
+    assert main(["accept", "--list"]) == 0
+    listed = capsys.readouterr().out.splitlines()
+    assert any(re.match(r"kills +100 s +2 kills a second", line) for line in listed)
 
 
 def _signed(seed: bytes, run: bytes, first: int, digest: bytes) -> bytes:

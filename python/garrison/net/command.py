@@ -3,20 +3,25 @@
 import argparse
 import sys
 import tempfile
-from collections import Counter
+import time
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from garrison import _core
-from garrison._commands.terminal import NO, OK, REFUSED, console_for, print_table
-from garrison.net.outcome import Outcome, write_summary
+from garrison._commands.terminal import NO, OK, REFUSED
+from garrison.net.accept import ROWS
+from garrison.net.accept.daemons import ATTACK
+from garrison.net.accept.load import Load
+from garrison.net.accept.plans import band, carried_out
+from garrison.net.outcome import write_summary
 from garrison.net.plan import Plan, read_plan
 from garrison.net.programs import is_there
-from garrison.net.rows import ATTACK, ROWS
 from garrison.net.running import carry_out
+from garrison.net.shown import show
+from garrison.net.soak import WEATHER, Soak
 from garrison.words import count, near, refusal
+
+#: seconds of a row where all are measured
+_SHORT = 30.0
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -38,12 +43,22 @@ def _parser() -> argparse.ArgumentParser:
         "datagrams, and a flood of 5000 a second",
     )
     up.add_argument("--kills", type=int, default=0, help="kill a daemon, and start it again, so many times")
+    up.add_argument(
+        "--liar", metavar="NAME", help="this agent's daemon lies to some neighbours, with its keys; see docs"
+    )
     up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
+    soak = commands.add_parser(
+        "soak", help="ten daemons for hours, with loss and power cuts: nothing grows", allow_abbrev=False
+    )
+    soak.add_argument("--seconds", type=float, default=600.0, help="how long, 30..86400 (default 600)")
+    soak.add_argument("--programs", help="folder of the node's programs")
     accept = commands.add_parser(
         "accept", help="measure what a network of daemons has to meet, row by row", allow_abbrev=False
     )
-    accept.add_argument("row", nargs="*", help=f"some of {', '.join(row.name for row in ROWS)}; default: all")
-    accept.add_argument("--seconds", type=float, default=30.0, help="length of rows that can be longer (default 30)")
+    names = ", ".join(row.name for row in ROWS)
+    accept.add_argument("row", nargs="*", help=f"some of {names}, in full length; default: all, 30 s each at most")
+    accept.add_argument("--list", action="store_true", help="print the rows with their bars and full lengths, and end")
+    accept.add_argument("--seconds", type=float, help="another length, for rows that have one")
     accept.add_argument("--programs", help="folder of the node's programs")
     return parser
 
@@ -57,8 +72,11 @@ def main(argv: list[str] | None = None) -> int:
     try:
         if args.command == "accept":
             return _accept(args)
+        if args.command == "soak":
+            return _soak(args)
         plan = read_plan(args.file)
         plan.relay |= ATTACK if args.attack else {}
+        plan.liar = None if args.liar is None else _named(plan, args.liar)
         if args.out is not None:
             return _up(plan, _empty(Path(args.out)), args)
         with tempfile.TemporaryDirectory(prefix="garrison-net-") as folder:
@@ -70,6 +88,26 @@ def main(argv: list[str] | None = None) -> int:
         return 130
 
 
+def _soak(args: argparse.Namespace) -> int:
+    if not 30 <= args.seconds <= 86400:
+        raise refusal("--seconds", f"{args.seconds:g}", "a number in 30..86400")
+    plan = band(10, 5, 50.0, args.seconds)
+    plan.relay |= WEATHER
+    soak = Soak(plan, time.time() + args.seconds)
+    outcome = carried_out(plan, args.programs, meanwhile=soak)
+    outcome.broken += soak.broken()
+    show(plan, outcome)
+    print(f"soak: {soak.cuts} power cuts; the node that grew most grew by {soak.growth()} bytes")
+    return NO if outcome.broken else OK
+
+
+def _named(plan: Plan, name: str) -> int:
+    names = plan.scenario.names
+    if name not in names:
+        raise refusal("--liar", repr(name), f"one of {', '.join(names)}", near(name, names))
+    return names.index(name)
+
+
 def _up(plan: Plan, folder: Path, args: argparse.Namespace) -> int:
     outcome = carry_out(plan, folder, programs=args.programs, page=args.page, kills=args.kills, say=_say)
     write_summary(outcome, folder / "summary.json")
@@ -78,91 +116,38 @@ def _up(plan: Plan, folder: Path, args: argparse.Namespace) -> int:
 
 
 def _accept(args: argparse.Namespace) -> int:
+    if args.list:
+        return _list()
     known = {row.name: row for row in ROWS}
     for name in args.row:
         if name not in known:
             raise refusal("accept", repr(name), f"one of {', '.join(known)}", near(name, known))
-    if not 2 <= args.seconds <= 3600:
+    if args.seconds is not None and not 2 <= args.seconds <= 3600:
         raise refusal("--seconds", f"{args.seconds:g}", "a number in 2..3600")
     missed = 0
     for row in [known[name] for name in args.row] or ROWS:
         if not args.row and not is_there(row.needs, args.programs):
             _say(f"left out  {row.name}: {row.needs} is not installed; it is a program of the tests")
             continue
-        said, met = row.run(args.seconds, args.programs)
-        missed += not met
-        _say(f"{'met ' if met else 'MISS'}  {row.name}: {row.bar}\n      {said}")
+        seconds = args.seconds or (row.seconds if args.row else min(row.seconds, _SHORT))
+        load = Load()
+        measured = row.run(seconds, args.programs)
+        missed += not measured.met
+        _say(f"{'met ' if measured.met else 'MISS'}  {row.name}: {row.bar}\n      {measured.text}")
+        if words := load.words():
+            _say(f"      {words}")
     _say("all met" if not missed else f"{count(missed, 'row')} missed")
     return NO if missed else OK
 
 
+def _list() -> int:
+    for row in ROWS:
+        _say(f"{row.name:13} {f'{row.seconds:g} s' if row.seconds else '':>7}  {row.bar}")
+    return OK
+
+
 def _say(text: str) -> None:
     print(text, flush=True)
-
-
-def show(plan: Plan, outcome: Outcome) -> None:
-    """The table, what the relay did, and what did not hold."""
-    head = [
-        "node",
-        "complete",
-        "missing",
-        "asked",
-        "same bits",
-        "bound",
-        "median",
-        "error",
-        "worst",
-        "accuses",
-        "replay",
-    ]
-    rows = []
-    for node in outcome.nodes:
-        counters = node.status["counters"]
-        rows.append(
-            [
-                node.name + (" (hijacked)" if node.name in outcome.hijacked else ""),
-                f"{int(node.complete.sum())}/{plan.samples}",
-                str(counters["missing"]),
-                str(counters["wants"]),
-                f"{int(node.same.sum())}",
-                f"{np.isfinite(node.bound).mean():.1%}",
-                _number(np.nanmedian(node.bound)) if np.isfinite(node.bound).any() else "",
-                _number(np.nanmean(node.error)) if np.isfinite(node.error).any() else "",
-                _number(np.nanmax(node.error)) if np.isfinite(node.error).any() else "",
-                " ".join(node.accused),
-                f"{node.replayed - node.differ}/{node.replayed}",
-            ]
-        )
-    print_table(plan.scenario.title, head, rows, console_for())
-    relay = outcome.relay
-    print(
-        f"relay: {relay['came']} datagrams, {relay['lost']} lost, {relay['doubled']} doubled; "
-        f"complete {outcome.share('complete'):.2%}, with bound {outcome.share('bound'):.2%}"
-    )
-    if attacks := {word: relay[word] for word in ("replayed", "mutated", "forged", "flooded") if relay[word]}:
-        print(
-            f"attack: {', '.join(f'{count} {word}' for word, count in attacks.items())}; refused: {_refused(outcome)}"
-        )
-    if known := sorted(seconds for seconds in outcome.back if seconds is not None):
-        print(f"kills: {len(outcome.back)}, back after {np.median(known):.2f} s (median), {known[-1]:.2f} s (longest)")
-    for line in outcome.broken:
-        print(f"DOES NOT HOLD: {line}")
-    if not outcome.broken:
-        print("held: errors within bounds, nobody accused wrongly, every log gives the same estimates again")
-
-
-def _refused(outcome: Outcome) -> str:
-    """All nodes' datagrams that nothing came of, by reason."""
-    found: Counter[str] = Counter()
-    for node in outcome.nodes:
-        found.update(node.status["outside"])
-        for link in node.status["links"]:
-            found.update(link["fates"])
-    return ", ".join(f"{count} {fate}" for fate, count in found.most_common() if fate not in ("taken", "handshake"))
-
-
-def _number(value: np.floating[Any]) -> str:
-    return f"{float(value):.3g}"
 
 
 def _empty(path: Path) -> Path:

@@ -1,13 +1,16 @@
 """The files of a network of nodes: keys, roster, parts of the design, and a folder for every node."""
 
+import re
 import socket
 import subprocess
+import tomllib
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from garrison.importers.toml import document
 from garrison.net.plan import Plan
 from garrison.net.programs import KEYGEN, program
 
@@ -28,6 +31,11 @@ class NodeFolder:
         return self.path / "node.toml"
 
     @property
+    def clock(self) -> Path:
+        """How wrong its clock is, for plans with `wrong_clock`."""
+        return self.path / "clock"
+
+    @property
     def socket(self) -> Path:
         """Of its status."""
         return self.path / "node.sock"
@@ -36,22 +44,27 @@ class NodeFolder:
 def write_network(plan: Plan, folder: Path, start: float, programs: str | None) -> list[NodeFolder]:
     """Write everything into `folder`; the first sample begins one period after `start`, seconds since 1970."""
     names, agents = plan.scenario.names, plan.scenario.model.agents
-    ports = _free_ports(2 * agents)
-    nodes = [NodeFolder(i, names[i], folder / names[i], ports[i], ports[agents + i]) for i in range(agents)]
-    keys = []
+    ports = free_ports(2 * agents)
+    nodes = [NodeFolder(i, names[i], folder / _place(names, i), ports[i], ports[agents + i]) for i in range(agents)]
     for node in nodes:
         node.path.mkdir()
-        command = [program(KEYGEN, programs), str(node.path / "node.key")]
-        keys.append(subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip())
+    keys = [_key(node, programs) for node in nodes]
     (folder / "roster.toml").write_text(_roster(plan, nodes, keys, start))
     for node in nodes:
         plan.reference.prepared.save(node.path / "part.gdesign", agent=node.id)
         np.savetxt(node.path / "sensor.csv", plan.reference.sensor(node.id), fmt="%.17g", delimiter=",")
         node.settings.write_text(_settings(node))
+        node.clock.write_bytes(bytes(8))
     return nodes
 
 
-def _free_ports(count: int) -> list[int]:
+def _place(names: list[str], i: int) -> str:
+    """Its name where that can be a folder, else its number."""
+    plain = all(re.fullmatch(r"\w[\w.-]{0,80}", name) for name in names)
+    return names[i] if plain else str(i)
+
+
+def free_ports(count: int) -> list[int]:
     """Ports that nobody listens at just now."""
     with ExitStack() as stack:
         found = []
@@ -63,32 +76,51 @@ def _free_ports(count: int) -> list[int]:
 
 
 def _roster(plan: Plan, nodes: list[NodeFolder], keys: list[str], start: float) -> str:
-    heard: list[list[int]] = [[] for _ in nodes]
+    run = {"start": int(start * 1e6), "period_ms": plan.period_ms}
+    run |= {key: value for key in ("round_ms", "resend_ms") if (value := getattr(plan, key)) is not None}
+    agents = [
+        {
+            "id": node.id,
+            "name": node.name,
+            "key": key,
+            "address": f"127.0.0.1:{node.outside}",
+            "hears": heard,
+        }
+        for node, key, heard in zip(nodes, keys, _heard(plan, len(nodes)), strict=True)
+    ]
+    return document({"run": run | {"initial": plan.reference.initial.tolist()}, "agent": agents}, [])
+
+
+def _heard(plan: Plan, agents: int) -> list[list[int]]:
+    """Whom every agent hears."""
+    heard: list[list[int]] = [[] for _ in range(agents)]
     for sender, receiver in plan.scenario.network.edges:
         heard[receiver].append(sender)
         if not plan.scenario.network.directed:
             heard[sender].append(receiver)
-    lines = ["[run]", f"start = {int(start * 1e6)}  # microseconds since 1970", f"period_ms = {plan.period_ms!r}"]
-    lines += [f"{key} = {value!r}" for key in ("round_ms", "resend_ms") if (value := getattr(plan, key)) is not None]
-    lines.append(f"initial = {plan.reference.initial.tolist()}")
-    for node, key in zip(nodes, keys, strict=True):
-        lines += ["", "[[agent]]", f"id = {node.id}", f'name = "{node.name}"', key]
-        lines += [f'address = "127.0.0.1:{node.outside}"', f"hears = {sorted(heard[node.id])}"]
-    return "\n".join([*lines, ""])
+    return [sorted(ids) for ids in heard]
 
 
 def _settings(node: NodeFolder) -> str:
-    return f"""name = "{node.name}"
-part = "part.gdesign"
-roster = "../roster.toml"
-key = "node.key"
-[listen]
-address = "127.0.0.1:{node.port}"
-[sensor]
-source = "file"
-path = "sensor.csv"
-[clock]
-require_synchronised = false
-[socket]
-path = "node.sock"
-"""
+    return document(
+        {
+            "name": node.name,
+            "part": "part.gdesign",
+            "roster": "../roster.toml",
+            "key": "node.key",
+            "listen": {"address": f"127.0.0.1:{node.port}"},
+            "sensor": {"source": "file", "path": "sensor.csv"},
+            "clock": {"require_synchronised": False},
+            "socket": {"path": "node.sock"},
+            # Power cuts have to meet the moment in which it is written.
+            "state": {"every_s": 1},
+        },
+        [],
+    )
+
+
+def _key(folder: NodeFolder, programs: str | None) -> str:
+    """A new key in its folder; its public half."""
+    command = [program(KEYGEN, programs), str(folder.path / "node.key")]
+    line = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return str(tomllib.loads(line)["key"])

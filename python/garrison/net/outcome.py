@@ -24,12 +24,15 @@ class NodeOutcome:
     complete: NDArray[np.bool_]
     said: NDArray[np.bool_]
     bound: Array
+    estimate: Array  # (samples, n)
     error: Array
     same: NDArray[np.bool_]  # the estimate is that of the run in one process, bit for bit
     status: dict[str, Any]
     accused: list[str]
     code: int
     took: Array  # ms from the begin of a sample to its end
+    complaint: str  # what it said to the service manager, in one line
+    memory: int  # bytes resident at the end
     replayed: int = 0
     differ: int = 0
 
@@ -43,6 +46,8 @@ class Outcome:
     hijacked: list[str]
     broken: list[str] = field(default_factory=list)
     back: list[float | None] = field(default_factory=list)  # s after every kill until a complete sample
+    proved: list[float] = field(default_factory=list)  # s from a liar's first lie, for every node with a proof
+    start: float = 0.0  # of sample 0, s since 1970
     cores: float = 0.0  # CPU time of all processes, the relay's, too, per second
 
     def share(self, name: str) -> float:
@@ -54,14 +59,17 @@ class Outcome:
 def read_outcome(plan: Plan, nodes: list[NodeFolder], ended: Ended, shares: bool = True) -> Outcome:
     """Read what the nodes printed and logged, and check it. shares: those that the plan expects, too."""
     names = plan.scenario.names
-    found = [_node(plan, node, ended.statuses[k], ended.codes[k]) for k, node in enumerate(nodes)]
+    found = [_node(plan, node, ended) for node in nodes]
     outcome = Outcome(found, ended.relay, [names[a] for a in plan.scenario.hit])
+    if plan.liar is not None:
+        return outcome  # what holds then is said in liars.py
     outcome.broken = [*_broken_nodes(outcome), *_broken_bits(outcome)]
     outcome.broken += _broken_shares(plan, outcome) if shares else []
     return outcome
 
 
-def _node(plan: Plan, folder: NodeFolder, status: dict[str, Any], code: int) -> NodeOutcome:
+def _node(plan: Plan, folder: NodeFolder, ended: Ended) -> NodeOutcome:
+    status = ended.statuses[folder.id]
     samples, n = plan.samples, len(plan.reference.initial)
     complete, said = np.zeros(samples, dtype=bool), np.zeros(samples, dtype=bool)
     bound, took, estimate = np.full(samples, np.nan), np.full(samples, np.nan), np.full((samples, n), np.nan)
@@ -81,12 +89,15 @@ def _node(plan: Plan, folder: NodeFolder, status: dict[str, Any], code: int) -> 
         complete=complete,
         said=said,
         bound=bound,
+        estimate=estimate,
         error=np.linalg.norm(estimate - truth, axis=1),
         same=(estimate == run.estimate[0, 1:, folder.id]).all(axis=1),
         status=status,
         accused=[plan.scenario.names[a] for a in status["accused"]],
-        code=code,
+        code=ended.codes[folder.id],
         took=took,
+        complaint=" ".join(ended.said[folder.id].split()),
+        memory=ended.memory[folder.id],
     )
     for log in sorted((folder.path / "log").glob("*.mcap")):
         replayed = _core.replay_log(log.read_bytes())
@@ -100,6 +111,8 @@ def _broken_nodes(outcome: Outcome) -> list[str]:
     for node in outcome.nodes:
         if node.code != 0:
             out.append(f"{node.name} ended with exit code {node.code}, expected 0")
+        if node.complaint:
+            out.append(f"{node.name} says: {node.complaint}")
         if beyond := int((node.error > node.bound).sum()):
             out.append(f"{node.name}: {beyond} errors beyond the bound, expected none")
         if wrongly := sorted(set(node.accused) - set(outcome.hijacked)):

@@ -28,6 +28,8 @@ class Plan:
     seed: int = 1
     relay: dict[str, float] = field(default_factory=dict)
     expect: dict[str, float] = field(default_factory=dict)
+    wrong_clock: str | None = None  # a library before the daemons, by which their clocks can step
+    liar: int | None = None  # an agent that tells some neighbours something else, with keys
 
     @property
     def samples(self) -> int:

@@ -1,6 +1,7 @@
 """Starts the daemons and the relay, waits, and ends what it started, by its handle and nothing else."""
 
 import json
+import os
 import shutil
 import subprocess
 import time
@@ -13,8 +14,9 @@ from typing import Any, Self
 from garrison import _core
 from garrison.net.client import Client
 from garrison.net.folder import NodeFolder
+from garrison.net.memory import resident
 from garrison.net.plan import Plan
-from garrison.net.programs import NODE, RELAY, program
+from garrison.net.programs import LIAR, NODE, RELAY, program
 
 #: seconds for a process to end after it was asked to
 _PATIENCE = 10.0
@@ -25,6 +27,8 @@ class Ended:
     """What a network left: exit code and last status of every node, and the relay's counters."""
 
     codes: list[int]
+    said: list[str]  # on their standard error
+    memory: list[int]  # bytes, before they were asked to end
     statuses: list[dict[str, Any]]
     relay: dict[str, int]
 
@@ -36,7 +40,7 @@ class Processes:
         self._plan, self._nodes, self._programs = plan, nodes, programs
         self._stack = ExitStack()
         #: what the commands begin with: real-time priority where that is allowed, as the service unit gives it
-        self.priority = _real_time()
+        self.priority = real_time()
         self._daemons: list[subprocess.Popen[bytes]] = []
 
     def __enter__(self) -> Self:
@@ -58,6 +62,10 @@ class Processes:
                 said = path.with_suffix(".err").read_text(errors="replace").strip()
                 raise _core.IoError(f"{path.parent.name}: got an end with exit code {process.returncode}: {said}")
 
+    def id_of(self, k: int) -> int:
+        """Of the process of node k."""
+        return self._daemons[k].pid
+
     def kill(self, k: int) -> None:
         """End node k at once, as a power cut would."""
         self._daemons[k].kill()
@@ -70,13 +78,15 @@ class Processes:
     def end(self) -> Ended:
         """Ask for every status, end all of them, and collect what they leave."""
         statuses = [Client(node.socket).status() for node in self._nodes]
+        memory = [resident(process.pid) for process in self._daemons]
         for process in self._daemons:
             process.terminate()
         codes = [_awaited(process) for process in self._daemons]
         self._relay.terminate()
         _awaited(self._relay)
         relay = json.loads((self._nodes[0].path.parent / "relay.json").read_text())
-        return Ended(codes, statuses, relay)
+        said = [(node.path / "samples.err").read_text(errors="replace") for node in self._nodes]
+        return Ended(codes, said, memory, statuses, relay)
 
     def _relay_command(self) -> list[str]:
         relay = self._plan.relay
@@ -96,16 +106,24 @@ class Processes:
         ]
 
     def _node(self, stack: ExitStack, node: NodeFolder) -> "subprocess.Popen[bytes]":
+        which = LIAR if node.id == self._plan.liar else NODE
         return self._started(
             stack,
-            [*self.priority, program(NODE, self._programs), "--print", str(node.settings)],
+            [*self.priority, program(which, self._programs), "--print", str(node.settings)],
             node.path / "samples.jsonl",
+            self._surroundings(node),
         )
 
-    def _started(self, stack: ExitStack, command: list[str], out: Path) -> "subprocess.Popen[bytes]":
+    def _surroundings(self, node: NodeFolder) -> dict[str, str] | None:
+        library = self._plan.wrong_clock
+        return None if library is None else {**os.environ, "LD_PRELOAD": library, "GARRISON_CLOCK": str(node.clock)}
+
+    def _started(
+        self, stack: ExitStack, command: list[str], out: Path, surroundings: dict[str, str] | None = None
+    ) -> "subprocess.Popen[bytes]":
         written = stack.enter_context(out.open("ab"))
         said = stack.enter_context(out.with_suffix(".err").open("ab"))
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=written, stderr=said)
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=written, stderr=said, env=surroundings)
         stack.callback(_end, process)
         return process
 
@@ -114,8 +132,9 @@ class Processes:
         return [(self._relay, self._nodes[0].path.parent / "relay.json"), *nodes]
 
 
-def _real_time() -> list[str]:
-    command = ["chrt", "--fifo", "20"]
+def real_time(priority: int = 20) -> list[str]:
+    """What a command begins with for this priority, by default the service unit's; nothing where it is not allowed."""
+    command = ["chrt", "--fifo", str(priority)]
     allowed = shutil.which("chrt") and subprocess.run([*command, "true"], capture_output=True).returncode == 0
     return command if allowed else []
 

@@ -6,9 +6,11 @@ from pathlib import Path
 
 from garrison import _core
 
-NODE, KEYGEN, RELAY = "garrison-node", "garrison-keygen", "garrison-relay"
+NODE, KEYGEN, RELAY, CTL = "garrison-node", "garrison-keygen", "garrison-relay", "garrison-ctl"
 #: of the tests, which are not installed
-HOSTILE, SIMULATION = "garrison_node_hostile", "garrison_node_sim"
+HOSTILE, SIMULATION, UNITS = "garrison_node_hostile", "garrison_node_sim", "garrison_node_tests"
+BODIES, FUZZ, LIAR = "garrison_tests", "garrison_node_fuzz", "garrison_node_liar"
+LATENCY, WRONG_CLOCK = "garrison_node_latency", "garrison_node_wrong_clock.so"
 #: environment variable that names their folder
 VARIABLE = "GARRISON_PROGRAMS"
 
@@ -36,7 +38,7 @@ def program(name: str, folder: str | None = None) -> str:
 
 def _built(name: str) -> str | None:
     roots = {Path(__file__).resolve().parents[3], Path.cwd()}  # an installed garrison knows of no checkout
-    folders = ("src/node/programs", "tests/node")
+    folders = ("src/node/programs", "tests/node", "tests/cpp")
     places = [place for root in roots for folder in folders for place in root.glob(f"build/*/{folder}/{name}")]
     found = sorted(places, key=lambda path: path.stat().st_mtime)
     return str(found[-1]) if found else None

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from garrison.net.folder import NodeFolder, write_network
 from garrison.net.kills import kill_some, seconds_back
+from garrison.net.liars import judge_liar
 from garrison.net.outcome import Outcome, read_outcome
 from garrison.net.plan import Plan
 from garrison.net.processes import Processes, wait_until
@@ -27,9 +28,13 @@ def carry_out(
     programs: str | None = None,
     page: int | None = None,
     kills: int = 0,
+    meanwhile: Callable[[Processes, list[NodeFolder]], None] | None = None,
     say: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
-    """Run the plan in the empty `folder`, with a live page on port `page`; `say` hears how it goes."""
+    """Run the plan in the empty `folder`, with a live page on port `page`; `say` hears how it goes.
+
+    meanwhile: called when sample 0 begins, with processes and nodes; should end before the run does.
+    """
     start = time.time() + _LEAD
     nodes = write_network(plan, folder, start, programs)
     before = _cpu()
@@ -39,10 +44,16 @@ def carry_out(
         )
         size = f"{len(nodes)} daemons, {plan.samples} samples of {plan.period_ms:g} ms"
         say(f"{size}: {plan.seconds:.0f} s, {how}")
+        if meanwhile is not None:
+            wait_until(processes, start)
+            meanwhile(processes, nodes)
         killed = kill_some(processes, plan, start, kills)
         wait_until(processes, start + plan.seconds)
         ended = processes.end()
     outcome = read_outcome(plan, nodes, ended, shares=not kills)  # neighbours of a node that is away miss samples, too
+    if plan.liar is not None:
+        judge_liar(plan, nodes, outcome, start, programs)
+    outcome.start = start
     outcome.cores = (_cpu() - before) / plan.seconds
     outcome.back = [seconds_back(kill, nodes) for kill in killed]
     outcome.broken += [

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "garrison/engine/design_file.hpp"
+#include "node/daemon/memory.hpp"
 #include "node/daemon/state.hpp"
 
 namespace garrison::node {
@@ -15,14 +16,15 @@ namespace garrison::node {
 namespace {
 constexpr int kPauseMs = 20;
 constexpr Micros kFlushPause = 1'000'000;
-
-std::string error_line(const std::string& which, const std::string& expected) {
-  return R"({"error":")" + which + R"(","expected":")" + expected + R"("})";
-}
+constexpr Micros kSettling = 3'000'000;
 }  // namespace
 
-Desk::Desk(Station& station, std::uint64_t boot, Sensor& sensor, Ring& ring, bool print)
-    : station_(station), sensor_(sensor), ring_(ring), print_(print), mirror_(read_part(station.part)) {
+Desk::Desk(Station& station, std::uint64_t boot, std::unique_ptr<Sensor> sensor, Ring& ring, bool print)
+    : station_(station),
+      sensor_(std::move(sensor)),
+      ring_(ring),
+      print_(print),
+      mirror_(read_part(station.part)) {
   const Settings& s = station.settings;
   if (s.log_inputs) log_.emplace(s.log_folder, station.self.name, boot, station.part, s.log_files);
   around_.node = station.self.name;
@@ -36,30 +38,33 @@ Desk::Desk(Station& station, std::uint64_t boot, Sensor& sensor, Ring& ring, boo
 }
 
 void Desk::run(Loop& loop) {
+  loop_ = &loop;
   const sigset_t ending = ending_signals();
   const Descriptor signals(::signalfd(-1, &ending, SFD_NONBLOCK | SFD_CLOEXEC));
   signalfd_siginfo came{};
   saved_at_ = now().steady;
+  settles_at_ = saved_at_ + kSettling;
   while (::read(signals.get(), &came, sizeof came) != sizeof came) {
     wait(signals.get());
-    tick(loop, now().steady);
+    tick(now().steady);
   }
   loop.end();
 }
 
 void Desk::wait(int signals) {
   std::vector<pollfd> all{{signals, POLLIN, 0}};
-  if (sensor_.descriptor() >= 0) all.push_back({sensor_.descriptor(), POLLIN, 0});
+  if (sensor_->descriptor() >= 0) all.push_back({sensor_->descriptor(), POLLIN, 0});
   if (socket_) socket_->wait_for(all);
   ::poll(all.data(), all.size(), kPauseMs);
 }
 
-void Desk::tick(Loop& loop, Micros steady) {
-  sensor_.tick(steady);
-  if (sensor_.descriptor() >= 0) sensor_.readable(now().wall);
+void Desk::tick(Micros steady) {
+  if (former_ && loop_->turns() > former_until_) former_.reset();
+  sensor_->tick(steady);
+  if (sensor_->descriptor() >= 0) sensor_->readable(now().wall);
   drain();
   if (socket_) socket_->serve();
-  if (log_ && log_->file().bytes() >= station_.settings.log_bytes) loop.ask_fresh();
+  if (log_ && log_->file().bytes() >= station_.settings.log_bytes) loop_->ask_fresh();
   if (steady - flushed_at_ >= kFlushPause) {
     flushed_at_ = steady;
     if (log_) {
@@ -68,7 +73,10 @@ void Desk::tick(Loop& loop, Micros steady) {
     }
   }
   if (steady - saved_at_ >= station_.settings.state_every) save_state();
-  watch_over(loop, steady);
+  watch_over(steady);
+  if (settles_at_ == 0 || steady < settles_at_) return;
+  settles_at_ = 0;
+  settle_memory();
 }
 
 void Desk::drain() {
@@ -157,30 +165,12 @@ void Desk::save_state() {
   }
 }
 
-std::string Desk::answer(std::string_view request) {
-  if (request == "status") {
-    if (!known_) return error_line("no status yet", "a node that has begun");
-    around_.sensor = sensor_.counters();
-    around_.snapshot_age = snapshot_at_ < 0 ? -1 : now().steady - snapshot_at_;
-    return status_json(status_, around_);
-  }
-  if (request.starts_with("y ")) {
-    if (!sensor_.takes_lines_from_clients())
-      return error_line("y", R"(a node with [sensor] source = \"socket\")");
-    const std::int64_t before = sensor_.counters().taken;
-    sensor_.line(request.substr(2), now().wall);
-    if (sensor_.counters().taken > before) return R"({"ok":true})";
-    return error_line("y", "as many numbers as the agent has outputs, nan where one is missing");
-  }
-  return error_line("an unknown request", "status, watch, or y and numbers");
-}
-
 /// The manager hears of us only while the loop turns.
-void Desk::watch_over(Loop& loop, Micros steady) {
+void Desk::watch_over(Micros steady) {
   static const Micros pause = watchdog_pause();
-  if (pause == 0 || steady - watched_at_ < pause / 2 || loop.turns() == turns_seen_) return;
+  if (pause == 0 || steady - watched_at_ < pause / 2 || loop_->turns() == turns_seen_) return;
   watched_at_ = steady;
-  turns_seen_ = loop.turns();
+  turns_seen_ = loop_->turns();
   notify("WATCHDOG=1\nSTATUS=" + std::string(word(status_.head.state)) + ", sample " +
          std::to_string(status_.head.sample.sample));
 }

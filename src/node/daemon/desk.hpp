@@ -15,7 +15,8 @@ namespace garrison::node {
 class Desk {
  public:
   /// Keeps references. print: a line a sample on standard output. @throws IoError
-  Desk(Station& station, std::uint64_t boot, Sensor& sensor, Ring& ring, bool print);
+  Desk(Station& station, std::uint64_t boot, std::unique_ptr<Sensor> sensor, Ring& ring, bool print);
+  const Sensor& sensor() const noexcept { return *sensor_; }
 
   /// Until a signal comes; the loop is told to end, and what it leaves is written.
   void run(Loop& loop);
@@ -26,17 +27,22 @@ class Desk {
 
  private:
   void wait(int signals);
-  void tick(Loop& loop, Micros steady);
+  void tick(Micros steady);
   void record(Note note, Bytes content);
   void status(Bytes content);
   void snapshot(Bytes content);
   void proof(Bytes content);
   void begin_log();
   std::string answer(std::string_view request);
-  void watch_over(Loop& loop, Micros steady);
+  std::string measured(std::string_view line);
+  std::string reload();
+  void watch_over(Micros steady);
 
   Station& station_;
-  Sensor& sensor_;
+  Loop* loop_ = nullptr;
+  std::unique_ptr<Sensor> sensor_;
+  std::unique_ptr<Sensor> former_;  ///< of before a reload, as long as the loop may look at it
+  std::uint64_t former_until_ = 0;  ///< turn of the loop
   Ring& ring_;
   bool print_;
   std::optional<LogKeeper> log_;
@@ -51,6 +57,7 @@ class Desk {
   Micros saved_at_ = 0;
   Micros flushed_at_ = 0;
   Micros watched_at_ = 0;
+  Micros settles_at_ = 0;  ///< 0: it has
   std::uint64_t turns_seen_ = 0;
   std::int64_t failed_ = 0;
 };

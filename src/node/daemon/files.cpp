@@ -21,14 +21,14 @@ void refuse_file(const std::string& path, const std::string& expected) {
   throw IoError(path + ": got " + std::strerror(errno) + ", expected " + expected);
 }
 
-std::vector<std::byte> read_bytes(const std::string& path, std::size_t most) {
+std::vector<std::byte> read_bytes(const std::string& path, std::size_t most, const std::string& expected) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file) refuse_file(path, "a file that can be read");
+  if (!file) refuse_file(path, expected);
   std::vector<std::byte> all;
   std::array<std::byte, 65536> piece;
   while (true) {
     const ssize_t got = ::read(file.get(), piece.data(), piece.size());
-    if (got < 0) refuse_file(path, "a file that can be read");
+    if (got < 0) refuse_file(path, expected);
     if (got == 0) return all;
     all.insert(all.end(), piece.begin(), piece.begin() + got);
     if (all.size() > most)
@@ -36,8 +36,8 @@ std::vector<std::byte> read_bytes(const std::string& path, std::size_t most) {
   }
 }
 
-std::string read_text(const std::string& path) {
-  const auto bytes = read_bytes(path);
+std::string read_text(const std::string& path, const std::string& expected) {
+  const auto bytes = read_bytes(path, 64U << 20U, expected);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 

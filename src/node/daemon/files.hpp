@@ -32,9 +32,10 @@ class Descriptor {
 /// "FILE: got No such file or directory, expected ..."; takes errno.
 [[noreturn]] void refuse_file(const std::string& path, const std::string& expected);
 
-/// At most `most` bytes. @throws IoError
-std::vector<std::byte> read_bytes(const std::string& path, std::size_t most = 64U << 20U);
-std::string read_text(const std::string& path);
+/// At most `most` bytes. `expected`: what it should be, for refusals. @throws IoError
+std::vector<std::byte> read_bytes(const std::string& path, std::size_t most = 64U << 20U,
+                                  const std::string& expected = "a file that can be read");
+std::string read_text(const std::string& path, const std::string& expected = "a file that can be read");
 /// Beside the file, onto the disk, and then in its place. @throws IoError
 void replace_file(const std::string& path, Bytes content, int mode = 0600);
 void make_folder(const std::string& path);

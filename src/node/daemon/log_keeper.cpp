@@ -19,6 +19,7 @@ std::string padded(std::uint64_t number, std::size_t digits) {
 LogKeeper::LogKeeper(std::string folder, std::string name, std::uint64_t boot, std::vector<std::byte> part,
                      int files)
     : folder_(std::move(folder)), name_(std::move(name)), boot_(boot), part_(std::move(part)), files_(files) {
+  std::replace(name_.begin(), name_.end(), '/', '_');
   make_folder(folder_);
   begin();
 }

@@ -11,11 +11,14 @@ namespace garrison::node {
 
 class LogKeeper {
  public:
-  /// Files are FOLDER/NAME-BOOT-NUMBER.mcap; at most `files` of this name stay. @throws IoError
+  /// Files are FOLDER/NAME-BOOT-NUMBER.mcap ("/" in the name becomes "_"); at most `files` of this name stay.
+  /// @throws IoError
   LogKeeper(std::string folder, std::string name, std::uint64_t boot, std::vector<std::byte> part, int files);
 
   void begin();
   LogWriter& file() { return *file_; }
+  /// Another number of files, from the next one on.
+  void keep(int files) noexcept { files_ = files; }
   /// Writes that failed, of all files.
   std::int64_t failed() const noexcept { return failed_ + file_->failed(); }
 

@@ -47,7 +47,7 @@ Bytes bytes_of(const T& value) noexcept {
 Loop::Loop(Station& station, std::uint64_t boot, Udp& udp, const Sensor& sensor, Ring& ring)
     : station_(station),
       udp_(udp),
-      sensor_(sensor),
+      sensor_(&sensor),
       ring_(ring),
       now_(garrison::node::now()),
       authors_(authors_of(station, boot)),
@@ -126,7 +126,7 @@ void Loop::send(int neighbour, Bytes datagram) noexcept {
 }
 
 void Loop::measure(std::int64_t sample, std::span<double> y) noexcept {
-  sensor_.measure(sample, now_.wall, y);
+  sensor_.load()->measure(sample, now_.wall, y);
 }
 
 void Loop::journal(const Entry& entry) noexcept {

@@ -38,6 +38,11 @@ class Loop final : private World {
   void run() noexcept;
   /// From the other thread. Ends after the sample that is under way.
   void end() noexcept { ending_.store(true); }
+  /// From the other thread: measurements come from here now. The sensor before may be used until the loop has
+  /// turned twice.
+  void use(const Sensor& sensor) noexcept { sensor_.store(&sensor); }
+  /// Before `run`: a liar, for tests of a network.
+  void tamper_with(Tamper& tamper) noexcept { node_.tamper_with(tamper); }
   /// From the other thread: the log has to begin anew.
   void ask_fresh() noexcept { fresh_wanted_.store(true); }
   /// Grows while the loop turns.
@@ -60,7 +65,7 @@ class Loop final : private World {
 
   Station& station_;
   Udp& udp_;
-  const Sensor& sensor_;
+  std::atomic<const Sensor*> sensor_;
   Ring& ring_;
   SystemRandom random_;
   Instant now_;

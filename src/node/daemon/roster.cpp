@@ -77,7 +77,9 @@ Roster parse_roster(const std::string& text, const std::string& path) {
   return out;
 }
 
-Roster read_roster(const std::string& path) { return parse_roster(read_text(path), path); }
+Roster read_roster(const std::string& path) {
+  return parse_roster(read_text(path, "the roster, the same file on all nodes ([run] and [[agent]])"), path);
+}
 
 Schedule schedule_for(const Roster& roster, int rounds) {
   Schedule s = roster.schedule;

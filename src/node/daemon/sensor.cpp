@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "garrison/core/error.hpp"
+#include "node/daemon/service.hpp"
 
 namespace garrison::node {
 
@@ -17,6 +18,7 @@ namespace {
 using Source = SensorSettings::Source;
 constexpr std::size_t kLongestLine = 4096;
 constexpr Micros kShortestPause = 1'000'000, kLongestPause = 60'000'000;
+constexpr Micros kMachinePause = 100'000;
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t from = text.find_first_not_of(" \t\r\n");
@@ -71,6 +73,11 @@ Sensor::Sensor(const SensorSettings& settings, std::size_t outputs, const std::s
   require_size(file, "least", settings.least, outputs);
   require_size(file, "most", settings.most, outputs);
   if (settings.source == Source::file) read_table();
+  if (settings.source != Source::procfs) return;
+  machine_.emplace(file + ", [sensor].read", settings.read);
+  if (machine_->size() != outputs)
+    refuse(file + ", [sensor].read", std::to_string(machine_->size()) + " names",
+           std::to_string(outputs) + ", one per output of this agent");
 }
 
 Sensor::~Sensor() { close(); }
@@ -85,7 +92,7 @@ void Sensor::measure(std::int64_t sample, Micros now, std::span<double> y) const
 
 /// A table is read at once: nothing of it can be late.
 void Sensor::read_table() {
-  const std::string text = read_text(settings_.path);
+  const std::string text = read_text(settings_.path, "a CSV file, a row a sample ([sensor].path)");
   std::string_view rest = text;
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
@@ -121,9 +128,21 @@ void Sensor::line(std::string_view text, Micros now) {
     ++counters_.malformed;
     return;
   }
-  prepare(found->y);
-  reading_.put(found->y, found->taken.value_or(now));
+  take(found->y, found->taken.value_or(now));
+}
+
+void Sensor::take(std::span<double> y, Micros taken) noexcept {
+  prepare(y);
+  reading_.put(y, taken);
   ++counters_.taken;
+}
+
+void Sensor::read_machine(Micros steady) {
+  if (steady < open_at_) return;
+  open_at_ = steady + kMachinePause;
+  std::vector<double> y(outputs_);
+  machine_->read(steady, y);
+  take(y, now().wall);
 }
 
 void Sensor::readable(Micros now) {
@@ -149,6 +168,7 @@ void Sensor::readable(Micros now) {
 }
 
 void Sensor::tick(Micros steady) {
+  if (machine_) return read_machine(steady);
   if (settings_.source != Source::lines && settings_.source != Source::udp) return;
   if (input_ || steady < open_at_) return;
   if (settings_.path == "-" && opened_) return;  // standard input does not come again

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where measurements come from: lines of a program or pipe, datagrams, a table, or local clients.
+// Where measurements come from: lines of a program or pipe, datagrams, a table, the machine itself, or local
+// clients.
 #pragma once
 
 #include <optional>
 #include <string_view>
 
+#include "node/daemon/machine.hpp"
 #include "node/daemon/reading.hpp"
 #include "node/daemon/settings.hpp"
 
@@ -49,6 +51,8 @@ class Sensor {
 
  private:
   void prepare(std::span<double> y) noexcept;
+  void take(std::span<double> y, Micros taken) noexcept;
+  void read_machine(Micros steady);
   void open();
   void close();
   void start_command();
@@ -58,6 +62,7 @@ class Sensor {
   std::size_t outputs_;
   Reading reading_;
   std::vector<double> table_;
+  std::optional<Machine> machine_;
   Descriptor input_;
   int child_ = -1;
   std::string pending_;

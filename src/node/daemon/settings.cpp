@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "garrison/core/error.hpp"
+#include "node/daemon/machine.hpp"
 #include "node/daemon/toml_file.hpp"
 
 namespace garrison::node {
@@ -15,19 +16,19 @@ constexpr double kMostSeconds = 1e7;
 
 SensorSettings::Source source_of(const Section& section) {
   const std::string source = section.text("source");
-  const std::pair<const char*, SensorSettings::Source> known[] = {{"none", SensorSettings::Source::none},
-                                                                  {"lines", SensorSettings::Source::lines},
-                                                                  {"udp", SensorSettings::Source::udp},
-                                                                  {"file", SensorSettings::Source::file},
-                                                                  {"socket", SensorSettings::Source::socket}};
+  const std::pair<const char*, SensorSettings::Source> known[] = {
+      {"none", SensorSettings::Source::none},     {"lines", SensorSettings::Source::lines},
+      {"udp", SensorSettings::Source::udp},       {"file", SensorSettings::Source::file},
+      {"procfs", SensorSettings::Source::procfs}, {"socket", SensorSettings::Source::socket}};
   for (const auto& [word, found] : known)
     if (source == word) return found;
   refuse(section.where("source"), "\"" + source + "\"",
-         "\"none\", \"lines\", \"udp\", \"file\" or \"socket\"");
+         "\"none\", \"lines\", \"udp\", \"file\", \"procfs\" or \"socket\"");
 }
 
 SensorSettings read_sensor(const Section& section, const std::string& folder) {
-  section.only({"source", "command", "path", "address", "scale", "offset", "least", "most", "max_age_ms"});
+  section.only(
+      {"source", "command", "path", "address", "read", "scale", "offset", "least", "most", "max_age_ms"});
   SensorSettings s;
   s.source = source_of(section);
   s.scale = section.numbers("scale");
@@ -43,6 +44,11 @@ SensorSettings read_sensor(const Section& section, const std::string& folder) {
     refuse(section.where("command"), "a command", "one only of source = \"lines\", and no path beside it");
   if (s.path.empty() && (s.source == Source::file || (piped && s.command.empty())))
     refuse(section.where("path"), "nothing", piped ? "a named pipe, \"-\", or a command" : "a CSV file");
+  s.read = section.texts("read");
+  if (s.source == Source::procfs)
+    Machine(section.where("read"), s.read);  // refuses names that it does not know
+  else if (!s.read.empty())
+    refuse(section.where("read"), "a list", "one only of source = \"procfs\"");
   if (!s.path.empty() && s.path != "-") s.path = beside(folder, s.path);
   if (s.source != Source::udp) return s;
   s.address = address_from(section.where("address"), section.text("address"));
@@ -110,6 +116,8 @@ Settings parse_settings(const std::string& text, const std::string& path) {
   return s;
 }
 
-Settings read_settings(const std::string& path) { return parse_settings(read_text(path), path); }
+Settings read_settings(const std::string& path) {
+  return parse_settings(read_text(path, "a node.toml; docs/how-to/deploy-three-nodes.md has one"), path);
+}
 
 }  // namespace garrison::node

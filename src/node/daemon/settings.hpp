@@ -10,11 +10,12 @@
 namespace garrison::node {
 
 struct SensorSettings {
-  enum class Source { none, lines, udp, file, socket };
+  enum class Source { none, lines, udp, file, procfs, socket };
   Source source = Source::none;
-  std::string command;  ///< lines: run by a shell; else `path`
-  std::string path;     ///< lines: "-" or a named pipe; file: CSV, a row a sample, from sample 1 on
-  Address address;      ///< udp
+  std::string command;            ///< lines: run by a shell; else `path`
+  std::string path;               ///< lines: "-" or a named pipe; file: CSV, a row a sample, from sample 1 on
+  Address address;                ///< udp
+  std::vector<std::string> read;  ///< procfs: names, as in machine.hpp
   std::vector<double> scale, offset, least, most;
   std::int64_t max_age = 500'000;  ///< microseconds
 };

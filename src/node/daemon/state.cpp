@@ -60,9 +60,10 @@ std::optional<std::vector<std::byte>> snapshot_in(Bytes file, const Prologue& ru
 }
 
 std::optional<std::vector<std::byte>> read_state(const std::string& folder, const Prologue& run) {
-  const std::string path = beside(folder, "state");
-  if (!std::filesystem::exists(path)) return {};
-  return snapshot_in(read_bytes(path), run);
+  if (!has_state(folder)) return {};
+  return snapshot_in(read_bytes(beside(folder, "state")), run);
 }
+
+bool has_state(const std::string& folder) { return std::filesystem::exists(beside(folder, "state")); }
 
 }  // namespace garrison::node

@@ -18,6 +18,7 @@ void write_state(const std::string& folder, const Prologue& run, Bytes snapshot)
 std::vector<std::byte> state_bytes(const Prologue& run, Bytes snapshot);
 /// The snapshot; nothing when there is none, when it is damaged or of another run.
 std::optional<std::vector<std::byte>> read_state(const std::string& folder, const Prologue& run);
+bool has_state(const std::string& folder);
 std::optional<std::vector<std::byte>> snapshot_in(Bytes file, const Prologue& run);
 
 }  // namespace garrison::node

@@ -2,6 +2,7 @@
 #include "node/daemon/station.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "garrison/engine/design_file.hpp"
 #include "node/daemon/files.hpp"
@@ -79,7 +80,8 @@ Station read_station(const std::string& path) {
     refuse(s.settings.key, "the key " + base64(s.identity.open),
            base64(s.self.open) + ", as " + s.roster.path + " has for " + s.self.name,
            "put the line that garrison-keygen printed into the roster, on all nodes");
-  s.part = read_bytes(s.settings.part);
+  s.part = read_bytes(s.settings.part, 64U << 20U,
+                      "the agent's part of a design, which Prepared.save(path, agent=i) writes");
   s.agent = agent_in(s.settings.part, s.part);
   if (s.agent->id() != s.self.id)
     refuse(s.settings.part, "the part of agent " + std::to_string(s.agent->id()),
@@ -91,6 +93,38 @@ Station read_station(const std::string& path) {
   add_links(s);
   const Sensor tried(s.settings.sensor, static_cast<std::size_t>(s.agent->outputs()), s.settings.file);
   return s;
+}
+
+void require_same_run(const Station& now, const Station& next) {
+  const Settings &a = now.settings, &b = next.settings;
+  const auto same_address = [](const Address& x, const Address& y) {
+    return x.size == y.size && std::memcmp(&x.storage, &y.storage, x.size) == 0;
+  };
+  const auto same_links = [&] {
+    return std::equal(now.links.begin(), now.links.end(), next.links.begin(), next.links.end(),
+                      [&](const Member& x, const Member& y) {
+                        return x.id == y.id && x.open == y.open && same_address(x.address, y.address);
+                      });
+  };
+  const std::pair<const char*, bool> kept[] = {
+      {"name", now.self.id == next.self.id},
+      {"key", now.identity.open == next.identity.open},
+      {"part", now.part == next.part},
+      {"the run or schedule in the roster",
+       now.run == next.run && now.schedule.resend == next.schedule.resend},
+      {"a neighbour in the roster", same_links() && now.listens == next.listens},
+      {"[listen].address", same_address(a.listen, b.listen)},
+      {"[clock].require_synchronised", a.require_synchronised == b.require_synchronised},
+      {"[log].level or folder", a.log_inputs == b.log_inputs && a.log_folder == b.log_folder},
+      {"[state].folder", a.state_folder == b.state_folder},
+      {"[socket].path", a.socket == b.socket},
+      {"[limits].receive_buffer_kb", a.receive_buffer == b.receive_buffer}};
+  for (const auto& [what, same] : kept)
+    if (!same)
+      refuse(a.file, std::string("another ") + what,
+             "the one that the node runs with: only [sensor], [log] size_mb and files, and [state] every_s "
+             "change while it runs",
+             "restart the node");
 }
 
 }  // namespace garrison::node

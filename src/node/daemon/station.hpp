@@ -26,4 +26,8 @@ struct Station {
 /// @throws IoError, InvalidInput: the first thing that does not fit
 Station read_station(const std::string& path);
 
+/// Refuses files that a node which runs by `now` could only follow after a restart: only [sensor], [log]
+/// size_mb and files, and [state] every_s may differ. @throws InvalidInput
+void require_same_run(const Station& now, const Station& next);
+
 }  // namespace garrison::node

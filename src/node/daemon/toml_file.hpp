@@ -41,7 +41,8 @@ class Section {
   double number(const std::string& key, double least, double most,
                 std::optional<double> otherwise = {}) const;
   bool flag(const std::string& key, bool otherwise) const;
-  std::vector<double> numbers(const std::string& key) const;  ///< empty where the key is not there
+  std::vector<double> numbers(const std::string& key) const;     ///< empty where the key is not there
+  std::vector<std::string> texts(const std::string& key) const;  ///< the same
   std::int64_t moment(const std::string& key) const;
   /// An empty section where the key is not there.
   Section section(const std::string& key) const;

@@ -19,12 +19,13 @@ using namespace garrison::node;
 namespace {
 
 constexpr const char* kUsage =
-    "usage: garrison-ctl status|watch SOCKET\n"
+    "usage: garrison-ctl status|watch|reload SOCKET\n"
     "       garrison-ctl replay LOG\n"
     "       garrison-ctl verify-proof PROOF ROSTER\n"
     "\n"
     "  status   everything a node says of itself, as a line of JSON\n"
     "  watch    a line a sample, until interrupted\n"
+    "  reload   read node.toml again: [sensor], [log] size_mb and files, [state] every_s\n"
     "  replay   do again what a log says and compare every bit\n"
     "\n"
     "  verify-proof   whether a .proof convicts an agent of the roster\n"
@@ -42,11 +43,28 @@ Descriptor connected(const std::string& path) {
   return socket;
 }
 
-/// One line, or all of them.
-int ask(const std::string& request, const std::string& path, bool once) {
-  const Descriptor socket = connected(path);
+Descriptor asked(const std::string& request, const std::string& path) {
+  Descriptor socket = connected(path);
   const std::string line = request + "\n";
   ::send(socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
+  return socket;
+}
+
+/// 2, with what the node says, when it does not take its files.
+int reload(const std::string& path) {
+  const Descriptor socket = asked("reload", path);
+  std::string answer;
+  char piece[4096];
+  for (ssize_t got = 0;
+       answer.find('\n') == std::string::npos && (got = ::read(socket.get(), piece, sizeof piece)) > 0;)
+    answer.append(piece, static_cast<std::size_t>(got));
+  if (answer.starts_with(R"({"ok")")) return 0;
+  return std::fprintf(stderr, "garrison-ctl: %s: not reloaded: %s", path.c_str(), answer.c_str()), 2;
+}
+
+/// One line, or all of them.
+int ask(const std::string& request, const std::string& path, bool once) {
+  const Descriptor socket = asked(request, path);
   char piece[4096];
   for (ssize_t got = 0; (got = ::read(socket.get(), piece, sizeof piece)) > 0;) {
     std::fwrite(piece, 1, static_cast<std::size_t>(got), stdout);
@@ -97,12 +115,14 @@ int main(int count, char** words) {
     if (!start_crypto()) return std::fputs("garrison-ctl: the system has no random numbers\n", stderr), 2;
     if (command == "verify-proof" && count == 4) return verify(words[2], words[3]);
     if (command == "status") return ask("status", words[2], true);
+    if (command == "reload") return reload(words[2]);
     if (command == "watch") return ask("watch", words[2], false);
     if (command == "replay") return replay(words[2]);
   } catch (const std::exception& error) {
     return std::fprintf(stderr, "garrison-ctl: %s\n", error.what()), 2;
   }
-  return std::fprintf(stderr, "garrison-ctl: got \"%s\", expected status, watch, replay or verify-proof\n%s",
+  return std::fprintf(stderr,
+                      "garrison-ctl: got \"%s\", expected status, watch, reload, replay or verify-proof\n%s",
                       words[1], kUsage),
          2;
 }

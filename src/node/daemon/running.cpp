@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "node/daemon/running.hpp"
+
+#include <sched.h>
+#include <signal.h>
+
+#include <bit>
+#include <cstdio>
+#include <thread>
+
+#include "node/daemon/desk.hpp"
+#include "node/daemon/state.hpp"
+
+namespace garrison::node {
+
+namespace {
+
+/// Room for what the desk is late with: 64 samples, and half a mebibyte at least.
+std::size_t ring_size(const Station& station) {
+  const Agent& agent = *station.agent;
+  const std::size_t call = 64 + agent.most_bytes();
+  const std::size_t calls = static_cast<std::size_t>(agent.rounds()) * (1 + agent.neighbours().size());
+  const std::size_t status = sizeof(StatusHead) + station.links.size() * sizeof(LinkStatus);
+  const std::size_t numbers = 8 * static_cast<std::size_t>(2 * agent.states() + agent.outputs());
+  const std::size_t sample = calls * call + status + numbers + agent.snapshot_bytes();
+  return std::bit_ceil(std::max<std::size_t>(1 << 19, 64 * sample));
+}
+
+/// Until the kernel holds the clock for synchronised, or a signal comes; false then.
+bool wait_for_clock(const Settings& settings) {
+  if (!settings.require_synchronised || clock_synchronised()) return true;
+  std::fprintf(stderr,
+               "<4>garrison-node: the clock is not synchronised; waiting ([clock].require_synchronised)\n");
+  notify("STATUS=no clock");
+  const sigset_t ending = ending_signals();
+  const timespec pause{0, 200'000'000};
+  while (!clock_synchronised()) {
+    if (::sigtimedwait(&ending, nullptr, &pause) > 0) return false;
+    notify("WATCHDOG=1");
+  }
+  return true;
+}
+
+/// What the last life left; nothing, with a word, where that cannot be used.
+std::vector<std::byte> kept_state(const Station& station) {
+  const std::string& folder = station.settings.state_folder;
+  auto found = read_state(folder, station.run);
+  if (!found && has_state(folder))
+    std::fprintf(stderr,
+                 "<4>garrison-node: %s/state: got a file that is damaged or of another run; the node starts "
+                 "without it\n",
+                 folder.c_str());
+  return found.value_or(std::vector<std::byte>{});
+}
+
+/// The loop in its thread, which ends with this, however that comes.
+class Estimating {
+ public:
+  explicit Estimating(Loop& loop) : loop_(loop), thread_([&loop] { loop.run(); }) {}
+  ~Estimating() {
+    loop_.end();
+    thread_.join();
+  }
+  Estimating(const Estimating&) = delete;
+  Estimating& operator=(const Estimating&) = delete;
+
+ private:
+  Loop& loop_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+void block_signals() {
+  const sigset_t ending = ending_signals();
+  ::sigprocmask(SIG_BLOCK, &ending, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+}
+
+void run_node(Station& station, bool print, Tamper* tamper) {
+  const Settings& settings = station.settings;
+  make_folder(settings.state_folder);
+  const std::uint64_t boot = next_boot(settings.state_folder);
+  Udp udp(settings.file + ", [listen].address", settings.listen, settings.receive_buffer);
+  auto sensor = std::make_unique<Sensor>(settings.sensor, static_cast<std::size_t>(station.agent->outputs()),
+                                         settings.file);
+  Ring ring(ring_size(station));
+  Desk desk(station, boot, std::move(sensor), ring, print);
+  Loop loop(station, boot, udp, desk.sensor(), ring);
+  if (tamper != nullptr) loop.tamper_with(*tamper);
+  notify("READY=1");
+  if (!wait_for_clock(settings)) return;
+  loop.begin(kept_state(station));
+  {
+    const Estimating estimating(loop);
+    const sched_param usual{};
+    ::sched_setscheduler(0, SCHED_OTHER, &usual);  // files wait, estimates do not
+    desk.run(loop);
+    notify("STOPPING=1");
+  }
+  desk.drain();
+  desk.save_state();
+}
+
+}  // namespace garrison::node
