@@ -19,6 +19,7 @@ from garrison._core import (
     Message,
     Model,
     Network,
+    Response,
     SubsetBound,
     __version__,
     budget,
@@ -36,10 +37,12 @@ from garrison._core import (
 )
 from garrison.bound_kind import BoundKind
 from garrison.checks import Check, check
-from garrison.drivers import central_kalman, replay, simulate
+from garrison.drivers import replay, simulate
+from garrison.kalman import central_kalman, extended_kalman, local_kalman
 from garrison.notebook import of_model, of_network
 from garrison.prepared import Prepared, prepare
 from garrison.record import Run
+from garrison.varying import VaryingModel, VaryingNetwork
 from garrison.verdict import Verdict
 from garrison.words import refuse_attribute
 
@@ -110,9 +113,12 @@ __all__ = [
     "Network",
     "Prepared",
     "Resilience",
+    "Response",
     "Run",
     "SubsetBound",
     "Sweep",
+    "VaryingModel",
+    "VaryingNetwork",
     "Verdict",
     "__version__",
     "analyze",
@@ -124,10 +130,12 @@ __all__ = [
     "check",
     "compare",
     "design",
+    "extended_kalman",
     "filters",
     "fit",
     "lambda0",
     "lmi_gains",
+    "local_kalman",
     "observable",
     "one_step_sparse_observable",
     "partial_sharing",

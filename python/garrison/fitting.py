@@ -93,6 +93,10 @@ class Fit:
         statistic, correlation, p_value = _core.certificate.whiteness(v, lags)
         return Whiteness(self.records.stations, statistic, correlation, p_value, lags)
 
+    def known(self, records: Records) -> Array | None:
+        """Known inputs (samples, p) among other records; None where the model has none."""
+        return None
+
     def levels(self, attacked: int, failure: float) -> tuple[float, float] | None:
         """(z1, z2) of the certificates that these records exceed at the rate `failure`, whatever their law.
 
@@ -217,7 +221,12 @@ def fit(records: Records, **options: Any) -> Fit:
         Of garrison.tables.read_records.
     **options
         factors (state dimension, default 2), harmonics (2), period (of the cycle in samples, default a year),
-        root (False: True works on square roots), factor (1: unit conversion).
+        root (False: True works on square roots), factor (1: unit conversion); states ("factors", or "all": every
+        station is a state, a vector autoregression). With states = "all" and in place of factors: order (samples of
+        the past; 0, the default: the likeliest for held-out samples), most (largest order that is tried, 4), held_out
+        (share of the samples, the last ones, that choose it, 0.25), inputs (names of columns that are known inputs)
+        and noise (part of a station's residual variance that is taken for measurement noise, 0.01: such records
+        cannot tell it from the rest).
 
     Returns
     -------
@@ -231,6 +240,12 @@ def fit(records: Records, **options: Any) -> Fit:
     """
     if not isinstance(records, Records):
         raise refusal("fit.records", shown(records), "Records, as garrison.tables.read_records returns them")
+    if options.get("states", "factors") == "all":
+        from garrison.fitting_full import fit_full
+
+        return fit_full(records, **{k: v for k, v in options.items() if k != "states"})
+    if options.pop("states", "factors") != "factors":
+        raise refusal("fit.states", "something else", '"factors" or "all"')
     try:
         i = _core.identify(records.values, records.first, **_options(records, options))
     except _core.Error as error:
