@@ -37,7 +37,7 @@ from garrison._core import (
 )
 from garrison.bound_kind import BoundKind
 from garrison.checks import Check, check
-from garrison.drivers import replay, simulate
+from garrison.drivers import again, replay, simulate
 from garrison.kalman import central_kalman, extended_kalman, local_kalman
 from garrison.notebook import of_model, of_network
 from garrison.prepared import Prepared, prepare
@@ -64,7 +64,8 @@ if TYPE_CHECKING:
     from garrison.calibration import Calibration, calibrate
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
-    from garrison.fitting import Fit, fit
+    from garrison.fitting import Fit
+    from garrison.identifying import fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
     from garrison.resilience import Resilience, resilience_per_byte
@@ -77,7 +78,7 @@ _LATER = {
     "Calibration": "calibration",
     "calibrate": "calibration",
     "Fit": "fitting",
-    "fit": "fitting",
+    "fit": "identifying",
     "Mitigated": "mitigation",
     "replay_mitigated": "mitigation",
     "Resilience": "resilience",
@@ -121,6 +122,7 @@ __all__ = [
     "VaryingNetwork",
     "Verdict",
     "__version__",
+    "again",
     "analyze",
     "attacks",
     "budget",

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, arguments, doubts, refuted
 from garrison.numeric import matched, numbers
-from garrison.objects import described_attack, plain_data
+from garrison.objects import attack_of, described_attack, plain_data
 from garrison.record import Run
 from garrison.sizes import require_memory
 from garrison.varying import VaryingModel, VaryingNetwork, inputs_of, links_of, parted
@@ -180,15 +180,15 @@ def simulate(
         Something does not fit; the message says which, and what was expected.
     """
     steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
-    model, series = parted(model)
-    network, links = links_of(network, arguments.link(link), steps)
-    require_order("simulate", model, network, filter)
-    known = {"inputs": inputs_of(model, inputs, steps), "series": series}
+    base, series = parted(model)
+    ground, links = links_of(network, arguments.link(link), steps)
+    require_order("simulate", base, ground, filter)
+    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, steps), "series": series}
     wanted = arguments.flag("conditions", conditions)
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
-    require_room(model, filter, kept, trials, steps)
+    require_room(base, filter, kept, trials, steps)
     data = _core.simulate(
-        _designed(model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
+        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
         steps=steps,
         x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
         start_error=arguments.number("start_error", start_error),
@@ -205,7 +205,7 @@ def simulate(
         **known,
         progress=arguments.callback("progress", progress),
     )
-    run = _run(data, model, network, filter, attacks, wanted, known)
+    run = _run(data, base, ground, filter, attacks, wanted, known)
     run.made = {
         "driver": "simulate",
         "steps": steps,
@@ -227,7 +227,7 @@ def _shared(
     design: _core.Design | None,
     certified: tuple[str, float, int | None],
 ) -> dict[str, Any]:
-    """Arguments of both drivers as plain data, for `Run.again`."""
+    """Arguments of both drivers as plain data, for `again`."""
     found = None if design is None else design.certificate
     certificate = dict(zip(("certificate", "failure", "attacked"), certified, strict=True)) if found is None else found
     made = {"trials": trials, "first_trial": first_trial, "seed": int(seed), "start": plain_data(start), "link": links}
@@ -329,19 +329,19 @@ def replay(
     InvalidInput
         Something does not fit; the message says which, and what was expected.
     """
-    model, series = parted(model)
+    base, series = parted(model)
     plain = network.network if isinstance(network, VaryingNetwork) else network
-    require_order("replay", model, plain, filter)
-    y = numbers("measurements", matched("measurements", measurements, output_names(model, plain)))
+    require_order("replay", base, plain, filter)
+    y = numbers("measurements", matched("measurements", measurements, output_names(base, plain)))
     trials = (len(y) if y.ndim == 3 else 1) if trials is None else arguments.whole("trials", trials, 1)
     wanted = arguments.flag("conditions", conditions)
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     samples = y.shape[-2] if y.ndim >= 2 else 0
-    network, links = links_of(network, arguments.link(link), samples)
-    known = {"inputs": inputs_of(model, inputs, samples), "series": series}
-    require_room(model, filter, kept, trials, samples)
+    ground, links = links_of(network, arguments.link(link), samples)
+    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
+    require_room(base, filter, kept, trials, samples)
     data = _core.replay(
-        _designed(model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
+        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
         measurements=y,
         truth=None if truth is None else numbers("truth", truth),
         trials=trials,
@@ -355,8 +355,44 @@ def replay(
         **known,
         progress=arguments.callback("progress", progress),
     )
-    run = _run(data, model, network, filter, attacks, wanted, known)
+    run = _run(data, base, ground, filter, attacks, wanted, known)
     run.made = {"driver": "replay"} | _shared(
         trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked)
     )
     return run
+
+
+@hinted
+def again(run: Run) -> Run:
+    """Run once more what a run keeps, also a loaded one.
+
+    Parameters
+    ----------
+    run : Run
+        Of simulate or replay. A replay needs the measurements that were kept; attacks on them are in there.
+
+    Returns
+    -------
+    Run
+        Equal to it, bit for bit.
+
+    Raises
+    ------
+    InvalidInput
+        The measurements are missing, or an attack was written in Python.
+    """
+    if not isinstance(run, Run):
+        raise refusal("again", f"a {type(run).__name__}", "a garrison.Run")
+    if not run.made:
+        raise refusal("again", "a run that does not say what made it", "one of simulate or replay")
+    given = {key: value for key, value in run.made.items() if key not in ("driver", "attack")}
+    attacks = [attack_of(plain) for plain in run.made["attack"]]
+    changes: dict[str, Any] = run.varying
+    plant = VaryingModel(run.model, **changes) if changes else run.model
+    parts, given["inputs"] = (plant, run.network, run.filter), run.inputs
+    if run.made["driver"] == "simulate":
+        return simulate(*parts, attack=attacks, **given)
+    if run.measurements is None:
+        raise refusal("again", "a replay without its measurements", 'keep to contain "measurements"')
+    lies = [attack for attack in attacks if attack.target == "message"]
+    return replay(*parts, measurements=run.measurements, truth=run.truth, attack=lies, **given)

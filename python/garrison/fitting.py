@@ -15,7 +15,7 @@ from garrison.notebook import of_model, titled
 from garrison.numeric import real
 from garrison.sizes import require_memory
 from garrison.tables import Records
-from garrison.words import hinted, only, refusal, shown
+from garrison.words import only, refusal, shown
 
 Array = NDArray[np.float64]
 #: p-value below which residuals are called not white
@@ -211,41 +211,8 @@ def _by_name(message: str, records: Records) -> str:
     return re.sub(r"^records\[(\d+), (\d+)\]", record, re.sub(r"^station (\d+)\b", station, message))
 
 
-@hinted
-def fit(records: Records, **options: Any) -> Fit:
-    """Identify seasonal cycle, factors, A, C, noise levels and bounds from clean records.
-
-    Parameters
-    ----------
-    records : Records
-        Of garrison.tables.read_records.
-    **options
-        factors (state dimension, default 2), harmonics (2), period (of the cycle in samples, default a year),
-        root (False: True works on square roots), factor (1: unit conversion); states ("factors", or "all": every
-        station is a state, a vector autoregression). With states = "all" and in place of factors: order (samples of
-        the past; 0, the default: the likeliest for held-out samples), most (largest order that is tried, 4), held_out
-        (share of the samples, the last ones, that choose it, 0.25), inputs (names of columns that are known inputs)
-        and noise (part of a station's residual variance that is taken for measurement noise, 0.01: such records
-        cannot tell it from the rest).
-
-    Returns
-    -------
-    Fit
-        The model, and what brings records into its coordinates.
-
-    Raises
-    ------
-    InvalidInput
-        The records do not suffice.
-    """
-    if not isinstance(records, Records):
-        raise refusal("fit.records", shown(records), "Records, as garrison.tables.read_records returns them")
-    if options.get("states", "factors") == "all":
-        from garrison.fitting_full import fit_full
-
-        return fit_full(records, **{k: v for k, v in options.items() if k != "states"})
-    if options.pop("states", "factors") != "factors":
-        raise refusal("fit.states", "something else", '"factors" or "all"')
+def fit_factors(records: Records, **options: Any) -> Fit:
+    """The model of `garrison.fit` with factors as states."""
     try:
         i = _core.identify(records.values, records.first, **_options(records, options))
     except _core.Error as error:

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 Inputs = ArrayLike | Callable[[int], ArrayLike] | None
 
 
-def _screen(gate: float | None, huber: float | None) -> dict[str, float]:
+def _screen(gate: float | None, huber: float | None) -> dict[str, Any]:
     return {
         "gate": 0.0 if gate is None else arguments.number("gate", gate),
         "huber": np.inf if huber is None else arguments.number("huber", huber),
@@ -75,7 +75,7 @@ def central_kalman(
     if y.ndim != 2 or x0.shape != (plain.states,):
         got = f"measurements {y.shape} and start {x0.shape}"
         raise refusal("central_kalman", got, f"(samples, {plain.outputs}) and ({plain.states},)")
-    known = {"inputs": inputs_of(plain, inputs, len(y)), "series": series}
+    known: dict[str, Any] = {"inputs": inputs_of(plain, inputs, len(y)), "series": series}
     variance = arguments.number("start_variance", start_variance)
     return _core.central_kalman(plain, y, x0, variance, **_screen(gate, huber), **known)
 
@@ -132,7 +132,7 @@ def local_kalman(
     if y.ndim != 2 or x0.shape not in (shape, shape[1:]):
         got = f"measurements {y.shape} and start {x0.shape}"
         raise refusal("local_kalman", got, f"(samples, {plain.outputs}) and ({plain.states},) or {shape}")
-    known = {"inputs": inputs_of(plain, inputs, len(y)), "series": series}
+    known: dict[str, Any] = {"inputs": inputs_of(plain, inputs, len(y)), "series": series}
     variance = arguments.number("start_variance", start_variance)
     starts = np.ascontiguousarray(np.broadcast_to(x0, shape))
     found = _core.local_kalman(plain, network, y, starts, variance, **_screen(gate, huber), **known)
@@ -197,7 +197,7 @@ def extended_kalman(
     for name, given in {"f": f, "h": h}.items():
         if not callable(given):
             raise refusal(f"extended_kalman.{name}", str(given), "a function")
-    jacobians = {"f_jacobian": f_jacobian, "h_jacobian": h_jacobian}
+    jacobians: dict[str, Any] = {"f_jacobian": f_jacobian, "h_jacobian": h_jacobian}
     for name, derivative in jacobians.items():
         if derivative is not None and not callable(derivative):
             raise refusal(f"extended_kalman.{name}", str(derivative), "a function, or None for central differences")

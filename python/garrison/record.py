@@ -16,8 +16,7 @@ from garrison.arguments import path as path_of
 from garrison.bound_kind import BoundKind
 from garrison.families import family_of
 from garrison.notebook import of_run
-from garrison.objects import attack_of, described, filter_of, model_of, network_of
-from garrison.varying import VaryingModel
+from garrison.objects import described, filter_of, model_of, network_of
 from garrison.verdict import Verdict
 from garrison.words import count, near, refusal
 
@@ -73,7 +72,7 @@ class Run:
         self.model = model
         self.varying = dict(varying or {})
         self.inputs: Array | None = data.get("inputs")
-        #: what made the run, as plain data: driver, seed, attacks, links, ...; see `again`
+        #: what made the run, as plain data: driver, seed, attacks, links, ...; see garrison.again
         self.made: dict[str, Any] = dict(data.get("made", {}))
         self.network = network
         self.filter = filter
@@ -215,28 +214,6 @@ class Run:
         return one.keys() == two.keys() and all(np.array_equal(one[k], two[k], equal_nan=True) for k in one)
 
     __hash__ = None  # type: ignore[assignment]
-
-    def again(self) -> Run:
-        """The run once more, from what it keeps: equal to this one, bit for bit.
-
-        A replay needs the measurements that were kept (attacks on them are in there). Raises InvalidInput where these
-        are missing, and for attacks written in Python.
-        """
-        from garrison.drivers import replay, simulate
-
-        if not self.made:
-            raise refusal("again", "a run that does not say what made it", "one of simulate or replay")
-        arguments = {key: value for key, value in self.made.items() if key != "driver"}
-        attacks = [attack_of(a) for a in arguments.pop("attack")]
-        arguments["link"] = {key: value for key, value in arguments["link"].items()}
-        plant = VaryingModel(self.model, **self.varying) if self.varying else self.model
-        parts, arguments["inputs"] = (plant, self.network, self.filter), self.inputs
-        if self.made["driver"] == "simulate":
-            return simulate(*parts, attack=attacks, **arguments)
-        if self.measurements is None:
-            raise refusal("again", "a replay without its measurements", 'keep to contain "measurements"')
-        lies = [a for a in attacks if a.target == "message"]
-        return replay(*parts, measurements=self.measurements, truth=self.truth, attack=lies, **arguments)
 
     def plot(self, trial: int = 0, *, agents: Iterable[int | str] | None = None, compare: Iterable[Run] = ()) -> Figure:
         """Errors with their bounds, and statistics against thresholds, of one trial, as a figure (extra: plot).

@@ -111,7 +111,7 @@ class VaryingModel:
             intensity = intensity * np.eye(n)
         G = np.zeros((n, 0)) if B is None else np.asarray(numbers("B", B)).reshape(n, -1)
         found = [_core.discretise(plant, intensity, float(period), G) for period in np.diff(at)]
-        parts = {"A": np.array([f[0] for f in found])}
+        parts: dict[str, Any] = {"A": np.array([f[0] for f in found])}
         if process_intensity is not None:
             parts["process_covariance"] = np.array([f[1] for f in found])
             model = {"process_covariance": found[0][1]} | model

@@ -15,7 +15,7 @@ LAYERS = (
     ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms"),
     ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform", "labelled"),
     ("attacks", "record", "doubts", "refuted", "varying"),
-    ("drivers", "kalman", "fitting", "fitting_full", "calibration", "certificate"),
+    ("drivers", "kalman", "fitting", "fitting_full", "identifying", "calibration", "certificate"),
     ("prepared", "designing"),
     ("resilience", "mitigation", "lmi", "scenario", "answers"),
     ("jobs", "anatomy", "sweeps", "comparison", "importers"),
@@ -25,11 +25,9 @@ LAYERS = (
     ("net",),
     ("__main__",),
 )
-#: a run and an analysis draw themselves, a run runs again: the places where a lower layer imports a higher one, inside
-#: functions
+#: a run and an analysis draw themselves: the places where a lower layer imports a higher one, inside functions
 UPWARD = {
     ("record", "figures"),
-    ("record", "drivers"),
     ("answers", "figures"),
     ("sweeps", "figures"),
     ("comparison", "figures"),

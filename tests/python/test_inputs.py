@@ -308,12 +308,12 @@ def test_a_saved_run_runs_again(tmp_path: Path, certificate: str) -> None:
         **more,
     )
     run.save(tmp_path / "run.npz")
-    assert gr.Run.load(tmp_path / "run.npz").again() == run
+    assert gr.again(gr.Run.load(tmp_path / "run.npz")) == run
     log = gr.replay(
         MODEL, NETWORK, gr.filters.ScalarGain(), measurements=run.measurements[0], inputs=U[:12], attack=attack, seed=3
     )
-    assert pickle.loads(pickle.dumps(log)).again() == log
+    assert gr.again(pickle.loads(pickle.dumps(log))) == log
     own = gr.attacks.custom(lambda t, agent, y, rng: y, agents=[1])
     mine = gr.simulate(MODEL, NETWORK, gr.filters.ScalarGain(), steps=3, inputs=U[:3], attack=own)
     with pytest.raises(gr.InvalidInput, match="an attack written in Python"):
-        mine.again()
+        gr.again(mine)

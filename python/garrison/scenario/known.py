@@ -22,7 +22,7 @@ def read_varying(section: Section, model: _core.Model) -> VaryingModel | None:
     """The plant over time, where [model] says so: arrays (T, rows, n), or files with the matrices below each other."""
     n, p, m = model.states, model.inputs, model.outputs
     shapes = {"A": (n, n), "B": (n, p), "C": (m, n), "process_covariance": (n, n)}
-    parts = {}
+    parts: dict[str, Any] = {}
     for key in OVER_TIME:
         if key in section:
             part = key.removesuffix("_over_time")

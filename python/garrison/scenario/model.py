@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from garrison import _core
-from garrison.fitting import Fit, fit
+from garrison.fitting import Fit
+from garrison.identifying import fit
 from garrison.numeric import numbers
 from garrison.scenario.model_file import read_model_file
 from garrison.scenario.section import Section, moment, number, renamed
