@@ -2,6 +2,7 @@
 // Drivers: simulate, replay.
 #include "bindings.hpp"
 #include "garrison/drivers/simulate.hpp"
+#include "known.hpp"
 
 using namespace garrison;
 
@@ -35,13 +36,15 @@ std::vector<Lost> lost_of(const py::handle& given) {
 
 RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int threads,
                        const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks,
-                       const py::dict& link, const std::vector<std::string>& keep,
-                       const py::object& progress) {
+                       const py::dict& link, const std::vector<std::string>& keep, const Matrix& inputs,
+                       const py::dict& series, const py::object& progress) {
   RunOptions o;
   o.trials = trials;
   o.first_trial = first_trial;
   o.seed = seed;
   o.threads = threads;
+  o.inputs = inputs;
+  o.series = series_of(series);
   if (start) o.start = start->transpose();  // Python has one row per agent
   for (const AnyAttack& attack : attacks) {
     if (attack.measurement) o.attacks.push_back(attack.measurement);
@@ -174,9 +177,9 @@ void bind_drivers(py::module_& m) {
          const std::string& noise, const Matrix& disturbances, int trials, int first_trial,
          std::uint64_t seed, int threads, const std::optional<Matrix>& start,
          const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
-         const py::object& progress) {
-        const RunOptions options =
-            run_options(trials, first_trial, seed, threads, start, attacks, link, keep, progress);
+         const Matrix& inputs, const py::dict& series, const py::object& progress) {
+        const RunOptions options = run_options(trials, first_trial, seed, threads, start, attacks, link, keep,
+                                               inputs, series, progress);
         Record record;
         {
           const py::gil_scoped_release no_gil;
@@ -187,15 +190,17 @@ void bind_drivers(py::module_& m) {
       py::arg("design"), py::kw_only(), py::arg("steps"), py::arg("x0"), py::arg("start_error"),
       py::arg("noise"), py::arg("disturbances"), py::arg("trials"), py::arg("first_trial"), py::arg("seed"),
       py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"),
-      py::arg("progress"), "Arrays of a simulated run; use garrison.simulate.");
+      py::arg("inputs"), py::arg("series"), py::arg("progress"),
+      "Arrays of a simulated run; use garrison.simulate.");
   m.def(
       "replay",
       [](const std::shared_ptr<Prepared>& prepared, const Array& measurements,
          const std::optional<Array>& truth, int trials, int first_trial, std::uint64_t seed, int threads,
          const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
-         const std::vector<std::string>& keep, const py::object& progress) {
-        const RunOptions options =
-            run_options(trials, first_trial, seed, threads, start, attacks, link, keep, progress);
+         const std::vector<std::string>& keep, const Matrix& inputs, const py::dict& series,
+         const py::object& progress) {
+        const RunOptions options = run_options(trials, first_trial, seed, threads, start, attacks, link, keep,
+                                               inputs, series, progress);
         const Log log = log_of(prepared->model(), prepared->filter(), measurements, truth);
         Record record;
         {
@@ -206,6 +211,6 @@ void bind_drivers(py::module_& m) {
       },
       py::arg("design"), py::kw_only(), py::arg("measurements"), py::arg("truth"), py::arg("trials"),
       py::arg("first_trial"), py::arg("seed"), py::arg("threads"), py::arg("start"), py::arg("attacks"),
-      py::arg("link"), py::arg("keep"), py::arg("progress"),
+      py::arg("link"), py::arg("keep"), py::arg("inputs"), py::arg("series"), py::arg("progress"),
       "Arrays of a replayed run; use garrison.replay.");
 }

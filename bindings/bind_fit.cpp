@@ -2,7 +2,6 @@
 // Identification of a model from records, and the central Kalman filter.
 #include "bindings.hpp"
 #include "garrison/analysis/identify.hpp"
-#include "garrison/filters/central_kalman.hpp"
 #include "kept.hpp"
 
 using namespace garrison;
@@ -70,14 +69,4 @@ void bind_fit(py::module_& m) {
       py::arg("harmonics") = standard.harmonics, py::arg("period") = standard.period,
       py::arg("root") = standard.root, py::arg("factor") = standard.factor,
       "Fit a model to clean records (T, N), nan = missing.");
-  m.def(
-      "central_kalman",
-      [](const Model& model, const MatrixRef& y, const VectorRef& x0, double start_variance, double gate,
-         double huber) {
-        require_range("start_variance", start_variance, 0.0);
-        return central_kalman(model, y, x0, start_variance, {gate, huber});
-      },
-      py::arg("model"), py::arg("measurements"), py::arg("x0"), py::arg("start_variance"),
-      py::arg("gate") = 0.0, py::arg("huber") = kInfinity,
-      "Estimates (T + 1, n) of a central Kalman filter.");
 }

@@ -122,7 +122,7 @@ Model make_model(const py::object& A, const py::object& C, const py::object& pro
                  const py::object& measurement_bound, const py::object& process_covariance,
                  const py::object& measurement_covariance, const py::object& states,
                  const py::object& outputs, const py::object& sources, const py::object& units,
-                 const py::object& exposed) {
+                 const py::object& exposed, const py::object& B, const py::object& inputs) {
   const Matrix plant = convert::eigen(convert::matrix("A", A));
   std::vector<Matrix> rows = rows_per_agent(C, plant.cols());
   Noise noise;
@@ -134,13 +134,16 @@ Model make_model(const py::object& A, const py::object& C, const py::object& pro
   Labels labels{optional_names("states", states),
                 optional_names("outputs", outputs),
                 optional_names("sources", sources),
-                {}};
+                {},
+                optional_names("inputs", inputs)};
   labels.units = units_of(units, labels, plant.rows());
   std::vector<int> reach;
   if (!exposed.is_none())
     for (const auto& one : per_agent("exposed", exposed, "one whole number per agent"))
       reach.push_back(convert::small(at("exposed", reach.size()), one));
-  return {plant, std::move(rows), std::move(noise), std::move(reach), std::move(labels)};
+  Matrix driven;
+  if (!B.is_none()) driven = convert::eigen(convert::matrix("B", B));
+  return {plant, std::move(rows), std::move(noise), std::move(reach), std::move(labels), std::move(driven)};
 }
 
 /// The spectral density of continuous noise; a number times the identity, None = no noise.
@@ -154,13 +157,16 @@ Model make_from_continuous(const py::object& A, const py::object& C, double peri
                            const py::object& process_intensity, const py::object& process_bound,
                            const py::object& measurement_bound, const py::object& measurement_covariance,
                            const py::object& states, const py::object& outputs, const py::object& sources,
-                           const py::object& units, const py::object& exposed) {
+                           const py::object& units, const py::object& exposed, const py::object& B,
+                           const py::object& inputs) {
   const Matrix F = convert::eigen(convert::matrix("A", A));
   const Discretised found = discretise(F, intensity_of(process_intensity, F.rows()), period);
   const py::object covariance =
       process_intensity.is_none() ? py::object(py::none()) : py::cast(found.covariance);
+  const py::object held =
+      B.is_none() ? B : py::cast(held_input(F, convert::eigen(convert::matrix("B", B)), period));
   return make_model(py::cast(found.A), C, process_bound, measurement_bound, covariance,
-                    measurement_covariance, states, outputs, sources, units, exposed);
+                    measurement_covariance, states, outputs, sources, units, exposed, held, inputs);
 }
 
 std::vector<Matrix> matrices(const Model& model) {
@@ -183,6 +189,8 @@ py::dict arguments(const Model& model) {
   if (!labels.outputs.empty()) all["outputs"] = labels.outputs;
   if (!labels.sources.empty()) all["sources"] = labels.sources;
   if (!labels.units.empty()) all["units"] = labels.units;
+  if (model.inputs() > 0) all["B"] = model.B();
+  if (!labels.inputs.empty()) all["inputs"] = labels.inputs;
   std::vector<int> exposed;
   bool everything = true;
   for (int i = 0; i < model.agents(); ++i) {
@@ -199,14 +207,14 @@ Model model_from(const py::dict& given) {
   };
   return make_model(get("A"), get("C"), get("process_bound"), get("measurement_bound"),
                     get("process_covariance"), get("measurement_covariance"), get("states"), get("outputs"),
-                    get("sources"), get("units"), get("exposed"));
+                    get("sources"), get("units"), get("exposed"), get("B"), get("inputs"));
 }
 
 }  // namespace
 
 void bind_model(py::module_& m) {
   py::class_<Model> model(m, "Model",
-                          R"(The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.
+                          R"(The plant x(t+1) = A x(t) + B u(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.
 
 Parameters
 ----------
@@ -233,6 +241,10 @@ units : dict or str, optional
     From names of states and outputs to units, or one unit for all.
 exposed : sequence of int, optional
     Per agent, how many of its first outputs an attacker can reach; default all.
+B : (n, p) array, optional
+    What known inputs u do to the state; runs then take `inputs`, one row u(t) per step. Default: no inputs.
+inputs : p names, optional
+    One per column of B.
 
 Raises
 ------
@@ -244,14 +256,17 @@ InvalidInput
            py::arg("process_bound") = py::none(), py::arg("measurement_bound") = py::none(),
            py::arg("process_covariance") = py::none(), py::arg("measurement_covariance") = py::none(),
            py::arg("states") = py::none(), py::arg("outputs") = py::none(), py::arg("sources") = py::none(),
-           py::arg("units") = py::none(), py::arg("exposed") = py::none())
+           py::arg("units") = py::none(), py::arg("exposed") = py::none(), py::arg("B") = py::none(),
+           py::arg("inputs") = py::none())
       .def_static(
           "from_continuous", &make_from_continuous, py::arg("A"), py::arg("C"), py::arg("period"),
           py::kw_only(), py::arg("process_intensity") = py::none(), py::arg("process_bound") = py::none(),
           py::arg("measurement_bound") = py::none(), py::arg("measurement_covariance") = py::none(),
           py::arg("states") = py::none(), py::arg("outputs") = py::none(), py::arg("sources") = py::none(),
-          py::arg("units") = py::none(), py::arg("exposed") = py::none(),
-          "The model of dx/dt = A x + white noise, sampled every `period` (> 0, in the unit of time of A), "
+          py::arg("units") = py::none(), py::arg("exposed") = py::none(), py::arg("B") = py::none(),
+          py::arg("inputs") = py::none(),
+          "The model of dx/dt = A x + B u + white noise, u held between samples, sampled every `period` (> "
+          "0, in the unit of time of A), "
           "exactly\n"
           "(C. F. Van Loan, IEEE TAC 23 (3), 1978). process_intensity: spectral density of the noise, (n, n) "
           "or "
@@ -261,6 +276,11 @@ InvalidInput
           "of the noise from sample to sample, as in Model; the rest, too. Raises InvalidInput.")
       .def_property_readonly("A", &Model::A, "(n, n)")
       .def_property_readonly("C", &matrices, "One (m_i, n) array per agent.")
+      .def_property_readonly("B", &Model::B, "(n, p); no columns where there are no known inputs.")
+      .def_property_readonly("inputs", &Model::inputs, "p")
+      .def_property_readonly(
+          "input_names", [](const Model& x) { return x.labels().inputs; },
+          "One name per known input; empty where none were given.")
       .def_property_readonly("states", &Model::states, "n")
       .def_property_readonly("agents", &Model::agents, "N")
       .def_property_readonly("outputs", &Model::total_outputs,

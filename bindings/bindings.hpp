@@ -26,6 +26,8 @@ void bind_agents(py::module_& m);
 void bind_designs(py::module_& m);
 void bind_analysis(py::module_& m);
 void bind_fit(py::module_& m);
+void bind_autoregression(py::module_& m);
+void bind_known(py::module_& m);
 void bind_rdkf(py::module_& m);
 void bind_structure(py::module_& m);
 void bind_structural(py::module_& m);

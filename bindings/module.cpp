@@ -16,6 +16,8 @@ PYBIND11_MODULE(_core, m) {
   bind_drivers(m);
   bind_analysis(m);
   bind_fit(m);
+  bind_autoregression(m);
+  bind_known(m);
   bind_rdkf(m);
   bind_structure(m);
   bind_structural(m);

@@ -109,6 +109,18 @@ class OwnRunner final : public Runner {
     engine_.reset(x0, link == nullptr ? &faultless_ : link);
     raise();
   }
+  void vary(const Matrix* A, const Matrix* C) override {
+    engine_.vary(A, C);
+    const py::gil_scoped_acquire gil;
+    int first = 0;
+    for (auto& agent : session_->agents) {
+      auto& info = agent.info.cast<AgentInfo&>();
+      const auto rows = info.C.rows();
+      if (A != nullptr) info.A = *A;
+      if (C != nullptr) info.C = C->middleRows(first, rows);
+      first += static_cast<int>(rows);
+    }
+  }
   void step(std::int64_t t, const double* y) override {
     engine_.step(t, y);
     raise();
@@ -193,6 +205,7 @@ class OwnPrepared final : public Prepared {
   }
   void check_start(const Matrix&) const override {}
   void check_log(std::span<const double>) const override {}
+  void require_varying() const override {}
   std::unique_ptr<garrison::Agent> agent(int) const override { refuse_alone("an agent on its own"); }
   void require(const MessageAttack& attack) const override {
     Family::Message<Dynamic> message{&layout_, std::vector<double>(layout_.total)};

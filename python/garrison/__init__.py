@@ -19,6 +19,7 @@ from garrison._core import (
     Message,
     Model,
     Network,
+    Response,
     SubsetBound,
     __version__,
     budget,
@@ -36,10 +37,12 @@ from garrison._core import (
 )
 from garrison.bound_kind import BoundKind
 from garrison.checks import Check, check
-from garrison.drivers import central_kalman, replay, simulate
+from garrison.drivers import again, replay, simulate
+from garrison.kalman import central_kalman, extended_kalman, local_kalman
 from garrison.notebook import of_model, of_network
 from garrison.prepared import Prepared, prepare
 from garrison.record import Run
+from garrison.varying import VaryingModel, VaryingNetwork
 from garrison.verdict import Verdict
 from garrison.words import refuse_attribute
 
@@ -62,7 +65,8 @@ if TYPE_CHECKING:
     from garrison.certifying import Certified, certify
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
-    from garrison.fitting import Fit, fit
+    from garrison.fitting import Fit
+    from garrison.identifying import fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
     from garrison.resilience import Resilience, resilience_per_byte
@@ -77,7 +81,7 @@ _LATER = {
     "Certified": "certifying",
     "certify": "certifying",
     "Fit": "fitting",
-    "fit": "fitting",
+    "fit": "identifying",
     "Mitigated": "mitigation",
     "replay_mitigated": "mitigation",
     "Resilience": "resilience",
@@ -114,11 +118,15 @@ __all__ = [
     "Network",
     "Prepared",
     "Resilience",
+    "Response",
     "Run",
     "SubsetBound",
     "Sweep",
+    "VaryingModel",
+    "VaryingNetwork",
     "Verdict",
     "__version__",
+    "again",
     "analyze",
     "attacks",
     "budget",
@@ -129,10 +137,12 @@ __all__ = [
     "check",
     "compare",
     "design",
+    "extended_kalman",
     "filters",
     "fit",
     "lambda0",
     "lmi_gains",
+    "local_kalman",
     "observable",
     "one_step_sparse_observable",
     "partial_sharing",

@@ -1,4 +1,4 @@
-"""Drivers: simulate a plant, replay a recording, and the central Kalman filter everybody is compared with."""
+"""Drivers: simulate a plant, replay a recording."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -8,8 +8,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, arguments, doubts, refuted
 from garrison.numeric import matched, numbers
+from garrison.objects import attack_of, described_attack, plain_data
 from garrison.record import Run
 from garrison.sizes import require_memory
+from garrison.varying import VaryingModel, VaryingNetwork, inputs_of, links_of, parted
 from garrison.words import count, hinted, refusal, require_order
 
 Array = NDArray[np.float64]
@@ -59,15 +61,19 @@ def _run(
     filter: _core.Filter,
     attacks: list[_core.Attack],
     conditions: bool,
+    known: dict[str, Any],
 ) -> Run:
-    run = Run(data, model, network, filter)
-    if conditions:
+    series = known["series"]
+    run = Run(data | ({"inputs": known["inputs"]} if model.inputs else {}), model, network, filter, series)
+    if conditions and not series:
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
+    if "A" in series or "C" in series:
+        run.warnings.append("the plant changes in time: no theorem and no condition of a filter covers it")
     run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
     quiet = max((a.start for a in attacks), default=0)
-    run.warnings += refuted.of_bounds(model, filter, run.measurements)
+    run.warnings += [] if "C" in series else refuted.of_bounds(model, filter, run.measurements)
     run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
-    run.warnings += doubts.of_divergence(model, run.estimate, run.error, quiet)
+    run.warnings += [] if "A" in series else doubts.of_divergence(model, run.estimate, run.error, quiet)
     return run
 
 
@@ -79,11 +85,12 @@ def _threads(filter: _core.Filter, attacks: list[_core.Attack], threads: int) ->
 
 @hinted
 def simulate(
-    model: _core.Model,
-    network: _core.Network,
+    model: _core.Model | VaryingModel,
+    network: _core.Network | VaryingNetwork,
     filter: _core.Filter,
     *,
     steps: int,
+    inputs: ArrayLike | Callable[[int], ArrayLike] | None = None,
     attack: Attacks = (),
     trials: int = 1,
     first_trial: int = 0,
@@ -106,14 +113,18 @@ def simulate(
 
     Parameters
     ----------
-    model : Model
+    model : Model or VaryingModel
         The plant and its sensors.
-    network : Network
+    network : Network or VaryingNetwork
         Who hears whom.
     filter : Filter
         One of garrison.filters, or a filter of your own.
     steps : int
         Samples, >= 1.
+    inputs : (steps, p) array, table or function of t, optional
+        Known inputs of a model with B: row t is u(t), which leads from time t to t + 1. A pandas table with columns
+        named as the model's inputs is matched by name. Estimates, errors and bounds are those of the state
+        (docs/adr/0016); what lies in messages say is said of the state without the inputs' response.
     attack : Attack or sequence of them
         Applied in order.
     trials : int
@@ -168,13 +179,16 @@ def simulate(
     InvalidInput
         Something does not fit; the message says which, and what was expected.
     """
-    require_order("simulate", model, network, filter)
     steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
+    base, series = parted(model)
+    ground, links = links_of(network, arguments.link(link), steps)
+    require_order("simulate", base, ground, filter)
+    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, steps), "series": series}
     wanted = arguments.flag("conditions", conditions)
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
-    require_room(model, filter, kept, trials, steps)
+    require_room(base, filter, kept, trials, steps)
     data = _core.simulate(
-        _designed(model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
+        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
         steps=steps,
         x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
         start_error=arguments.number("start_error", start_error),
@@ -186,11 +200,38 @@ def simulate(
         threads=_threads(filter, attacks, threads),
         start=None if start is None else arguments.table("start", start),
         attacks=attacks,
-        link=arguments.link(link),
+        link=links,
         keep=kept,
+        **known,
         progress=arguments.callback("progress", progress),
     )
-    return _run(data, model, network, filter, attacks, wanted)
+    run = _run(data, base, ground, filter, attacks, wanted, known)
+    run.made = {
+        "driver": "simulate",
+        "steps": steps,
+        "x0": plain_data(x0),
+        "start_error": float(start_error),
+    } | _shared(trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked))
+    run.made["noise"] = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
+    return run
+
+
+def _shared(
+    trials: int,
+    first_trial: int,
+    seed: int,
+    start: ArrayLike | None,
+    attacks: list[_core.Attack],
+    links: dict[str, Any],
+    kept: list[str],
+    design: _core.Design | None,
+    certified: tuple[str, float, int | None],
+) -> dict[str, Any]:
+    """Arguments of both drivers as plain data, for `again`."""
+    found = None if design is None else design.certificate
+    certificate = dict(zip(("certificate", "failure", "attacked"), certified, strict=True)) if found is None else found
+    made = {"trials": trials, "first_trial": first_trial, "seed": int(seed), "start": plain_data(start), "link": links}
+    return made | {"keep": kept, "attack": [described_attack(a) for a in attacks]} | dict(certificate)
 
 
 def output_names(model: _core.Model, network: _core.Network | None = None) -> list[str] | None:
@@ -203,11 +244,12 @@ def output_names(model: _core.Model, network: _core.Network | None = None) -> li
 
 @hinted
 def replay(
-    model: _core.Model,
-    network: _core.Network,
+    model: _core.Model | VaryingModel,
+    network: _core.Network | VaryingNetwork,
     filter: _core.Filter,
     *,
     measurements: ArrayLike,
+    inputs: ArrayLike | Callable[[int], ArrayLike] | None = None,
     truth: ArrayLike | None = None,
     start: ArrayLike | None = None,
     attack: Attacks = (),
@@ -228,9 +270,9 @@ def replay(
 
     Parameters
     ----------
-    model : Model
+    model : Model or VaryingModel
         The plant and its sensors.
-    network : Network
+    network : Network or VaryingNetwork
         Who hears whom.
     filter : Filter
         One of garrison.filters, or a filter of your own.
@@ -239,6 +281,8 @@ def replay(
         agents (or the model's outputs) is matched by name. In families with a sample at the start (platoon) row r
         belongs to time r. A leading axis of trials is allowed, one log per trial; otherwise the one log serves
         all trials.
+    inputs : (samples, p) array, table or function of t, optional
+        Known inputs of a model with B, as in `simulate`: row t led from time t to t + 1.
     truth : (samples + 1, n) array, optional
         From time 0; (samples, N, n) in families with a sample at the start. May have a leading axis of trials.
     start : (n,) or (N, n) array, optional
@@ -285,14 +329,19 @@ def replay(
     InvalidInput
         Something does not fit; the message says which, and what was expected.
     """
-    require_order("replay", model, network, filter)
-    y = numbers("measurements", matched("measurements", measurements, output_names(model, network)))
+    base, series = parted(model)
+    plain = network.network if isinstance(network, VaryingNetwork) else network
+    require_order("replay", base, plain, filter)
+    y = numbers("measurements", matched("measurements", measurements, output_names(base, plain)))
     trials = (len(y) if y.ndim == 3 else 1) if trials is None else arguments.whole("trials", trials, 1)
     wanted = arguments.flag("conditions", conditions)
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
-    require_room(model, filter, kept, trials, y.shape[-2] if y.ndim >= 2 else 0)
+    samples = y.shape[-2] if y.ndim >= 2 else 0
+    ground, links = links_of(network, arguments.link(link), samples)
+    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
+    require_room(base, filter, kept, trials, samples)
     data = _core.replay(
-        _designed(model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
+        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
         measurements=y,
         truth=None if truth is None else numbers("truth", truth),
         trials=trials,
@@ -301,63 +350,49 @@ def replay(
         threads=_threads(filter, attacks, threads),
         start=None if start is None else arguments.table("start", start),
         attacks=attacks,
-        link=arguments.link(link),
+        link=links,
         keep=kept,
+        **known,
         progress=arguments.callback("progress", progress),
     )
-    return _run(data, model, network, filter, attacks, wanted)
+    run = _run(data, base, ground, filter, attacks, wanted, known)
+    run.made = {"driver": "replay"} | _shared(
+        trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked)
+    )
+    return run
 
 
 @hinted
-def central_kalman(
-    model: _core.Model,
-    measurements: ArrayLike,
-    *,
-    start: ArrayLike | None = None,
-    start_variance: float = 1.0,
-    gate: float | None = None,
-    huber: float | None = None,
-) -> Array:
-    """Estimates of a central Kalman filter that sees all measurements.
-
-    Unprotected it is the ideal that distributed filters are compared with; `gate` and `huber` are the protections
-    in use today. At most one of them; neither has a bound.
+def again(run: Run) -> Run:
+    """Run once more what a run keeps, also a loaded one.
 
     Parameters
     ----------
-    model : Model
-        With covariances.
-    measurements : (samples, outputs) array
-        nan or masked = missing. A pandas table with columns named as the model's outputs is matched by name.
-    start : (n,) array, optional
-        Initial estimate, default 0.
-    start_variance : float
-        Variance of every entry of `start`, >= 0.
-    gate : float, optional
-        Probability, 0..1, at which an honest output is left out by a chi-square test of its own innovation.
-    huber : float, optional
-        Deviations, > 0 (1.345 is usual), from which on a larger residual pulls no harder (M-estimation by iterated
-        weights, Durovic and Kovacevic 1999).
+    run : Run
+        Of simulate or replay. A replay needs the measurements that were kept; attacks on them are in there.
 
     Returns
     -------
-    (samples + 1, n) array
-        Estimates from time 0.
+    Run
+        Equal to it, bit for bit.
 
     Raises
     ------
     InvalidInput
-        Something does not fit; the message says which, and what was expected.
+        The measurements are missing, or an attack was written in Python.
     """
-    if not isinstance(model, _core.Model):
-        raise refusal("central_kalman: model", f"a {type(model).__name__}", "a garrison.Model")
-    x0 = np.zeros(model.states) if start is None else numbers("start", start)
-    y = numbers("measurements", matched("measurements", measurements, output_names(model)))
-    if y.ndim != 2 or x0.shape != (model.states,):
-        got = f"measurements {y.shape} and start {x0.shape}"
-        raise refusal("central_kalman", got, f"(samples, {model.outputs}) and ({model.states},)")
-    screen = {
-        "gate": 0.0 if gate is None else arguments.number("gate", gate),
-        "huber": np.inf if huber is None else arguments.number("huber", huber),
-    }
-    return _core.central_kalman(model, y, x0, arguments.number("start_variance", start_variance), **screen)
+    if not isinstance(run, Run):
+        raise refusal("again", f"a {type(run).__name__}", "a garrison.Run")
+    if not run.made:
+        raise refusal("again", "a run that does not say what made it", "one of simulate or replay")
+    given = {key: value for key, value in run.made.items() if key not in ("driver", "attack")}
+    attacks = [attack_of(plain) for plain in run.made["attack"]]
+    changes: dict[str, Any] = run.varying
+    plant = VaryingModel(run.model, **changes) if changes else run.model
+    parts, given["inputs"] = (plant, run.network, run.filter), run.inputs
+    if run.made["driver"] == "simulate":
+        return simulate(*parts, attack=attacks, **given)
+    if run.measurements is None:
+        raise refusal("again", "a replay without its measurements", 'keep to contain "measurements"')
+    lies = [attack for attack in attacks if attack.target == "message"]
+    return replay(*parts, measurements=run.measurements, truth=run.truth, attack=lies, **given)

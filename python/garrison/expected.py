@@ -31,6 +31,8 @@ def expected_certificate(design: _core.Design) -> list[dict[str, Any]]:
         attacks=[],
         link={},
         keep=["report"],
+        inputs=np.zeros((1 if design.model.inputs else 0, design.model.inputs)),
+        series={},
         progress=None,
     )
     bound, kind = made["bound"][0, -1], made["bound_kind"][0, -1]

@@ -15,7 +15,7 @@ from garrison.notebook import of_model, titled
 from garrison.numeric import real
 from garrison.sizes import require_memory
 from garrison.tables import Records
-from garrison.words import hinted, only, refusal, shown
+from garrison.words import only, refusal, shown
 
 Array = NDArray[np.float64]
 #: p-value below which residuals are called not white
@@ -92,6 +92,10 @@ class Fit:
         v = self.measurements(self.records) - x @ np.asarray(self.identified.C).T
         statistic, correlation, p_value = _core.certificate.whiteness(v, lags)
         return Whiteness(self.records.stations, statistic, correlation, p_value, lags)
+
+    def known(self, records: Records) -> Array | None:
+        """Known inputs (samples, p) among other records; None where the model has none."""
+        return None
 
     def levels(self, attacked: int, failure: float) -> tuple[float, float] | None:
         """(z1, z2) of the certificates that these records exceed at the rate `failure`, whatever their law.
@@ -207,30 +211,8 @@ def _by_name(message: str, records: Records) -> str:
     return re.sub(r"^records\[(\d+), (\d+)\]", record, re.sub(r"^station (\d+)\b", station, message))
 
 
-@hinted
-def fit(records: Records, **options: Any) -> Fit:
-    """Identify seasonal cycle, factors, A, C, noise levels and bounds from clean records.
-
-    Parameters
-    ----------
-    records : Records
-        Of garrison.tables.read_records.
-    **options
-        factors (state dimension, default 2), harmonics (2), period (of the cycle in samples, default a year),
-        root (False: True works on square roots), factor (1: unit conversion).
-
-    Returns
-    -------
-    Fit
-        The model, and what brings records into its coordinates.
-
-    Raises
-    ------
-    InvalidInput
-        The records do not suffice.
-    """
-    if not isinstance(records, Records):
-        raise refusal("fit.records", shown(records), "Records, as garrison.tables.read_records returns them")
+def fit_factors(records: Records, **options: Any) -> Fit:
+    """The model of `garrison.fit` with factors as states."""
     try:
         i = _core.identify(records.values, records.first, **_options(records, options))
     except _core.Error as error:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.bound_kind import counts
-from garrison.drivers import KEEP, central_kalman, replay, require_room, simulate
+from garrison.drivers import KEEP, replay, require_room, simulate
 from garrison.families import family_of
+from garrison.kalman import central_kalman, local_kalman
 from garrison.record import Run
 from garrison.scenario import Scenario
 
@@ -112,7 +113,7 @@ def rehearse(scenario: Scenario) -> None:
         else:
             y = scenario.measurements
             y = np.zeros((1, scenario.model.outputs)) if y is None else y[:1]
-            central_kalman(scenario.model, y, **scenario.screens[label])
+            _kalman(scenario, label, y)
 
 
 def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], None] | None:
@@ -150,7 +151,9 @@ def _run(
     options = _options(scenario, filter, attacked) | {"progress": progress, "conditions": conditions}
     if rehearsal:
         options["trials"] = 1
-    parts = scenario.model, scenario.network, filter
+    parts = scenario.plant, scenario.ground, filter
+    if scenario.inputs is not None:
+        options["inputs"] = scenario.inputs[: 1 if rehearsal else None]
     if scenario.measurements is not None:
         y, truth = scenario.measurements, scenario.truth
         if rehearsal:
@@ -170,9 +173,17 @@ def _kalman_row(scenario: Scenario, label: str, attacked: bool, log: Run | None)
     truth = log.truth if simulated else scenario.truth
     start = np.asarray(scenario.run.get("start", np.zeros(scenario.model.states)))
     first = start.ravel() if start.size == scenario.model.states else np.zeros(scenario.model.states)
-    screen = scenario.screens[label]
-    estimate = np.stack([central_kalman(scenario.model, y, start=first, **screen) for y in logs])[:, :, None]
+    estimate = np.stack([_kalman(scenario, label, y, first) for y in logs])
     return Row(scenario, label, attacked, None, _distance(estimate, truth), _distance(estimate, scenario.robust))
+
+
+def _kalman(scenario: Scenario, label: str, y: Array, start: Array | None = None) -> Array:
+    """Estimates (samples + 1, agents or 1, n) of a Kalman filter of the scenario."""
+    inputs = None if scenario.inputs is None else scenario.inputs[: len(y)]
+    known: dict[str, Any] = {"inputs": inputs, "start": start, **scenario.screens[label]}
+    if label in scenario.local:
+        return local_kalman(scenario.plant, scenario.network, y, **known)
+    return central_kalman(scenario.plant, y, **known)[:, None]
 
 
 def _distance(estimate: Array | None, states: Array | None) -> Array | None:

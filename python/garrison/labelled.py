@@ -10,7 +10,7 @@ import numpy as np
 
 from garrison import _core
 from garrison.families import family_of
-from garrison.longform import agent_names, state_names
+from garrison.longform import agent_names, common_unit, state_names
 from garrison.objects import described
 from garrison.verdict import Verdict
 from garrison.words import refusal
@@ -28,6 +28,11 @@ def dimensions(run: Run) -> dict[str, tuple[str, ...]]:
         "truth": ("trial", "time", "agent", "state") if own else ("trial", "time", "state"),
         "estimate": (*_PER_AGENT, "state"),
         "measurements": ("trial", "sample", "output"),
+        "inputs": ("step", "input"),
+        "varying_A": ("step", "state", "state_before"),
+        "varying_B": ("step", "state", "input"),
+        "varying_C": ("step", "row", "state"),
+        "varying_process_covariance": ("step", "state", "state_before"),
     }
 
 
@@ -55,13 +60,12 @@ def _coordinates(run: Run) -> dict[str, tuple[str, Any, dict[str, Any]]]:
         found["sample"] = ("sample", np.arange(first, times), {"long_name": "sample of the measurement"})
         found["output"] = ("output", np.array(outputs), {})
         found["output_unit"] = ("output", np.array([units.get(o, "") for o in outputs]), {})
+    if run.inputs is not None:
+        names = list(run.model.input_names) or [f"u{k}" for k in range(1, run.model.inputs + 1)]
+        found["input"] = ("input", np.array(names), {})
+        found["input_unit"] = ("input", np.array([units.get(u, "") for u in names]), {})
+        found["step"] = ("step", np.arange(len(run.inputs)), {"long_name": "leads from this time to the next"})
     return found
-
-
-def _common_unit(run: Run) -> str:
-    """The unit of all states, where they have one and the same: then errors and bounds have it too."""
-    found = {run.model.units.get(s, "") for s in state_names(run)}
-    return found.pop() if len(found) == 1 else ""
 
 
 def dataset(run: Run, arrays: dict[str, Any]) -> Any:
@@ -70,7 +74,7 @@ def dataset(run: Run, arrays: dict[str, Any]) -> Any:
         import xarray as xr
     except ImportError:
         raise refusal("to_xarray", "no xarray", 'it installed: pip install "garrison[xarray]"') from None
-    dims, unit = dimensions(run), _common_unit(run)
+    dims, unit = dimensions(run), common_unit(run)
     variables: dict[str, Any] = {}
     for name, values in arrays.items():
         about: dict[str, Any] = {"units": unit} if unit and name in ("truth", "estimate", "error", "bound") else {}
@@ -94,13 +98,20 @@ def dataset(run: Run, arrays: dict[str, Any]) -> Any:
     return xr.Dataset(variables, coordinates, about)
 
 
-#: attribute of a netCDF file that holds everything but the arrays
+#: attribute of a file that holds everything but the arrays
 _DOCUMENT = "run"
+#: what cannot be read as a run
+_NOT_ONE = (OSError, ValueError, KeyError, TypeError)
+
+
+def _marked(run: Run, document: dict[str, Any], arrays: dict[str, Any]) -> Any:
+    """The dataset of a run, with everything that makes the run again in an attribute."""
+    return dataset(run, arrays).assign_attrs({_DOCUMENT: json.dumps(document | {"arrays": list(arrays)})})
 
 
 def to_netcdf(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, Any]) -> None:
     """Write the dataset of a run, with everything that makes the run again, as netCDF."""
-    data = dataset(run, arrays).assign_attrs({_DOCUMENT: json.dumps(document | {"arrays": list(arrays)})})
+    data = _marked(run, document, arrays)
     # What older netCDF cannot hold: unsigned bytes, and attributes of 64 bits.
     if "verdict" in data:
         data["verdict"] = data.verdict.astype(np.int8)
@@ -109,17 +120,42 @@ def to_netcdf(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, 
     data.to_netcdf(path)
 
 
+def to_zarr(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, Any]) -> None:
+    """The same as a folder of zarr, of format 2: names of fixed width have no place in format 3 yet."""
+    _require_zarr("save")
+    data = _marked(run, document, arrays)
+    data.attrs = {k: str(v) for k, v in data.attrs.items()}
+    data.to_zarr(path, mode="w", consolidated=False, zarr_format=2)
+
+
+def _require_zarr(which: str) -> None:
+    try:
+        import zarr  # noqa: F401  (xarray finds it)
+    except ImportError:
+        raise refusal(which, "a folder of zarr and no zarr", 'it installed: pip install "garrison[store]"') from None
+
+
 def from_netcdf(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Document and arrays of a run that `to_netcdf` wrote. Raises IoError for any other file."""
+    return _read(path, {})
+
+
+def from_zarr(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Document and arrays of a run that `to_zarr` wrote. Raises IoError for any other folder."""
+    _require_zarr("load")
+    return _read(path, {"engine": "zarr", "consolidated": False})
+
+
+def _read(path: Path, how: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     try:
         import xarray as xr
     except ImportError:
-        raise refusal("load", "a netCDF file and no xarray", 'it installed: pip install "garrison[xarray]"') from None
+        raise refusal("load", f"{path.name} and no xarray", 'it installed: pip install "garrison[xarray]"') from None
     try:
-        with xr.open_dataset(path) as data:
+        with xr.open_dataset(path, **how) as data:
             document = json.loads(data.attrs[_DOCUMENT])
             arrays = {name: np.array(data[name].values) for name in document.pop("arrays")}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except _NOT_ONE as error:
         raise _core.IoError(f"{path}: got {error}, expected a run written by Run.save") from None
     if "verdict" in arrays:
         arrays["verdict"] = arrays["verdict"].astype(np.uint8)

@@ -27,6 +27,20 @@ def state_names(run: Run) -> list[str]:
     return [str(n) for n in names] if names else [f"x{k}" for k in range(run.model.states)]
 
 
+def common_unit(run: Run) -> str:
+    """The unit of all states, where they have one and the same: then errors and bounds have it too."""
+    found = {run.model.units.get(s, "") for s in state_names(run)}
+    return found.pop() if len(found) == 1 else ""
+
+
+def units(run: Run) -> dict[str, str]:
+    """Unit by the name of a column, where it is known."""
+    found = {name: unit for s, unit in run.model.units.items() for name in (s, f"true_{s}")}
+    if unit := common_unit(run):
+        found |= dict.fromkeys(("error", "bound", "published"), unit)
+    return found
+
+
 def columns(run: Run) -> dict[str, Any]:
     """Columns of the table, all of one length."""
     trials, times, agents = run.shape
@@ -60,4 +74,6 @@ def frame(run: Run) -> Any:
         import pandas as pd
     except ImportError:
         raise refusal("to_pandas", "no pandas", 'it installed: pip install "garrison[pandas]"') from None
-    return pd.DataFrame(columns(run))
+    table = pd.DataFrame(columns(run))
+    table.attrs["units"] = {name: unit for name, unit in units(run).items() if name in table}
+    return table

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from garrison import _core
+from garrison.numeric import numbers
 
 Plain = dict[str, Any]
 
@@ -21,6 +22,29 @@ def _lists(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _lists(v) for key, v in value.items()}
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+
+
+def plain_data(value: Any) -> Any:
+    """Numbers of any kind as nested lists; None stays."""
+    return None if value is None else _lists(numbers("value", value))
+
+
+def described_attack(attack: _core.Attack) -> Plain:
+    """The attack by what makes it; one of the user's own by its code alone."""
+    if attack.own:
+        return {"own": repr(attack)}
+    return {key: _lists(value) for key, value in attack.__getstate__().items()}
+
+
+def attack_of(plain: Plain) -> _core.Attack:
+    """The attack that was described."""
+    if "own" in plain:
+        missing = f"an attack written in Python, {plain['own']}"
+        raise _core.InvalidInput(f"attack: got {missing}, expected one of garrison.attacks; run it again by hand")
+    made = _core.Attack.__new__(_core.Attack)
+    schedule = [(start, agents) for start, agents in plain["schedule"]]
+    made.__setstate__(plain | {"schedule": schedule})
+    return made
 
 
 def _arguments(thing: Any) -> Plain | None:

@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 ARRAYS = (
     "truth",
     "measurements",
+    "inputs",
     "estimate",
     "error",
     "bound",
@@ -42,6 +43,8 @@ ARRAYS = (
 _LISTS = ("accusations", "details", "counters", "warnings", "bytes_per_step")
 #: beginning of a signal's name in a saved run
 _SIGNAL = "signal_"
+#: and of what changed of the plant
+_VARYING = "varying_"
 
 
 class Run:
@@ -51,14 +54,26 @@ class Run:
     n); error, bound, statistic, threshold (trial, time, agent); bound_kind (trial, time, agent): values of
     garrison.BoundKind, which say where a bound comes from, or why it is inf or nan; published: with a certificate, the
     bound of the filter's family alone; verdict (trial, time, agent): values of garrison.Verdict; measurements (trial,
-    time 1.., output; from time 0 in families with a sample at the start), as the filter received them; signals: name
-    -> (trial, time, agent). An array that was not kept, or that cannot
+    time 1.., output; from time 0 in families with a sample at the start), as the network received them; inputs (step,
+    input): known ones, row t led from time t to t + 1; varying: what of the plant changed, by name (VaryingModel);
+    signals: name -> (trial, time, agent). An array that was not kept, or that cannot
     exist (errors without truth), is None. Runs compare with ==, copy and pickle;
     `save` and `Run.load` keep everything.
     """
 
-    def __init__(self, data: dict[str, Any], model: _core.Model, network: _core.Network, filter: _core.Filter) -> None:
+    def __init__(
+        self,
+        data: dict[str, Any],
+        model: _core.Model,
+        network: _core.Network,
+        filter: _core.Filter,
+        varying: dict[str, Array] | None = None,
+    ) -> None:
         self.model = model
+        self.varying = dict(varying or {})
+        self.inputs: Array | None = data.get("inputs")
+        #: what made the run, as plain data: driver, seed, attacks, links, ...; see garrison.again
+        self.made: dict[str, Any] = dict(data.get("made", {}))
         self.network = network
         self.filter = filter
         self.truth: Array | None = data.get("truth")
@@ -102,12 +117,14 @@ class Run:
         suspected = self.verdict[self._trial(trial), whole("start", start, 0) :] == Verdict.SUSPECTED
         return np.asarray(suspected.mean(axis=0), dtype=float)
 
-    def why_no_bound(self, agent: int, time: int, trial: int = 0) -> str:
-        """Why an agent has no bound at a time, in a sentence; empty where it has one."""
+    def why_no_bound(self, agent: int | str, time: int, trial: int = 0) -> str:
+        """Why an agent (by number or name) has no bound at a time, in a sentence; empty where it has one."""
         if self.bound_kind is None:
             raise refusal("why_no_bound", "a run without bounds", 'keep to contain "report"')
         _, times, agents = self.shape
-        i, t = whole("agent", agent, 0, agents - 1), whole("time", time, 0, times - 1)
+        named = self._agents([agent]) if isinstance(agent, str) else None
+        i = named[0] if named else whole("agent", agent, 0, agents - 1)
+        t = whole("time", time, 0, times - 1)
         return BoundKind(int(self.bound_kind[self._trial(trial), t, i])).why
 
     def first_accused(self, trial: int = 0) -> dict[int, int]:
@@ -137,37 +154,47 @@ class Run:
     def save(self, path: str | Path) -> None:
         """Write everything to a file (created, or replaced), without pickles; read it with `Run.load`.
 
-        A NumPy .npz archive, or netCDF where the name ends in .nc (extra: xarray, with a netCDF backend of it: scipy,
-        h5netcdf or netCDF4): the dataset of `to_xarray`, which other programs read.
+        A NumPy .npz archive; netCDF where the name ends in .nc (extra: xarray, with a netCDF backend of it: scipy,
+        h5netcdf or netCDF4), or a folder of zarr where it ends in .zarr (packages xarray and zarr): the dataset of
+        `to_xarray`, which other programs read.
         """
         to = path_of("path", path)
         if to.suffix == ".nc":
             from garrison.labelled import to_netcdf
 
-            arrays = {n: getattr(self, n) for n in ARRAYS if getattr(self, n) is not None}
-            to_netcdf(self, to, self._document(), arrays | self.signals)
+            to_netcdf(self, to, self._document(), self._labelled())
+        elif to.suffix == ".zarr":
+            from garrison.labelled import to_zarr
+
+            to_zarr(self, to, self._document(), self._labelled())
         else:
             write("path", to, self._packed())
 
     @staticmethod
     def load(path: str | Path) -> Run:
         """The run that `save` wrote. Raises IoError when the file cannot be read or holds no run."""
-        if path_of("path", path).suffix == ".nc":
-            from garrison.labelled import from_netcdf
+        if path_of("path", path).suffix in (".nc", ".zarr"):
+            from garrison.labelled import from_netcdf, from_zarr
 
-            document, found = from_netcdf(path_of("path", path))
-            signals = {f"{_SIGNAL}{n}": v for n, v in found.items() if n not in ARRAYS}
+            read_file = from_netcdf if path_of("path", path).suffix == ".nc" else from_zarr
+            document, found = read_file(path_of("path", path))
+            signals = {n if n.startswith(_VARYING) else f"{_SIGNAL}{n}": v for n, v in found.items() if n not in ARRAYS}
             return _assembled(document, {n: v for n, v in found.items() if n in ARRAYS} | signals, str(path))
         return _restored(read("path", path, "a run written by Run.save"), str(path))
 
     def _document(self) -> dict[str, Any]:
         """Everything but the arrays, as plain data."""
         lists = {name: getattr(self, name) for name in _LISTS}
-        return {"objects": described(self.model, self.network, self.filter)} | lists
+        return {"objects": described(self.model, self.network, self.filter), "made": self.made} | lists
 
     def _arrays(self) -> dict[str, NDArray[Any]]:
         arrays = {name: getattr(self, name) for name in ARRAYS if getattr(self, name) is not None}
+        arrays |= {f"{_VARYING}{name}": value for name, value in self.varying.items()}
         return arrays | {f"{_SIGNAL}{name}": value for name, value in self.signals.items()}
+
+    def _labelled(self) -> dict[str, NDArray[Any]]:
+        """Arrays as a dataset holds them: signals by their own names."""
+        return {name.removeprefix(_SIGNAL): value for name, value in self._arrays().items()}
 
     def _packed(self) -> bytes:
         from garrison.storage import pack
@@ -180,7 +207,8 @@ class Run:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Run):
             return NotImplemented
-        if repr(self._document()) != repr(other._document()):
+        same = (repr({k: v for k, v in run._document().items() if k != "made"}) for run in (self, other))
+        if next(same) != next(same):
             return False
         one, two = self._arrays(), other._arrays()
         return one.keys() == two.keys() and all(np.array_equal(one[k], two[k], equal_nan=True) for k in one)
@@ -241,14 +269,14 @@ class Run:
         """
         from garrison.labelled import dataset
 
-        return dataset(self, {n: getattr(self, n) for n in ARRAYS if getattr(self, n) is not None} | self.signals)
+        return dataset(self, self._labelled())
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame in long form (extra: pandas): one row per trial, time and agent.
 
         Columns trial, time, agent (its name where the network has names), the estimate x0, x1, ... and the truth
         true_x0, ... (state names where the model has them), error, bound, statistic, threshold, verdict (as a word),
-        and the signals that were kept.
+        and the signals that were kept. `attrs["units"]`: units of columns by name, where the model has them.
         """
         from garrison.longform import frame
 
@@ -274,12 +302,13 @@ def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: s
     """The run of a document and arrays, signals marked by their prefix."""
     try:
         objects = document["objects"]
-        content: dict[str, Any] = {key: document[key] for key in _LISTS}
+        content: dict[str, Any] = {key: document[key] for key in _LISTS} | {"made": document.get("made", {})}
         content["accusations"] = [(k, t, sets) for k, t, sets in content["accusations"]]
         content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
         parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
     except (KeyError, TypeError, ValueError) as error:
         raise _core.IoError(f"{name}: got {error!r}, expected a run written by Run.save") from None
-    run = Run(content | {key: found[key] for key in ARRAYS if key in found}, *parts)
+    changed = {key.removeprefix(_VARYING): value for key, value in found.items() if key.startswith(_VARYING)}
+    run = Run(content | {key: found[key] for key in ARRAYS if key in found}, *parts, changed)
     run.signals = {key.removeprefix(_SIGNAL): value for key, value in found.items() if key.startswith(_SIGNAL)}
     return run

@@ -137,18 +137,22 @@ void fit_measurement_noise(const Matrix& x, const Matrix& y, Identified& m) {
 
 }  // namespace
 
-Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& options) {
+Matrix anomalies(const MatrixRef& raw, std::int64_t first, const FitOptions& options, Matrix& season) {
   if (raw.rows() < 2 || raw.cols() < 1) refuse("records", shape(raw), "samples x stations");
   require_options(raw, options);
-  Identified m;
-  m.options = options;
   const Matrix z = transformed(raw, options);
   const Matrix X = seasonal_design(z.rows(), first, options);
-  m.season.resize(X.cols(), z.cols());
-  for (Eigen::Index i = 0; i < z.cols(); ++i) m.season.col(i) = season_of(X, z.col(i), i);
-  const Matrix anomalies = z - X * m.season;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(pairwise_covariance(anomalies));
-  const auto N = z.cols();
+  season.resize(X.cols(), z.cols());
+  for (Eigen::Index i = 0; i < z.cols(); ++i) season.col(i) = season_of(X, z.col(i), i);
+  return z - X * season;
+}
+
+Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& options) {
+  Identified m;
+  m.options = options;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(
+      pairwise_covariance(anomalies(raw, first, options, m.season)));
+  const auto N = raw.cols();
   const auto n = options.factors;
   m.share = eigen.eigenvalues().reverse().head(n) / eigen.eigenvalues().sum();
   Matrix loadings = eigen.eigenvectors().rowwise().reverse().leftCols(n) * std::sqrt(static_cast<double>(N));

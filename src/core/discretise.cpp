@@ -48,4 +48,19 @@ Discretised discretise(const Matrix& F, const Matrix& intensity, double period) 
   return found;
 }
 
+Matrix held_input(const Matrix& F, const Matrix& G, double period) {
+  const auto n = F.rows();
+  require(F, Matrix::Zero(n, n), period);
+  if (G.size() == 0) return Matrix::Zero(n, 0);
+  if (G.rows() != n) refuse("B", shape(G), std::to_string(n) + " rows, because A is " + shape(F));
+  if (!G.allFinite()) refuse("B", "a number that is not finite", "finite numbers");
+  Matrix block = Matrix::Zero(n + G.cols(), n + G.cols());
+  block.topLeftCorner(n, n) = F * period;
+  block.topRightCorner(n, G.cols()) = G * period;
+  const Matrix e = block.exp();
+  if (!e.allFinite())
+    refuse("period", text(period), "one over which the plant stays finite", "take a shorter one");
+  return e.topRightCorner(n, G.cols());
+}
+
 }  // namespace garrison

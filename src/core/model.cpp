@@ -45,8 +45,10 @@ void require_labels(const Labels& labels, const Model& model) {
   if (!labels.sources.empty() && labels.sources.size() != outputs)
     refuse("sources", std::to_string(labels.sources.size()) + " names",
            std::to_string(outputs) + ", one per measurement of the whole network");
+  require_names("inputs", labels.inputs, static_cast<std::size_t>(model.inputs()), "column of B");
   std::vector<std::string> known = model.state_names();
   known.insert(known.end(), labels.outputs.begin(), labels.outputs.end());
+  known.insert(known.end(), labels.inputs.begin(), labels.inputs.end());
   for (const auto& [name, unit] : labels.units)
     if (std::find(known.begin(), known.end(), name) == known.end()) refuse_unknown("units", name, known);
 }
@@ -63,15 +65,20 @@ bool same(const std::vector<Matrix>& a, const std::vector<Matrix>& b) {
 
 }  // namespace
 
-Model::Model(Matrix A, std::vector<Matrix> C, Noise noise, std::vector<int> exposed, Labels labels)
+Model::Model(Matrix A, std::vector<Matrix> C, Noise noise, std::vector<int> exposed, Labels labels, Matrix B)
     : A_(std::move(A)),
       C_(std::move(C)),
       noise_(std::move(noise)),
       exposed_(std::move(exposed)),
-      labels_(std::move(labels)) {
+      labels_(std::move(labels)),
+      B_(std::move(B)) {
   const auto n = A_.rows();
   if (n < 1 || A_.cols() != n) refuse("A", shape(A_), "a square matrix with at least one row");
   require_finite("A", A_);
+  if (B_.size() == 0) B_.resize(n, 0);
+  if (B_.rows() != n)
+    refuse("B", shape(B_), std::to_string(n) + " rows, because A is " + shape(A_), "one column per input");
+  require_finite("B", B_);
   if (C_.empty()) refuse("C", "no agent", "one matrix of observation rows per agent");
   offsets_.assign(1, 0);
   for (std::size_t i = 0; i < C_.size(); ++i) {
@@ -122,7 +129,7 @@ std::vector<std::string> Model::state_names() const {
 bool operator==(const Model& a, const Model& b) {
   const Noise& p = a.noise_;
   const Noise& q = b.noise_;
-  return same(a.A_, b.A_) && same(a.C_, b.C_) && same(p.process_bound, q.process_bound) &&
+  return same(a.A_, b.A_) && same(a.B_, b.B_) && same(a.C_, b.C_) && same(p.process_bound, q.process_bound) &&
          same(p.measurement_bound, q.measurement_bound) && same(p.process_covariance, q.process_covariance) &&
          same(p.measurement_covariance, q.measurement_covariance) &&
          same(p.agent_process_covariance, q.agent_process_covariance) && a.exposed_ == b.exposed_ &&

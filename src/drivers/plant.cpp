@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/solvers.hpp"
+#include "garrison/core/response.hpp"
 
 namespace garrison::detail {
 namespace {
@@ -16,13 +17,14 @@ Matrix root(const Matrix& covariance) {
 
 class Simulated final : public Source {
  public:
-  Simulated(const Model& model, const NoiseLaw& law, const PlantOptions& plant, std::uint64_t seed,
+  Simulated(const Model& model, const NoiseLaw& law, const PlantOptions& plant, const RunOptions& options,
             std::uint32_t trial)
       : model_(model),
         law_(law),
-        start_(seed, trial, Purpose::start),
-        process_(seed, trial, Purpose::process),
-        measurement_(seed, trial, Purpose::measurement),
+        options_(options),
+        start_(options.seed, trial, Purpose::start),
+        process_(options.seed, trial, Purpose::process),
+        measurement_(options.seed, trial, Purpose::measurement),
         start_error_(plant.start_error),
         C_(model.stacked()),
         x_(plant.x0.size() == 0 ? Vector::Zero(model.states()) : plant.x0),
@@ -37,15 +39,31 @@ class Simulated final : public Source {
   const double* truth() const override { return x_.data(); }
   void next(std::int64_t t, std::span<double> y) override {
     law_.process(process_, t - 1, w_);
-    next_.noalias() = model_.A() * x_;
+    if (options_.series == nullptr && model_.inputs() == 0)
+      next_.noalias() = model_.A() * x_;
+    else
+      next_ = moved(static_cast<int>(t));
     x_ = next_ + w_;
-    Eigen::Map<Vector>(y.data(), static_cast<Eigen::Index>(y.size())).noalias() = C_ * x_;
+    Eigen::Map<Vector>(y.data(), static_cast<Eigen::Index>(y.size())).noalias() =
+        rows(static_cast<int>(t)) * x_;
     law_.measurement(measurement_, t, y);
   }
 
  private:
+  Vector moved(int t) const {
+    static const Series constant;
+    const Series& series = options_.series == nullptr ? constant : *options_.series;
+    if (model_.inputs() == 0) return series.A_at(model_, t) * x_;
+    return driven(series.A_at(model_, t), x_, series.B_at(model_, t), options_.inputs.row(t - 1).transpose());
+  }
+  const Matrix& rows(int t) const {
+    const Series* series = options_.series.get();
+    return series == nullptr || series->C.empty() ? C_ : series->C[static_cast<std::size_t>(t - 1)];
+  }
+
   const Model& model_;
   const NoiseLaw& law_;
+  const RunOptions& options_;
   Random start_;
   Random process_;
   Random measurement_;
@@ -110,11 +128,12 @@ void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radi
   out *= length > 0.0 ? radius * share * (1.0 - 1e-12) / length : 0.0;
 }
 
-NoiseLaw::NoiseLaw(const std::string& law, const Model& model) : model_(model) {
+NoiseLaw::NoiseLaw(const std::string& law, const Model& model, const Series* series) : model_(model) {
   const Noise& noise = model.noise();
   const bool bounds_w = !std::isnan(noise.process_bound);
   const bool bounds_v = noise.measurement_bound.size() != 0;
-  const bool covariance_w = noise.process_covariance.size() != 0;
+  const bool changes = series != nullptr && !series->process_covariance.empty();
+  const bool covariance_w = noise.process_covariance.size() != 0 || changes;
   const bool covariance_v = !noise.measurement_covariance.empty();
   if (law == "auto") {
     process_ = bounds_w ? Kind::uniform : covariance_w ? Kind::normal : Kind::none;
@@ -132,7 +151,10 @@ NoiseLaw::NoiseLaw(const std::string& law, const Model& model) : model_(model) {
   } else if (law != "none") {
     refuse("noise", "\"" + law + "\"", "one of: auto, uniform, extreme, normal, none");
   }
-  if (process_ == Kind::normal) process_root_ = root(noise.process_covariance);
+  if (process_ == Kind::normal && changes)
+    for (const Matrix& covariance : series->process_covariance) process_roots_.push_back(root(covariance));
+  else if (process_ == Kind::normal)
+    process_root_ = root(noise.process_covariance);
   if (measurement_ == Kind::normal)
     for (const Matrix& covariance : noise.measurement_covariance)
       measurement_roots_.push_back(root(covariance));
@@ -144,7 +166,7 @@ void NoiseLaw::process(const Random& random, std::int64_t t, Vector& w) const {
     return ball(random, t, 0, model_.noise().process_bound, process_ == Kind::extreme, w);
   Vector z(w.size());
   for (Eigen::Index k = 0; k < z.size(); ++k) z(k) = random.normal(t, 0, static_cast<std::uint32_t>(k));
-  w.noalias() = process_root_ * z;
+  w.noalias() = (process_roots_.empty() ? process_root_ : process_roots_[static_cast<std::size_t>(t)]) * z;
 }
 
 void NoiseLaw::measurement(const Random& random, std::int64_t t, std::span<double> y) const {
@@ -170,8 +192,8 @@ void NoiseLaw::measurement(const Random& random, std::int64_t t, std::span<doubl
 }
 
 std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law, const PlantOptions& plant,
-                                         std::uint64_t seed, std::uint32_t trial) {
-  return std::make_unique<Simulated>(model, law, plant, seed, trial);
+                                         const RunOptions& options, std::uint32_t trial) {
+  return std::make_unique<Simulated>(model, law, plant, options, trial);
 }
 
 std::unique_ptr<Source> recorded_source(const Model& model, const Log& log, std::uint32_t run, int width,

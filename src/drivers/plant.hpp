@@ -30,7 +30,8 @@ class Source {
 /// Noise law of a plant, resolved and checked against what the model knows.
 class NoiseLaw {
  public:
-  NoiseLaw(const std::string& law, const Model& model);
+  /// `series`: covariances over time, or null.
+  NoiseLaw(const std::string& law, const Model& model, const Series* series);
   void process(const Random& random, std::int64_t t, Vector& w) const;
   void measurement(const Random& random, std::int64_t t, std::span<double> y) const;
 
@@ -40,6 +41,7 @@ class NoiseLaw {
   Kind process_ = Kind::none;
   Kind measurement_ = Kind::none;
   Matrix process_root_;
+  std::vector<Matrix> process_roots_;  // over time
   std::vector<Matrix> measurement_roots_;
 };
 
@@ -48,7 +50,7 @@ void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radi
           Vector& out);
 
 std::unique_ptr<Source> simulated_source(const Model& model, const NoiseLaw& law, const PlantOptions& plant,
-                                         std::uint64_t seed, std::uint32_t trial);
+                                         const RunOptions& options, std::uint32_t trial);
 std::unique_ptr<Source> recorded_source(const Model& model, const Log& log, std::uint32_t run, int width,
                                         int first_sample);
 /// Agents that drive plants of their own.

@@ -98,7 +98,14 @@ void Recorder::count(int trial, int t, std::span<const double> y) {
   std::copy(y.begin(), y.end(), record_.measurements.begin() + static_cast<std::ptrdiff_t>(at * outputs_));
 }
 
-void Recorder::take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y) {
+void Recorder::move(double* estimates, const double* shift) const {
+  if (shift == nullptr) return;
+  const auto n = static_cast<std::size_t>(record_.states);
+  for (std::size_t k = 0; k < size(); ++k) estimates[k] += shift[k % n];
+}
+
+void Recorder::take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y,
+                    const double* shift) {
   const std::size_t at = row(trial, t);
   const auto N = static_cast<std::size_t>(record_.agents);
   Frame frame;
@@ -113,6 +120,7 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
   }
   if (keep_.signals) frame.signals = record_.signals.data() + at * N * record_.signal_names.size();
   runner.read(frame);
+  move(frame.estimate, shift);
   if (!vouch_ && frame.bound != nullptr) disown(frame);
   if (truth != nullptr) errors(at, frame.estimate, truth);
   if (keep_.report) accusations(trial, t, runner);

@@ -17,19 +17,25 @@ class Recorder {
   Recorder(const Prepared& prepared, int steps, bool truth_known, const RunOptions& options);
 
   const Record& record() const { return record_; }
-  /// Everything asked for at time t of a trial; y is what the filter received (not read at t = 0).
-  void take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y);
+  /// Everything asked for at time t of a trial; y is what the network received (not read at t = 0), `shift`
+  /// what is added to every estimate (n numbers; null = nothing).
+  void take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y,
+            const double* shift);
   /// The same of the trials first .. first + used - 1, which run side by side: estimates and errors.
   /// `truth(lane)`: null when it is not known. False: an estimate is so large that it may not have been of
   /// use.
   template <class Truth>
-  bool take_side_by_side(int first, int used, int t, const TrialsRunner& runner, const Truth& truth) {
+  bool take_side_by_side(int first, int used, int t, const TrialsRunner& runner, const Truth& truth,
+                         const double* shift) {
     std::array<double*, kLanes> out{};
     for (int l = 0; l < used; ++l) out[static_cast<std::size_t>(l)] = estimate(first + l, t);
     runner.read(out.data(), used);
     bool fine = true;
     for (int l = 0; l < used; ++l) {
-      const double* const estimates = out[static_cast<std::size_t>(l)];
+      double* const estimates = out[static_cast<std::size_t>(l)];
+      // Before the shift: what is too large for the filter is so in its own coordinates.
+      fine = fine && (shift == nullptr || all_below(estimates, size(), kSurelyUsable));
+      move(estimates, shift);
       if (const double* x = truth(l))
         fine = errors(row(first + l, t), estimates, x) && fine;
       else
@@ -56,6 +62,8 @@ class Recorder {
     return static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
   }
   std::size_t row(int trial, int t) const;
+  /// Adds what known inputs add to every estimate.
+  void move(double* estimates, const double* shift) const;
   /// Where estimates of that time go.
   double* estimate(int trial, int t);
   /// True: truth and errors are so small that the estimates are, too.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "course.hpp"
 #include "garrison/engine/workers.hpp"
 #include "plant.hpp"
 #include "recorder.hpp"
@@ -22,12 +23,16 @@ std::uint32_t drawn_as(const RunOptions& options, std::uint32_t trial) {
 
 class RunnerVictims final : public Victims {
  public:
-  explicit RunnerVictims(const Runner& runner) : runner_(runner) {}
-  void expected(int agent, double* out) const override { runner_.expected(agent, out); }
+  RunnerVictims(const Runner& runner, const detail::Course& course) : runner_(runner), course_(course) {}
+  void expected(int agent, double* out) const override {
+    runner_.expected(agent, out);
+    course_.add(agent, out);
+  }
   double alarm_level(int agent) const override { return runner_.alarm_level(agent); }
 
  private:
   const Runner& runner_;
+  const detail::Course& course_;
 };
 
 /// Reports progress from many threads, one at a time, and remembers whether to go on.
@@ -77,30 +82,33 @@ std::vector<std::unique_ptr<MeasurementAttack>> start_attacks(const Model& model
 
 /// One trial on its own runner.
 void run_trial(const Prepared& prepared, const RunOptions& options, Runner& runner, detail::Source& source,
-               detail::Recorder& recorder, int trial, Progress& progress) {
+               detail::Recorder& recorder, int trial, Progress& progress, std::string& doubt) {
   const Model& model = prepared.model();
   const Network& network = prepared.network();
   const std::uint32_t id = drawn_as(options, static_cast<std::uint32_t>(trial));
   Link link(network, options.link, options.message_attacks, options.seed, id);
   auto attacks = start_attacks(model, options, id);
-  const RunnerVictims victims(runner);
+  detail::Course course(model, options);
+  const RunnerVictims victims(runner, course);
   recorder.begin(trial);
   std::vector<double> y(static_cast<std::size_t>(model.total_outputs()));
   runner.reset(source.start(starts(model, options.start)), link.perfect() ? nullptr : &link);
   source.meet(runner);
   const auto sample = [&](int t) {
     source.next(t, y);
+    if (!course.plain()) course.enter(t, runner);
     for (auto& attack : attacks) attack->apply({t, y, victims});
-    runner.step(t, y.data());
+    runner.step(t, course.without(y).data());
   };
   if (recorder.record().first_sample == 0) sample(0);
-  recorder.take(trial, 0, runner, source.truth(), y);
+  recorder.take(trial, 0, runner, source.truth(), y, nullptr);
   for (int t = 1; t <= recorder.record().steps; ++t) {
     sample(t);
-    recorder.take(trial, t, runner, source.truth(), y);
+    recorder.take(trial, t, runner, source.truth(), y, course.shift());
     if (!progress.advance()) return;
   }
   recorder.finish(link.counters, runner);
+  doubt = course.doubt();
 }
 
 /// kLanes trials at once where the family can; trial by trial the same bits. False: some estimate grew so
@@ -130,17 +138,20 @@ bool run_side_by_side(const Model& model, const RunOptions& options, TrialsRunne
   std::vector<double> all(M * kLanes);
   runner.reset(x0.data());
   const auto truth = [&](int lane) { return lanes[static_cast<std::size_t>(lane)].source->truth(); };
-  bool fine = recorder.take_side_by_side(first, used, 0, runner, truth);
+  bool fine = recorder.take_side_by_side(first, used, 0, runner, truth, nullptr);
+  detail::Course course(model, options);
   for (int t = 1; t <= record.steps; ++t) {
+    if (!course.plain()) course.enter(t);
     for (int l = 0; l < kLanes; ++l) {
       auto& lane = lanes[static_cast<std::size_t>(l)];
       lane.source->next(t, y);
       for (auto& attack : lane.attacks) attack->apply({t, y, nobody});
-      for (std::size_t k = 0; k < M; ++k) all[k * kLanes + static_cast<std::size_t>(l)] = y[k];
+      const auto rest = course.without(y);
+      for (std::size_t k = 0; k < M; ++k) all[k * kLanes + static_cast<std::size_t>(l)] = rest[k];
       if (l < used) recorder.count(first + l, t, y);
     }
     runner.step(all.data());
-    fine = recorder.take_side_by_side(first, used, t, runner, truth) && fine;
+    fine = recorder.take_side_by_side(first, used, t, runner, truth, course.shift()) && fine;
     if (!progress.advance(used)) return true;
   }
   return fine;
@@ -151,7 +162,7 @@ bool fit_side_by_side(const RunOptions& options) {
   if (!options.message_attacks.empty() || options.link.drop > 0.0 || options.link.delay > 0.0) return false;
   for (const Attack& attack : options.attacks)
     if (attack->closed_loop()) return false;
-  return true;
+  return options.series == nullptr;
 }
 
 Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOptions& options,
@@ -177,6 +188,7 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
   const int threads = thread_count(options.threads);
   std::mutex mutex;
   std::exception_ptr failure;
+  std::string doubt;  // the same of all trials: inputs are
   const auto guarded = [&](const auto& work) {
     try {
       work();
@@ -188,7 +200,9 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
   const auto one_by_one = [&](std::int64_t begin, std::int64_t end, Runner& runner) {
     for (auto trial = begin; trial < end && !progress.stopped(); ++trial) {
       const auto source = make(static_cast<std::uint32_t>(trial));
-      run_trial(prepared, options, runner, *source, recorder, static_cast<int>(trial), progress);
+      std::string found;
+      run_trial(prepared, options, runner, *source, recorder, static_cast<int>(trial), progress, found);
+      if (trial == 0) doubt = std::move(found);
     }
   };
   if (const auto probe = fit_side_by_side(options) ? prepared.trials() : nullptr; probe != nullptr) {
@@ -218,6 +232,7 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
   Record record = recorder.release();
   record.interrupted = progress.stopped();
   record.warnings = filter.warnings(model, {record.verdict, record.trials, record.steps + 1, record.agents});
+  if (!doubt.empty()) record.warnings.push_back(std::move(doubt));
   for (std::string& words : filter.refuted(record.refuted)) record.warnings.push_back(std::move(words));
   if (!options.message_attacks.empty())
     record.warnings.emplace_back(
@@ -235,6 +250,7 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
 Record simulate(const Prepared& prepared, const PlantOptions& plant, const RunOptions& options) {
   const Model& model = prepared.model();
   if (plant.steps < 1) refuse("steps", std::to_string(plant.steps), "at least 1");
+  detail::require_course(prepared, options, plant.steps);
   const bool own = prepared.filter().own_states();
   const int width = own ? model.agents() * model.states() : model.states();
   if (plant.x0.size() != 0 && plant.x0.size() != width)
@@ -258,9 +274,9 @@ Record simulate(const Prepared& prepared, const PlantOptions& plant, const RunOp
   if (plant.disturbances.size() != 0)
     refuse("noise", "recorded disturbances", "the name of a noise law",
            "only families whose agents drive plants of their own take recorded ones");
-  const detail::NoiseLaw law(plant.noise, model);
+  const detail::NoiseLaw law(plant.noise, model, options.series.get());
   return drive(prepared, plant.steps, true, options, [&](std::uint32_t trial) {
-    return detail::simulated_source(model, law, plant, options.seed, drawn_as(options, trial));
+    return detail::simulated_source(model, law, plant, options, drawn_as(options, trial));
   });
 }
 
@@ -272,6 +288,7 @@ Record simulate(const Model& model, const Network& network, const AnyFilter& fil
 Record replay(const Prepared& prepared, const Log& log, const RunOptions& options) {
   const Model& model = prepared.model();
   if (log.steps < 1) refuse("measurements", std::to_string(log.steps) + " samples", "at least 1");
+  detail::require_course(prepared, options, log.steps);
   if (log.runs != 1 && log.runs != options.trials)
     refuse("trials", std::to_string(options.trials), std::to_string(log.runs) + ", one per run of the log",
            "a log of one run serves any number of trials");

@@ -57,6 +57,7 @@ struct ModelData {
   Noise noise;
   std::vector<int> exposed;
   Labels labels;
+  Matrix B;
 
   template <class V>
   void visit(V& v) {
@@ -75,10 +76,12 @@ struct ModelData {
     for (const auto& [name, unit] : labels.units) units.push_back({name, unit});
     v("units", units);
     for (const Unit& one : units) labels.units[one.name] = one.unit;
+    v("B", B);
+    v("inputs", labels.inputs);
   }
 };
 ModelData data_of(const Model& model) {
-  ModelData data{model.A(), {}, model.noise(), {}, model.labels()};
+  ModelData data{model.A(), {}, model.noise(), {}, model.labels(), model.B()};
   for (int i = 0; i < model.agents(); ++i) {
     data.C.push_back(model.C(i));
     data.exposed.push_back(model.exposed(i));
@@ -216,7 +219,7 @@ std::shared_ptr<const Prepared> read_design(std::span<const std::byte> file) {
   for (std::size_t k = 0; k < std::min(design.network.senders.size(), design.network.receivers.size()); ++k)
     edges.emplace_back(design.network.senders[k], design.network.receivers[k]);
   const Model model(design.model.A, design.model.C, design.model.noise, design.model.exposed,
-                    design.model.labels);
+                    design.model.labels, design.model.B);
   const Network network(head.agents, edges, design.network.directed, design.network.names);
   auto prepared =
       make_filter(head.filter, to_map(head.params))->restore(model, network, bytes_of(design.gains));

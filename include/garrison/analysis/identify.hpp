@@ -37,6 +37,11 @@ struct GARRISON_EXPORT Identified {
 /// negative record with `root`
 GARRISON_EXPORT Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& options);
 
+/// Records without their seasonal cycle, T x N, which is written to `season` as Identified keeps it. @throws
+/// InvalidInput
+GARRISON_EXPORT Matrix anomalies(const MatrixRef& raw, std::int64_t first, const FitOptions& options,
+                                 Matrix& season);
+
 /// Measurements (T x N) of other records under a fixed model.
 GARRISON_EXPORT Matrix measurements(const Identified& model, const MatrixRef& raw, std::int64_t first);
 

@@ -19,12 +19,13 @@ enum class CertificateKind : std::uint8_t {
   too_few,    ///< bound = infinity: too few measurements reached the agent, in this sample and all before
   refuted,    ///< bound = NaN: the data contradict "at most s are attacked" (or the rare event happened)
   liars,      ///< bound = NaN: agents lie in their messages, where every bound rests on what they say
+  varying,    ///< bound = NaN: A or C changes in time, and the family's theorem needs a constant plant
 };
-inline constexpr int kCertificateKinds = 10;
+inline constexpr int kCertificateKinds = 11;
 
 constexpr std::string_view word(CertificateKind kind) {
-  constexpr std::string_view words[] = {"none",     "published", "witness", "relayed", "table",
-                                        "informed", "recovered", "too few", "refuted", "liars"};
+  constexpr std::string_view words[] = {"none",      "published", "witness", "relayed", "table",  "informed",
+                                        "recovered", "too few",   "refuted", "liars",   "varying"};
   return words[static_cast<int>(kind)];
 }
 

@@ -18,4 +18,8 @@ struct GARRISON_EXPORT Discretised {
 /// `period` > 0 in the unit of time of F. @throws InvalidInput when something does not fit or overflows
 GARRISON_EXPORT Discretised discretise(const Matrix& F, const Matrix& intensity, double period);
 
+/// What multiplies an input that is held over a period: integral over 0..period of e^(F s) ds G, exactly,
+/// from one exponential. G: n x p. @throws InvalidInput
+GARRISON_EXPORT Matrix held_input(const Matrix& F, const Matrix& G, double period);
+
 }  // namespace garrison

@@ -34,12 +34,13 @@ struct GARRISON_EXPORT Labels {
   std::vector<std::string> outputs = {};  ///< one name per measurement of the whole network, agent by agent
   /// Who can falsify each measurement: several outputs of one receiver have one source.
   std::vector<std::string> sources = {};
-  std::map<std::string, std::string> units = {};  ///< by the name of a state or output
+  std::map<std::string, std::string> units = {};  ///< by the name of a state, output or input
+  std::vector<std::string> inputs = {};           ///< one name per column of B
 
   bool operator==(const Labels&) const = default;
 };
 
-/// x(t+1) = A x(t) + w(t),  y_i(t) = C_i x(t) + v_i(t) for agents i = 0..N-1.
+/// x(t+1) = A x(t) + B u(t) + w(t),  y_i(t) = C_i x(t) + v_i(t) for agents i = 0..N-1; u is known to all.
 ///
 /// Immutable once built. C_i may have any number of rows; an agent without sensors (a relay) has none.
 /// Measurements of the whole network are kept flat, agent by agent: agent i owns the entries
@@ -49,15 +50,19 @@ class GARRISON_EXPORT Model {
  public:
   /// `A`: n x n, finite. `C`: one m_i x n matrix per agent, finite (m_i = 0 allowed), at least one agent.
   /// `exposed`: how many of an agent's first outputs an attacker can reach, one number per agent; empty =
-  /// all.
+  /// all. `B`: n x p, finite; empty = no known inputs (docs/adr/0016 says how drivers use them).
   /// @throws InvalidInput on a wrong shape, a number that is not finite, an impossible noise, or names that
   /// are empty, occur twice or do not fit in number.
-  Model(Matrix A, std::vector<Matrix> C, Noise noise = {}, std::vector<int> exposed = {}, Labels labels = {});
+  Model(Matrix A, std::vector<Matrix> C, Noise noise = {}, std::vector<int> exposed = {}, Labels labels = {},
+        Matrix B = {});
 
   int states() const { return static_cast<int>(A_.rows()); }
   int agents() const { return static_cast<int>(C_.size()); }
   const Matrix& A() const { return A_; }
   const Matrix& C(int agent) const { return C_[static_cast<std::size_t>(agent)]; }
+  /// n x inputs(); no columns where there are no known inputs.
+  const Matrix& B() const { return B_; }
+  int inputs() const { return static_cast<int>(B_.cols()); }
   int outputs(int agent) const { return static_cast<int>(C(agent).rows()); }
   /// Outputs 0..exposed-1 of an agent can be attacked, the others are secured.
   int exposed(int agent) const {
@@ -85,6 +90,7 @@ class GARRISON_EXPORT Model {
   std::vector<int> offsets_;
   std::vector<int> exposed_;  // empty = all
   Labels labels_;
+  Matrix B_;
 };
 
 }  // namespace garrison

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "garrison/attacks/measurement.hpp"
+#include "garrison/core/series.hpp"
 #include "garrison/drivers/record.hpp"
 #include "garrison/engine/any_filter.hpp"
 
@@ -37,6 +38,11 @@ struct GARRISON_EXPORT RunOptions {
   std::vector<Attack> attacks;  ///< applied in this order
   std::vector<std::shared_ptr<const MessageAttack>> message_attacks;
   LinkFaults link;
+  /// Known inputs, steps x Model::inputs(): row t is u(t), which leads from time t to t + 1. Filters get the
+  /// measurements without the plant's response to them, and the record has it in the estimates again:
+  /// docs/adr/0016.
+  Matrix inputs;
+  std::shared_ptr<const Series> series;  ///< what of the plant changes in time; null = nothing
   Keep keep;
   /// Called now and then with the number of finished samples and their total; false stops the run.
   std::function<bool(std::int64_t, std::int64_t)> progress;
@@ -56,8 +62,8 @@ struct GARRISON_EXPORT PlantOptions {
   Matrix disturbances = {};
 };
 
-/// x(t+1) = A x(t) + w(t), y = C x + v, attacked, filtered. Trials differ in noise, attack chance and link
-/// faults; each depends on (seed, trial) only.
+/// x(t+1) = A x(t) + B u(t) + w(t), y = C x + v, attacked, filtered. Trials differ in noise, attack chance
+/// and link faults; each depends on (seed, trial) only.
 /// @throws InvalidInput when something does not fit; run-time trouble is counted in the record.
 GARRISON_EXPORT Record simulate(const Prepared& prepared, const PlantOptions& plant,
                                 const RunOptions& options);

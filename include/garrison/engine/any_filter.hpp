@@ -40,6 +40,9 @@ class GARRISON_EXPORT Prepared {
   virtual std::unique_ptr<Agent> agent(int id) const = 0;
   /// Refuses an attack on messages that the family's messages have no place for. @throws InvalidInput
   virtual void require(const MessageAttack& attack) const = 0;
+  /// Refuses a plant whose A or C changes in time, where the family is designed for a constant one.
+  /// @throws InvalidInput
+  virtual void require_varying() const = 0;
   /// Several trials side by side, with the same bits as `runner`; null where the family has no such path.
   virtual std::unique_ptr<TrialsRunner> trials() const = 0;
   /// The plants that the agents drive, for one trial; null for families that watch one common plant.

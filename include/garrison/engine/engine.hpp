@@ -38,6 +38,7 @@ class Engine final : public Runner {
          int threads, std::unique_ptr<CertifiedNetwork> certified = nullptr)
       : gains_(std::move(gains)),
         model_(model),
+        A_(model.A()),
         plan_(network.offsets(), network.lists(), model.states()),
         mail_(network, plan_.order(), model.states(), F::rounds(*gains_)),
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
@@ -51,16 +52,16 @@ class Engine final : public Runner {
       position_[static_cast<std::size_t>(i)] = places_.size();
       places_.push_back({i, model_.outputs(i), network.degree(i), rows_.size()});
       first_output_.push_back(model_.offset(i));
-      const Matrix& C = model_.C(i);
-      for (Eigen::Index r = 0; r < C.rows(); ++r)
-        for (Eigen::Index c = 0; c < C.cols(); ++c) rows_.push_back(C(r, c));
+      rows_.resize(rows_.size() + static_cast<std::size_t>(model_.C(i).size()));
     }
+    sight(model_.stacked());
     batch_.join(locals());
   }
 
   void reset(const Matrix& x0, Link* link) override {
     mail_.connect(link);
     batch_.release();
+    if (varying_) constant();
     for (std::size_t k = 0; k < states_.size(); ++k) {
       const Vec<n> start = x0.col(places_[k].id);
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
@@ -72,6 +73,12 @@ class Engine final : public Runner {
     samples_ = 0;
     overflows_ = resets_ = 0;
     if (certified_) certified_->reset(first_sample<F>() - 1);
+  }
+
+  void vary(const Matrix* A, const Matrix* C) override {
+    varying_ = true;
+    if (A != nullptr) A_ = *A;
+    if (C != nullptr) sight(*C);
   }
 
   void step(std::int64_t t, const double* y) override {
@@ -99,7 +106,8 @@ class Engine final : public Runner {
       F::template signals<n>(local(k), *gains_, states_[k], signals.data());
       for (std::size_t s = 0; s < F::signal_count; ++s) f.signals[s * N + i] = signals[s];
     }
-    if (f.bound != nullptr && f.bound_kind != nullptr) certify(f);
+    if (varying_ && f.bound != nullptr) disclaim(f);
+    if (f.bound != nullptr && f.bound_kind != nullptr && !varying_) certify(f);
   }
 
   void expected(int agent, double* out) const override {
@@ -156,8 +164,22 @@ class Engine final : public Runner {
   };
   Local local(std::size_t k) const {
     const Place& p = places_[k];
-    return {p.id,     model_.agents(),   model_.states(),       p.outputs,
-            p.degree, model_.A().data(), rows_.data() + p.first};
+    return {p.id, model_.agents(), model_.states(), p.outputs, p.degree, A_.data(), rows_.data() + p.first};
+  }
+
+  /// Writes the rows of all C_i, given on top of each other in the order of public ids. In place: batches
+  /// keep pointers to them.
+  void sight(const Matrix& C) {
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      double* row = rows_.data() + places_[k].first;
+      for (int r = 0; r < places_[k].outputs; ++r)
+        for (Eigen::Index c = 0; c < C.cols(); ++c) *row++ = C(first_output_[k] + r, c);
+    }
+  }
+  void constant() {
+    varying_ = false;
+    A_ = model_.A();
+    sight(model_.stacked());
   }
 
   auto locals() const {
@@ -233,6 +255,14 @@ class Engine final : public Runner {
     samples_ += round == 0 ? 1 : 0;
   }
 
+  /// No theorem of a family covers a plant that changes in time.
+  void disclaim(const Frame& f) const {
+    std::fill_n(f.bound, states_.size(), kNaN);
+    if (f.published != nullptr) std::fill_n(f.published, states_.size(), kNaN);
+    if (f.bound_kind != nullptr)
+      std::fill_n(f.bound_kind, states_.size(), static_cast<std::uint8_t>(CertificateKind::varying));
+  }
+
   /// Says where the bounds of the family come from, or puts better ones in their place.
   void certify(const Frame& f) const {
     const std::size_t N = states_.size();
@@ -272,6 +302,8 @@ class Engine final : public Runner {
 
   std::shared_ptr<const typename F::Gains> gains_;
   Model model_;
+  Matrix A_;  // in force: the model's, or what `vary` said
+  bool varying_ = false;
   ConsensusPlan plan_;
   Mailroom<Message> mail_;
   Workers workers_;

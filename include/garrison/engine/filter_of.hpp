@@ -90,6 +90,13 @@ class PreparedOf final : public Prepared {
       return 0;
     });
   }
+  void require_varying() const override {
+    std::string reason = "its gains are designed for one A and C";
+    if constexpr (requires { F::needs_constant(*gains_); }) reason = F::needs_constant(*gains_);
+    if (!reason.empty())
+      refuse("model", "A or C that change in time", "a constant plant for " + std::string(F::name),
+             reason + "; see docs/how-to/changing-plants.md");
+  }
   std::unique_ptr<TrialsRunner> trials() const override {
     if (certificate_ != nullptr) return nullptr;
     if constexpr (requires { F::trials(gains_, model_, network_); })

@@ -30,6 +30,9 @@ class GARRISON_EXPORT Runner {
   virtual ~Runner() = default;
   /// Time 0: one initial estimate per agent, n x N. `link` (null = perfect) must outlive the run.
   virtual void reset(const Matrix& x0, Link* link) = 0;
+  /// Whether the network is told, before a sample, of an A or C (stacked) that differ from the model's: for
+  /// families that can (Prepared::require_varying). Null = as before; `reset` goes back to the model's.
+  virtual void vary(const Matrix* A, const Matrix* C) = 0;
   /// One sample: every agent senses, then all rounds. `y` has Model::total_outputs() entries, NaN = missing.
   virtual void step(std::int64_t t, const double* y) = 0;
   virtual void read(const Frame& frame) const = 0;

@@ -6,7 +6,7 @@ import numpy as np
 
 from garrison._commands.output import new_file, write_whole
 from garrison._commands.terminal import OK, Commands, console_for, number, print_table, print_warnings, whole_number
-from garrison.fitting import fit
+from garrison.identifying import fit
 from garrison.scenario.section import moment
 from garrison.tables import read_records
 from garrison.tables.clock import Moment

@@ -21,6 +21,7 @@ __all__: list[str] = [
     "Agent",
     "AgentInfo",
     "Attack",
+    "Autoregression",
     "Design",
     "DesignInfeasible",
     "Error",
@@ -32,9 +33,12 @@ __all__: list[str] = [
     "Message",
     "Model",
     "Network",
+    "Response",
     "SubsetBound",
+    "anomalies",
     "attack_infos",
     "attacks",
+    "autoregress",
     "budget",
     "central_kalman",
     "certificate",
@@ -42,12 +46,17 @@ __all__: list[str] = [
     "check",
     "custom_attack",
     "design_summary",
+    "discretise",
+    "driven",
+    "extended_kalman",
     "filter_infos",
     "filters",
+    "identified",
     "identify",
     "lambda0",
     "lambda0_orthogonal",
     "lfre_parents",
+    "local_kalman",
     "make_attack",
     "make_filter",
     "nearest_name",
@@ -96,7 +105,7 @@ class budget:
 
 class Model:
     """
-    The plant x(t+1) = A x(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.
+    The plant x(t+1) = A x(t) + B u(t) + w(t), y_i(t) = C_i x(t) + v_i(t). Immutable.
 
     Parameters
     ----------
@@ -123,6 +132,10 @@ class Model:
         From names of states and outputs to units, or one unit for all.
     exposed : sequence of int, optional
         Per agent, how many of its first outputs an attacker can reach; default all.
+    B : (n, p) array, optional
+        What known inputs u do to the state; runs then take `inputs`, one row u(t) per step. Default: no inputs.
+    inputs : p names, optional
+        One per column of B.
 
     Raises
     ------
@@ -144,9 +157,11 @@ class Model:
         sources: typing.Any = None,
         units: typing.Any = None,
         exposed: typing.Any = None,
+        B: typing.Any = None,
+        inputs: typing.Any = None,
     ) -> Model:
         """
-        The model of dx/dt = A x + white noise, sampled every `period` (> 0, in the unit of time of A), exactly
+        The model of dx/dt = A x + B u + white noise, u held between samples, sampled every `period` (> 0, in the unit of time of A), exactly
         (C. F. Van Loan, IEEE TAC 23 (3), 1978). process_intensity: spectral density of the noise, (n, n) or a
         number (times the identity), in state^2 per time; the model then has its process_covariance. process_bound:
         of the noise from sample to sample, as in Model; the rest, too. Raises InvalidInput.
@@ -170,6 +185,8 @@ class Model:
         sources: typing.Any = None,
         units: typing.Any = None,
         exposed: typing.Any = None,
+        B: typing.Any = None,
+        inputs: typing.Any = None,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
@@ -181,6 +198,11 @@ class Model:
         (n, n)
         """
     @property
+    def B(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, p); no columns where there are no known inputs.
+        """
+    @property
     def C(self) -> list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
         """
         One (m_i, n) array per agent.
@@ -189,6 +211,16 @@ class Model:
     def agents(self) -> int:
         """
         N
+        """
+    @property
+    def input_names(self) -> list[str]:
+        """
+        One name per known input; empty where none were given.
+        """
+    @property
+    def inputs(self) -> int:
+        """
+        p
         """
     @property
     def measurement_bound(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
@@ -827,9 +859,124 @@ class Identified:
         (n,): part of the variance that each factor carries
         """
 
+class Autoregression:
+    """
+    A vector autoregression in companion form: state z(t), .., z(t - order + 1).
+    """
+    def __copy__(self) -> typing.Any: ...
+    def __deepcopy__(self, memo: dict) -> typing.Any: ...
+    def __eq__(self, other: typing.Any) -> typing.Any: ...
+    def __getstate__(self) -> dict: ...
+    def __hash__(self) -> int: ...
+    def __setstate__(self, arg0: dict) -> None: ...
+    @property
+    def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n), n = stations times order.
+        """
+    @property
+    def B(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, inputs).
+        """
+    @property
+    def held_out(self) -> list[float]:
+        """
+        Mean log-likelihood of a held-out sample under orders 1, 2, ..; empty where the order was given.
+        """
+    @property
+    def order(self) -> int:
+        """
+        How many samples of the past count.
+        """
+    @property
+    def residual_bound(self) -> float:
+        """
+        Largest residual of the records, a length.
+        """
+    @property
+    def residual_covariance(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, N)
+        """
+    @property
+    def residuals(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (T, N), nan where the past is not complete.
+        """
+    @property
+    def samples(self) -> int:
+        """
+        Samples with a complete past, on which it rests.
+        """
+
+class Response:
+    """
+    What known inputs alone do to a plant: s(t+1) = A s(t) + B u(t), s(0) = 0.
+
+    With x = z + s, z is a plant without inputs of which y - C s is measured: an agent driven by hand gets `without` of its
+    measurement, and its estimate plus `state` is one of x, with the same error and bound (docs/adr/0016).
+
+    Parameters
+    ----------
+    model : Model
+        With B.
+    """
+    def __init__(self, model: Model) -> None: ...
+    def advance(self, inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+        """
+        Moves to the next sample with u, one number per column of B. Raises InvalidInput when the response overflows.
+        """
+    def without(
+        self,
+        y: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        C: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        y - C s, what a filter without inputs is to get of the measurement y (m,); C (m, n).
+        """
+    @property
+    def sample(self) -> int:
+        """
+        The present sample, from 0.
+        """
+    @property
+    def state(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        s, (n,).
+        """
+
+def anomalies(
+    raw: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    first: typing.SupportsInt | typing.SupportsIndex,
+    *,
+    harmonics: typing.SupportsInt | typing.SupportsIndex,
+    period: typing.SupportsFloat | typing.SupportsIndex,
+    root: bool,
+    factor: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+]:
+    """
+    (records without their seasonal cycle (T, N), the cycle's coefficients).
+    """
+
 def attack_infos() -> list:
     """
     All attacks with the description of their parameters.
+    """
+
+def autoregress(
+    z: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    u: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    *,
+    order: typing.SupportsInt | typing.SupportsIndex = 0,
+    most: typing.SupportsInt | typing.SupportsIndex = 4,
+    held_out: typing.SupportsFloat | typing.SupportsIndex = 0.25,
+) -> Autoregression:
+    """
+    Fit z(t) = A_1 z(t-1) + .. + B u(t) + e to (T, N) numbers without mean and season, nan = missing; u (T, p).
     """
 
 def central_kalman(
@@ -839,6 +986,8 @@ def central_kalman(
     start_variance: typing.SupportsFloat | typing.SupportsIndex,
     gate: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     huber: typing.SupportsFloat | typing.SupportsIndex = ...,
+    inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] = ...,
+    series: dict = {},
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
     """
     Estimates (T + 1, n) of a central Kalman filter.
@@ -881,9 +1030,65 @@ def design_summary(data: typing.Any) -> dict:
     What a design file says of itself: filter, params, agents, states, bytes, hash, agent.
     """
 
+def discretise(
+    A: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    process_intensity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    period: typing.SupportsFloat | typing.SupportsIndex,
+    B: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+]:
+    """
+    (A, covariance, B) from sample to sample of dx/dt = A x + B u + white noise, u held in between.
+    """
+
+def driven(
+    A: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    x: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    B: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    u: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    A x + B u.
+    """
+
+def extended_kalman(
+    f: collections.abc.Callable,
+    h: collections.abc.Callable,
+    measurements: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    x0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    P0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    process_covariance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    measurement_variance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    inputs: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    f_jacobian: typing.Any = None,
+    h_jacobian: typing.Any = None,
+    gate: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    huber: typing.SupportsFloat | typing.SupportsIndex = ...,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    Estimates (T + 1, n) of an extended Kalman filter.
+    """
+
 def filter_infos() -> list:
     """
     All families with the description of their parameters.
+    """
+
+def identified(
+    autoregression: Autoregression,
+    season: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    *,
+    harmonics: typing.SupportsInt | typing.SupportsIndex,
+    period: typing.SupportsFloat | typing.SupportsIndex,
+    root: bool,
+    factor: typing.SupportsFloat | typing.SupportsIndex,
+    noise: typing.SupportsFloat | typing.SupportsIndex,
+) -> Identified:
+    """
+    An autoregression as an Identified model.
     """
 
 def identify(
@@ -921,6 +1126,21 @@ def lambda0_orthogonal(
 def lfre_parents(filter: Filter, model: Model, network: Network) -> list[list[int]]:
     """
     Parents of every agent in an Lfre filter.
+    """
+
+def local_kalman(
+    model: Model,
+    network: Network,
+    measurements: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    start: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    start_variance: typing.SupportsFloat | typing.SupportsIndex,
+    gate: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    huber: typing.SupportsFloat | typing.SupportsIndex = ...,
+    inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] = ...,
+    series: dict = {},
+) -> list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
+    """
+    Estimates (T + 1, n) of every agent's own Kalman filter, a list.
     """
 
 def make_attack(
@@ -978,6 +1198,8 @@ def replay(
     attacks: collections.abc.Sequence[Attack],
     link: dict,
     keep: collections.abc.Sequence[str],
+    inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    series: dict,
     progress: typing.Any,
 ) -> dict:
     """
@@ -1016,6 +1238,8 @@ def simulate(
     attacks: collections.abc.Sequence[Attack],
     link: dict,
     keep: collections.abc.Sequence[str],
+    inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    series: dict,
     progress: typing.Any,
 ) -> dict:
     """

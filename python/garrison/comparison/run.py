@@ -14,10 +14,12 @@ from garrison import _core, arguments
 from garrison.comparison.baselines import BASELINES, DISTRIBUTED, Plant, plant_of
 from garrison.comparison.contestants import attacks_for, filters_for, typical_size
 from garrison.drawing import drawn
-from garrison.drivers import central_kalman, simulate
+from garrison.drivers import simulate
 from garrison.families import family_of
+from garrison.kalman import central_kalman, local_kalman
 from garrison.prepared import prepare
 from garrison.record import Run
+from garrison.varying import undriven
 from garrison.words import hinted, refusal, require_plant
 
 if TYPE_CHECKING:
@@ -28,11 +30,14 @@ Progress = Callable[[str, int, int], None]
 Row = dict[str, Any]
 
 NONE = "none"
-#: central Kalman filters, with what protects them
+#: Kalman filters of all measurements, or of each agent's and its neighbours', with what protects them
 KALMAN: dict[str, dict[str, float]] = {
     "central Kalman filter": {},
     "gated Kalman filter (central)": {"gate": 1e-3},
     "Huber Kalman filter (central)": {"huber": 1.345},
+    "Kalman filter (per agent)": {},
+    "gated Kalman filter (per agent)": {"gate": 1e-3},
+    "Huber Kalman filter (per agent)": {"huber": 1.345},
 }
 #: columns of the table after filter and attack
 COLUMNS = (
@@ -140,8 +145,9 @@ def compare(
         Label -> attack, default every one of garrison.attacks that can be set up alone.
     baselines : bool
         Also covariance intersection, median and trimmed mean of estimates, W-MSR, a central L1 decoder and subset
-        search, and central Kalman filters (plain, gated at 1e-3, Huber's with 1.345); they get the measurements of the
-        first filter's run, in at most five trials (they are slow), and no lies in messages.
+        search, and Kalman filters (plain, gated at 1e-3, Huber's with 1.345) of all measurements and per
+        agent; they get the measurements of the first filter's run, in at most five trials (they are slow), and no lies
+        in messages.
     size : float, optional
         Of the lies, in the unit of the measurement, default ten times the noise.
     steps : int
@@ -170,6 +176,7 @@ def compare(
         Something does not fit; the message says which, and what was expected.
     """
     require_plant("compare", model, network)
+    model = undriven(model)  # errors do not depend on known inputs
     given = arguments.whole_numbers("attacked", attacked)
     liars = sorted({arguments.whole("attacked", a, 0, model.agents - 1) for a in given})
     title, progress = arguments.text("title", title), arguments.callback("progress", progress, "(filter, done, total)")
@@ -270,6 +277,8 @@ class _Job:
         model = self.model
         if R is None or model.process_covariance is None:
             model = _core.Model(plant.A, plant.C, process_covariance=plant.Q, measurement_covariance=plant.R)
+        if label.endswith("(per agent)"):
+            return local_kalman(model, self.network, y, **KALMAN[label])
         return np.repeat(central_kalman(model, y, **KALMAN[label])[:, None], plant.agents, axis=1)
 
     def _errors(self, error: Array | None) -> Row:

@@ -7,7 +7,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from garrison.figures.style import LINES, axes, plain, trial_words
+from garrison.longform import common_unit
 from garrison.record import Run
+
+#: most agents whose statistics have a line with their name each
+_NAMED = 8
 
 
 def run_figure(run: Run, trial: int = 0, agents: list[int] | None = None, compare: Sequence[Run] = ()) -> Figure:
@@ -21,15 +25,27 @@ def run_figure(run: Run, trial: int = 0, agents: list[int] | None = None, compar
     for k, draw in enumerate(panels, start=1):
         ax = axes(figure, len(panels), 1, k)
         draw(run, trial, ax, shown)
+        if draw is _statistics and agents is not None and len(agents) <= _NAMED:
+            _name_lines(run, ax, agents)
         if draw is _errors:
             _others(compare, trial, ax, shown)
         ax.set_xlabel("sample")
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=8)
-    names = list(run.network.names) or [str(i) for i in range(run.network.agents)]
+    names = _names(run)
     who = "" if agents is None else f"agents {', '.join(names[i] for i in agents)}"
     words = ": ".join(w for w in (run.filter.name, trial_words(trial, run.shape[0]), who) if w)
     figure.suptitle(words, fontsize=11)
     return figure
+
+
+def _names(run: Run) -> list[str]:
+    return [plain(n) for n in run.network.names] or [str(i) for i in range(run.network.agents)]
+
+
+def _name_lines(run: Run, ax: Any, agents: list[int]) -> None:
+    """A look and a name for the statistic of each agent, in place of one for all."""
+    for line, agent, (colour, style) in zip(ax.get_lines(), agents, LINES, strict=False):
+        line.set(color=colour, linestyle=style, alpha=0.9, label=f"statistic of {_names(run)[agent]}")
 
 
 def _others(runs: Sequence[Run], trial: int, ax: Any, agents: Any) -> None:
@@ -64,7 +80,8 @@ def _errors(run: Run, trial: int, ax: Any, agents: Any) -> bool:
         if run.published is not None and np.isfinite(run.published[trial]).any():
             ax.plot(_drawn(run.published[trial][:, agents]), color="#666666", linestyle=":", label="published bound")
     _log(ax, error)
-    ax.set_ylabel("error")
+    unit = common_unit(run)
+    ax.set_ylabel(f"error ({plain(unit)})" if unit else "error")
     return True
 
 

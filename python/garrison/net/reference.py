@@ -35,6 +35,9 @@ def reference_of(scenario: Scenario) -> Reference:
     filter = scenario.filters[0][1]
     assert filter is not None
     prepared = prepare(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
+    if scenario.inputs is not None or scenario.varying is not None or scenario.present is not None:
+        got = "known inputs, or a plant or network that changes in time"
+        raise refusal("scenario", got, "none: daemons do not take them yet", "`garrison run` does")
     initial = np.asarray(scenario.run.get("start", np.zeros(scenario.model.A.shape[0])), dtype=float)
     if initial.ndim != 1:
         raise refusal("[run].start", f"an array of shape {initial.shape}", "one estimate that all nodes start with")

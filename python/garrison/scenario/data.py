@@ -7,55 +7,87 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.fitting import Fit
+from garrison.scenario.known import columns_of
 from garrison.scenario.model import between
 from garrison.scenario.section import Section
 from garrison.tables import Records, read_matrix, read_records, read_table
 from garrison.tables.cells import number
 from garrison.tables.text import read_rows
-from garrison.words import refusal
+from garrison.words import refusal, shown
 
 Array = NDArray[np.float64]
 
 
-KEYS = ["file", "from", "to"]
+KEYS = ["file", "from", "to", "inputs"]
 
 
 @dataclass
 class Recording:
-    """Measurements (samples, outputs); reference (samples + 1, n): what errors are measured from, or None."""
+    """Measurements (samples, outputs); reference (samples + 1, n): what errors are measured from, or None.
+
+    inputs (samples, p): known ones, of columns of the same file; the row of a sample holds what led to it.
+    """
 
     measurements: Array
     reference: Array | None = None
     robust: Array | None = None  # another reference, which a minority of wrong sensors does not pull
     records: Records | None = None
     notes: list[str] = field(default_factory=list)
+    inputs: Array | None = None
 
 
 def read_data(section: Section, model: _core.Model, fitted: Fit | None, names: list[str]) -> Recording:
     """The recording of a scenario; names: of the agents."""
     section.only(KEYS)
     section.require("file", "a CSV file with recorded measurements")
+    wanted = _input_columns(section, model)
     if fitted is not None:
         return _of_fit(section, fitted)
     path = section.file("file")
     head = read_rows(path).cells[0]
     if all(number(cell) is not None for cell in head):
+        if wanted:
+            raise refusal(section.place("inputs"), "names", "none, because the file has no header")
         if "from" in section or "to" in section:
             raise refusal(section.where, "from or to", "none, because the file has no header and no times")
         return _require_width(Recording(read_matrix(path)), path.name, model)
     table = read_table(path)
-    values = table.values
-    if model.outputs == model.agents and sorted(table.names) == sorted(names):
-        values = values[:, [table.names.index(name) for name in names]]
+    names_of, values, known = list(table.names), table.values, None
+    if wanted:
+        known = columns_of(path.name, names_of, values, wanted)
+        rest = [k for k, name in enumerate(names_of) if name not in wanted]
+        names_of, values = [names_of[k] for k in rest], values[:, rest]
+    if model.outputs == model.agents and sorted(names_of) == sorted(names):
+        values = values[:, [names_of.index(name) for name in names]]
+    elif model.output_names and sorted(names_of) == sorted(model.output_names):
+        values = values[:, [names_of.index(name) for name in model.output_names]]
     if table.clock is None:
         if "from" in section or "to" in section:
             raise refusal(section.where, "from or to", "none, because the file has no column of times")
-        return _require_width(Recording(values, notes=table.notes), path.name, model)
+        return _require_width(Recording(values, notes=table.notes, inputs=known), path.name, model)
+    kept = [k for k, name in enumerate(table.names) if name not in wanted]
+    units = [table.columns[k].unit for k in kept]
+    # Inputs go through the choice of times beside the measurements.
+    both = values if known is None else np.hstack([values, known])
     records = Records(
-        table.clock.moments, table.names, values, table.clock.step, [c.unit for c in table.columns], table.notes
+        table.clock.moments, [*names_of, *wanted], both, table.clock.step, [*units, *[""] * len(wanted)], table.notes
     )
     records = between(section, records)
-    return _require_width(Recording(records.values, records=records, notes=records.notes), path.name, model)
+    if known is not None:
+        known = records.values[:, -len(wanted) :]
+        records = records.of(names_of)
+    found = Recording(records.values, records=records, notes=records.notes, inputs=known)
+    return _require_width(found, path.name, model)
+
+
+def _input_columns(section: Section, model: _core.Model) -> list[str]:
+    """Names of the columns that hold known inputs: of [data].inputs, else of the model's inputs."""
+    if "inputs" not in section:
+        return []
+    given = section.table["inputs"]
+    if not isinstance(given, list) or not all(isinstance(name, str) for name in given) or len(given) != model.inputs:
+        raise refusal(section.place("inputs"), shown(given), f"{model.inputs} names of columns, one per column of B")
+    return list(given)
 
 
 def _of_fit(section: Section, fitted: Fit) -> Recording:
@@ -65,7 +97,7 @@ def _of_fit(section: Section, fitted: Fit) -> Recording:
     # The state before the first record is not known; its error is not counted (see `first` in the summary).
     robust = fitted.robust_reference(records)
     whole, other = (np.vstack([states[:1], states]) for states in (reference, robust))
-    return Recording(measured, whole, other, records, records.notes)
+    return Recording(measured, whole, other, records.of(fitted.records.stations), records.notes, fitted.known(records))
 
 
 def _require_width(found: Recording, name: str, model: _core.Model) -> Recording:

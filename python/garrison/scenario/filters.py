@@ -8,14 +8,15 @@ from garrison.parameters import cleaned
 from garrison.scenario.section import Section, tables_of
 from garrison.words import count, near, refusal, shown
 
-#: name of the baseline that is no distributed filter
-CENTRAL_KALMAN = "central_kalman"
-#: what protects it: garrison.central_kalman
+#: names of the baselines that are no distributed filters: one Kalman filter of all measurements, or one per agent
+CENTRAL_KALMAN, LOCAL_KALMAN = "central_kalman", "local_kalman"
+BASELINES = (CENTRAL_KALMAN, LOCAL_KALMAN)
+#: what protects them: garrison.central_kalman
 SCREENS = ["gate", "huber"]
 
 
 def read_filters(document: dict[str, Any], folder: Path) -> list[tuple[str, _core.Filter | None]]:
-    """Label and filter, the main one first; None is the central Kalman filter. Labels are different."""
+    """Label and filter, the main one first; None is a Kalman filter. Labels are different."""
     names = [info["name"] for info in _core.filter_infos()]
     if "filter" not in document:
         raise refusal("scenario", "no [filter]", f"one with name = one of {', '.join(names)}")
@@ -25,20 +26,27 @@ def read_filters(document: dict[str, Any], folder: Path) -> list[tuple[str, _cor
     sections = [Section("[filter]", main, folder), *tables_of("compare", document.get("compare", []), folder)]
     found: list[tuple[str, _core.Filter | None]] = []
     for k, section in enumerate(sections):
-        known = names if k == 0 else [*names, CENTRAL_KALMAN]
+        known = names if k == 0 else [*names, *BASELINES]
         label, filter = _filter(section, known)
         found.append((_unused(label, [old for old, _ in found]), filter))
     return found
 
 
 def read_screens(document: dict[str, Any], folder: Path, labels: list[str]) -> dict[str, dict[str, float]]:
-    """What protects the central Kalman filters, by label. labels: of [filter] and all [[compare]] in order."""
+    """What protects the Kalman filters, by label. labels: of [filter] and all [[compare]] in order."""
     sections = tables_of("compare", document.get("compare", []), folder)
     return {
         label: {key: section.number(key, 0.0) for key in SCREENS if key in section}
         for label, section in zip(labels[1:], sections, strict=True)
-        if section.table["name"] == CENTRAL_KALMAN
+        if section.table["name"] in BASELINES
     }
+
+
+def read_local(document: dict[str, Any], folder: Path, labels: list[str]) -> set[str]:
+    """Labels of those that are one Kalman filter per agent."""
+    sections = tables_of("compare", document.get("compare", []), folder)
+    pairs = zip(labels[1:], sections, strict=True)
+    return {label for label, section in pairs if section.table["name"] == LOCAL_KALMAN}
 
 
 def _filter(section: Section, known: list[str]) -> tuple[str, _core.Filter | None]:
@@ -50,7 +58,7 @@ def _filter(section: Section, known: list[str]) -> tuple[str, _core.Filter | Non
     if isinstance(label, (list, dict, bool)) or not str(label).strip():
         raise refusal(section.place("label"), shown(label), "a string")
     params = {k: v for k, v in section.table.items() if k not in ("name", "label")}
-    if name == CENTRAL_KALMAN:
+    if name in BASELINES:
         section.only(["name", "label", *SCREENS])
         return str(label), None
     info = next(i for i in _core.filter_infos() if i["name"] == name)

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from garrison import _core
-from garrison.fitting import Fit, fit
+from garrison.fitting import Fit
+from garrison.identifying import fit
 from garrison.numeric import numbers
 from garrison.scenario.model_file import read_model_file
 from garrison.scenario.section import Section, moment, number, renamed
@@ -13,8 +14,42 @@ from garrison.sizes import require_memory
 from garrison.tables import Records, read_records
 from garrison.words import refusal, shown
 
-_FIT_KEYS = ["fit", "from", "to", "factors", "harmonics", "period", "root", "factor"]
-_MATRIX_KEYS = ["A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_covariance"]
+_FIT_KEYS = [
+    "fit",
+    "from",
+    "to",
+    "factors",
+    "harmonics",
+    "period",
+    "root",
+    "factor",
+    "states",
+    "order",
+    "most",
+    "held_out",
+    "noise",
+    "inputs",
+]
+_MATRIX_KEYS = [
+    "A",
+    "C",
+    "process_bound",
+    "measurement_bound",
+    "process_covariance",
+    "measurement_covariance",
+    "B",
+    "inputs",
+    "states",
+    "outputs",
+    "sources",
+    "units",
+    "exposed",
+    "names",
+    "A_over_time",
+    "B_over_time",
+    "C_over_time",
+    "process_covariance_over_time",
+]
 _VEHICLE_KEYS = ["vehicles", "period", "inputs", "names"]
 _FILE_KEYS = ["file"]
 KEYS = [_MATRIX_KEYS, _FIT_KEYS, _VEHICLE_KEYS, _FILE_KEYS]
@@ -29,13 +64,14 @@ def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | N
     if "vehicles" in section:
         section.only(_VEHICLE_KEYS)
         model = _vehicles(section)
-        return model, None, _vehicle_names(section, model.agents)
+        return model, None, _agent_names(section, model.agents, "vehicle")
     if "file" in section:
         section.only(_FILE_KEYS)
         model, names = read_model_file(section.file("file"))
         return model, None, names
     section.only([*_MATRIX_KEYS, "fit", "vehicles", "file"])
-    return _matrices(section), None, None
+    model = _matrices(section)
+    return model, None, _agent_names(section, model.agents, "agent")
 
 
 def between(section: Section, records: Records) -> Records:
@@ -50,10 +86,14 @@ def between(section: Section, records: Records) -> Records:
 def _fitted(section: Section) -> Fit:
     records = between(section, read_records(section.file("fit")))
     options: dict[str, Any] = {}
-    for key in ("factors", "harmonics"):
+    if "states" in section:
+        options["states"] = section.choice("states", "factors", ["factors", "all"])
+    if "inputs" in section:
+        options["inputs"] = section.table["inputs"]
+    for key in ("factors", "harmonics", "order", "most"):
         if key in section:
             options[key] = section.whole(key, 0)
-    for key in ("period", "factor"):
+    for key in ("period", "factor", "held_out", "noise"):
         if key in section:
             options[key] = section.number(key, 0.0, positive=True)
     options["root"] = section.flag("root", False)
@@ -68,12 +108,12 @@ def _vehicles(section: Section) -> _core.Model:
     return _core.platoon.model(vehicles, section.number("period", 0.0, positive=True), section.flag("inputs", False))
 
 
-def _vehicle_names(section: Section, vehicles: int) -> list[str] | None:
+def _agent_names(section: Section, agents: int, noun: str) -> list[str] | None:
     if "names" not in section:
         return None
     given = section.table["names"]
-    if not isinstance(given, list) or len(given) != vehicles or len({str(n) for n in given}) != vehicles:
-        raise refusal(section.place("names"), shown(given), f"{vehicles} different names, one per vehicle")
+    if not isinstance(given, list) or len(given) != agents or len({str(n) for n in given}) != agents:
+        raise refusal(section.place("names"), shown(given), f"{agents} different names, one per {noun}")
     return [str(n) for n in given]
 
 
@@ -85,9 +125,27 @@ def _matrices(section: Section) -> _core.Model:
         raise refusal(section.place("A"), f"{' x '.join(map(str, A.shape))} numbers", "a square matrix")
     C = _rows(section, len(A))
     try:
-        return _core.Model(A, C, **_noise(section, len(A), [len(c) for c in C]))
+        return _core.Model(
+            A, C, **_noise(section, len(A), [len(c) for c in C]), **_driven(section, len(A)), **_labels(section)
+        )
     except _core.Error as error:
         raise renamed(error, section.where) from None
+
+
+def _driven(section: Section, n: int) -> dict[str, Any]:
+    if "B" not in section:
+        return {}
+    B = section.numbers("B")
+    return {"B": B.reshape(n, -1) if B.ndim < 2 and B.size == n else np.atleast_2d(B)}
+
+
+def _labels(section: Section) -> dict[str, Any]:
+    """Names, units and what an attacker can reach, as Model takes them."""
+    return {
+        key: section.table[key]
+        for key in ("inputs", "states", "outputs", "sources", "units", "exposed")
+        if key in section
+    }
 
 
 def _rows(section: Section, n: int) -> list[Any]:

@@ -16,8 +16,8 @@ from garrison.words import only, refusal, shown
 Array = NDArray[np.float64]
 _FITTED = ("A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_variance")
 _NOISE = ("process_bound", "measurement_bound", "process_covariance")
-_NAMES = ("states", "outputs")
-_KEYS = ("garrison_model", "A", "C", *_NOISE, "measurement_covariance", *_NAMES, "agents", "units")
+_NAMES = ("states", "outputs", "inputs", "sources", "exposed")
+_KEYS = ("garrison_model", "A", "C", "B", *_NOISE, "measurement_covariance", *_NAMES, "agents", "units")
 _EXPECTED = "a model file of garrison fit or garrison import (JSON)"
 
 
@@ -65,6 +65,8 @@ def _imported(path: str, plain: dict[str, Any]) -> tuple[_core.Model, list[str] 
     if plain.get("measurement_covariance") is not None:
         arguments["measurement_covariance"] = plain["measurement_covariance"]
     arguments |= {key: plain[key] for key in (*_NAMES, "units") if plain.get(key) is not None}
+    if plain.get("B") is not None:
+        arguments["B"] = _matrix(f"{path}: B", plain["B"])
     C = [_matrix(f"{path}: C[{k}]", one) for k, one in enumerate(plain["C"])]
     try:
         model = _core.Model(_matrix(f"{path}: A", plain["A"]), C, **arguments)

@@ -17,7 +17,7 @@ from garrison.words import near, refusal, shown
 
 Array = NDArray[np.float64]
 _EARTH_KM = 111.2 * 180 / math.pi  # per radian
-_EDGE_KEYS = ["edges", "agents", "directed"]
+_EDGE_KEYS = ["edges", "agents", "directed", "present"]
 _STATION_KEYS = ["stations", "radius_km"]
 KEYS = [_EDGE_KEYS, _STATION_KEYS]
 GENERATORS = {

@@ -16,7 +16,8 @@ from garrison.numeric import numbers
 from garrison.objects import named
 from garrison.scenario.attacks import read_attack
 from garrison.scenario.data import Recording, read_data
-from garrison.scenario.filters import CENTRAL_KALMAN, read_filters, read_screens
+from garrison.scenario.filters import CENTRAL_KALMAN, read_filters, read_local, read_screens
+from garrison.scenario.known import read_inputs, read_present, read_varying
 from garrison.scenario.model import read_model
 from garrison.scenario.network import read_network
 from garrison.scenario.overrides import overridden
@@ -24,12 +25,13 @@ from garrison.scenario.section import Section, tables_of, whole
 from garrison.tables import Records
 from garrison.tables.clock import Moment
 from garrison.tables.text import decoded
+from garrison.varying import VaryingModel, VaryingNetwork
 from garrison.words import count, only, refusal, shown
 
 Array = NDArray[np.float64]
 
 TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "data", "run", "certificate"]
-RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error"]
+RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error", "inputs"]
 LINK_KEYS = ["drop", "delay", "delay_rounds"]
 NOISE_KEYS = ["law"]
 CERTIFICATE_KEYS = ["spread", "failure", "attacked"]
@@ -43,12 +45,13 @@ class Scenario:
     title: str
     model: _core.Model
     network: _core.Network
-    filters: list[tuple[str, _core.Filter | None]]  # label and filter, the main one first; None = central Kalman
+    filters: list[tuple[str, _core.Filter | None]]  # label and filter, the main one first; None = Kalman
     attacks: list[_core.Attack]
     link: dict[str, float]
     run: dict[str, Any]
     noise: str
-    screens: dict[str, dict[str, float]]  # of the central Kalman filters, by label: arguments of central_kalman
+    screens: dict[str, dict[str, float]]  # of the Kalman filters, by label: arguments of central_kalman
+    local: set[str]  # labels of those that are one filter per agent
     certificate: dict[str, Any]  # arguments of garrison.prepare; empty = none
     names: list[str]  # of the agents
     positions: Array | None = None  # (agents, 2), kilometres east and north
@@ -59,11 +62,24 @@ class Scenario:
     truth: Array | None = None  # or the reference in its place, of records
     robust: Array | None = None  # a second reference, where it is not declared who is attacked
     notes: list[str] = field(default_factory=list)  # doubts about the files
+    inputs: Array | None = None  # (steps, p), of a model with B
+    varying: VaryingModel | None = None  # the model over time, where it changes
+    present: VaryingNetwork | None = None  # the network over time, where links come and go
 
     @property
     def dates(self) -> list[Moment]:
         """Times of the recorded samples; empty where there are none."""
         return self.records.dates if self.records is not None else []
+
+    @property
+    def plant(self) -> _core.Model | VaryingModel:
+        """What is simulated: the model, or the model over time."""
+        return self.varying or self.model
+
+    @property
+    def ground(self) -> _core.Network | VaryingNetwork:
+        """Who hears whom, over time where that changes."""
+        return self.present or self.network
 
     @property
     def steps(self) -> int:
@@ -106,19 +122,26 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
         return Section(f"[{name}]", value, folder)
 
     model, fitted, names = read_model(section("model"))
+    varying = read_varying(section("model"), model)
     ground = read_network(section("network"), names, model.agents)
     known = ground.names or names
     names = known or [str(i) for i in range(model.agents)]
     recording = read_data(section("data"), model, fitted, names) if "data" in document else None
     run = _run(section("run"), model, recording is not None)
+    inputs = read_inputs(section("run"), model, recording.inputs if recording is not None else None)
+    network = named(ground.network, known)
     filters = read_filters(document, folder)
     scenario = Scenario(
         path=path,
         title=_title(document.get("title", path.stem)),
         model=model,
-        network=named(ground.network, known),
+        network=network,
+        inputs=inputs,
+        varying=varying,
+        present=read_present(section("network"), network),
         filters=filters,
         screens=read_screens(document, folder, [label for label, _ in filters]),
+        local=read_local(document, folder, [label for label, _ in filters]),
         attacks=[],
         link=_link(section("link")),
         run=run,

@@ -13,19 +13,19 @@ Schema = dict[str, Any]
 _WHOLE = {"steps", "trials", "threads", "seed", "delay_rounds", "factors", "harmonics", "vehicles", "range", "rows"}
 _NUMBERS = {"drop", "delay", "failure", "gate", "huber", "radius", "radius_km", "start_error", "factor", "period"}
 _WORDS = {"fit", "file", "stations", "spread", "law"}
-_FLAGS = {"root", "inputs", "directed"}
+_FLAGS = {"root", "directed"}
 
 
 def schema() -> Schema:
     """The schema, draft 2020-12. What depends on several tables (sizes, dates, names of agents) only `check` sees."""
     filter_of = [_named("name", info, ["label"]) for info in _core.filter_infos()]
-    central = _table(["name", "label", *filters.SCREENS], required=["name"])
-    central["properties"]["name"] = {"const": filters.CENTRAL_KALMAN}
+    kalman = _table(["name", "label", *filters.SCREENS], required=["name"])
+    kalman["properties"]["name"] = {"enum": list(filters.BASELINES)}
     tables: dict[str, Schema] = {
         "model": {"anyOf": [_table(keys) for keys in model.KEYS]},
         "network": {"anyOf": [*(_table(keys) for keys in network.KEYS), *_generators()]},
         "filter": {"anyOf": filter_of},
-        "compare": _one_or_more({"anyOf": [*filter_of, central]}),
+        "compare": _one_or_more({"anyOf": [*filter_of, kalman]}),
         "attack": _one_or_more({"anyOf": [_named("kind", info, attacks.COMMON) for info in _core.attack_infos()]}),
         "link": _table(reader.LINK_KEYS),
         "noise": _table(reader.NOISE_KEYS),

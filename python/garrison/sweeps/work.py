@@ -101,7 +101,9 @@ def _run(scenario: Scenario, design: Prepared, attacked: bool, task: Task) -> Ru
     options |= {"attack": scenario.attacks if attacked else [], "link": scenario.link, "threads": 1}
     options |= {"trials": task.count, "first_trial": task.first, "keep": ("report",), "conditions": False}
     options["design"] = design._design
-    parts = design.model, design.network, design.filter
+    parts = scenario.plant, scenario.ground, design.filter
+    if scenario.inputs is not None:
+        options["inputs"] = scenario.inputs
     if scenario.measurements is not None:
         return replay(*parts, measurements=scenario.measurements, truth=scenario.truth, **options)
     options |= {k: scenario.run[k] for k in ("x0", "start_error") if k in scenario.run}

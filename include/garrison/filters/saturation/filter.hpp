@@ -170,6 +170,11 @@ struct GARRISON_EXPORT Saturation {
   static std::unique_ptr<TrialsRunner> trials(std::shared_ptr<const Gains> gains, const Model& model,
                                               const Network& network);
   static int rounds(const Gains& g) { return g.rounds; }
+  /// Why a plant that changes in time cannot be taken; empty: it can.
+  static std::string needs_constant(const Gains& g) {
+    const bool rests = g.detector || g.adaptive || !g.table.empty();
+    return rests ? "detector, adaptive and table rest on theorems for constant plants" : "";
+  }
   static Averaging averaging(const Gains& g) { return {g.alpha, g.omega}; }
 
   template <int n>

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Known inputs, and baselines that see measurements as they come.
+#include "bindings.hpp"
+#include "convert.hpp"
+#include "garrison/core/discretise.hpp"
+#include "garrison/core/response.hpp"
+#include "garrison/filters/central_kalman.hpp"
+#include "garrison/filters/extended_kalman.hpp"
+#include "known.hpp"
+
+using namespace garrison;
+
+namespace {
+
+Known known_of(const Matrix& inputs, const py::dict& series) {
+  const auto found = series_of(series);
+  return {inputs, found == nullptr ? Series{} : *found};
+}
+
+Vector vector_from(const char* which, const py::object& value) {
+  const auto array = convert::array(which, value);
+  return Eigen::Map<const Vector>(array.data(), array.size());
+}
+
+/// The user's functions; an empty one where there is none.
+NonlinearPlant plant_of(const py::function& f, const py::function& h, const py::object& f_jacobian,
+                        const py::object& h_jacobian, const Matrix& process_covariance,
+                        const Vector& measurement_variance) {
+  NonlinearPlant plant;
+  plant.f = [f](const Vector& x, const Vector& u, int t) { return vector_from("f", f(x, u, t)); };
+  plant.h = [h](const Vector& x, int t) { return vector_from("h", h(x, t)); };
+  if (!f_jacobian.is_none())
+    plant.f_jacobian = [f_jacobian](const Vector& x, const Vector& u, int t) {
+      return convert::eigen(convert::matrix("f_jacobian", f_jacobian(x, u, t)));
+    };
+  if (!h_jacobian.is_none())
+    plant.h_jacobian = [h_jacobian](const Vector& x, int t) {
+      return convert::eigen(convert::matrix("h_jacobian", h_jacobian(x, t)));
+    };
+  plant.process_covariance = process_covariance;
+  plant.measurement_variance = measurement_variance;
+  return plant;
+}
+
+void bind_kalman(py::module_& m) {
+  m.def(
+      "central_kalman",
+      [](const Model& model, const MatrixRef& y, const VectorRef& x0, double start_variance, double gate,
+         double huber, const Matrix& inputs, const py::dict& series) {
+        require_range("start_variance", start_variance, 0.0);
+        return central_kalman(model, y, x0, start_variance, {gate, huber}, known_of(inputs, series));
+      },
+      py::arg("model"), py::arg("measurements"), py::arg("x0"), py::arg("start_variance"),
+      py::arg("gate") = 0.0, py::arg("huber") = kInfinity, py::arg("inputs") = Matrix(),
+      py::arg("series") = py::dict(), "Estimates (T + 1, n) of a central Kalman filter.");
+  m.def(
+      "local_kalman",
+      [](const Model& model, const Network& network, const MatrixRef& y, const MatrixRef& start,
+         double start_variance, double gate, double huber, const Matrix& inputs, const py::dict& series) {
+        require_range("start_variance", start_variance, 0.0);
+        return local_kalman(model, network, y, start.transpose(), start_variance, {gate, huber},
+                            known_of(inputs, series));
+      },
+      py::arg("model"), py::arg("network"), py::arg("measurements"), py::arg("start"),
+      py::arg("start_variance"), py::arg("gate") = 0.0, py::arg("huber") = kInfinity,
+      py::arg("inputs") = Matrix(), py::arg("series") = py::dict(),
+      "Estimates (T + 1, n) of every agent's own Kalman filter, a list.");
+  m.def(
+      "extended_kalman",
+      [](const py::function& f, const py::function& h, const MatrixRef& y, const VectorRef& x0,
+         const MatrixRef& P0, const Matrix& process_covariance, const Vector& measurement_variance,
+         const MatrixRef& inputs, const py::object& f_jacobian, const py::object& h_jacobian, double gate,
+         double huber) {
+        return extended_kalman(
+            plant_of(f, h, f_jacobian, h_jacobian, process_covariance, measurement_variance), y, x0, P0,
+            inputs, {gate, huber});
+      },
+      py::arg("f"), py::arg("h"), py::arg("measurements"), py::arg("x0"), py::arg("P0"),
+      py::arg("process_covariance"), py::arg("measurement_variance"), py::arg("inputs"),
+      py::arg("f_jacobian") = py::none(), py::arg("h_jacobian") = py::none(), py::arg("gate") = 0.0,
+      py::arg("huber") = kInfinity, "Estimates (T + 1, n) of an extended Kalman filter.");
+}
+
+}  // namespace
+
+void bind_known(py::module_& m) {
+  py::class_<Response>(m, "Response",
+                       R"(What known inputs alone do to a plant: s(t+1) = A s(t) + B u(t), s(0) = 0.
+
+With x = z + s, z is a plant without inputs of which y - C s is measured: an agent driven by hand gets `without` of its
+measurement, and its estimate plus `state` is one of x, with the same error and bound (docs/adr/0016).
+
+Parameters
+----------
+model : Model
+    With B.
+)")
+      .def(py::init<const Model&>(), py::arg("model"))
+      .def_property_readonly("state", &Response::state, "s, (n,).")
+      .def_property_readonly("sample", &Response::sample, "The present sample, from 0.")
+      .def(
+          "advance", [](Response& r, const Vector& inputs) { r.advance(inputs); }, py::arg("inputs"),
+          "Moves to the next sample with u, one number per column of B. Raises InvalidInput when the "
+          "response "
+          "overflows.")
+      .def(
+          "without",
+          [](const Response& r, const Vector& y, const Matrix& C) {
+            if (C.rows() != y.size() || C.cols() != r.state().size())
+              refuse("C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()),
+                     std::to_string(y.size()) + " x " + std::to_string(r.state().size()));
+            return Vector(y - C * r.state());
+          },
+          py::arg("y"), py::arg("C"),
+          "y - C s, what a filter without inputs is to get of the measurement y (m,); C (m, n).");
+  m.def(
+      "driven",
+      [](const Matrix& A, const Vector& x, const Matrix& B, const Vector& u) { return driven(A, x, B, u); },
+      py::arg("A"), py::arg("x"), py::arg("B"), py::arg("u"), "A x + B u.");
+  m.def(
+      "discretise",
+      [](const Matrix& F, const Matrix& intensity, double period, const Matrix& G) {
+        const Discretised found = discretise(F, intensity, period);
+        return py::make_tuple(found.A, found.covariance, held_input(F, G, period));
+      },
+      py::arg("A"), py::arg("process_intensity"), py::arg("period"), py::arg("B"),
+      "(A, covariance, B) from sample to sample of dx/dt = A x + B u + white noise, u held in between.");
+  bind_kalman(m);
+}

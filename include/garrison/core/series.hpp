@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What changes of a plant in time.
+#pragma once
+
+#include <vector>
+
+#include "garrison/core/model.hpp"
+
+namespace garrison {
+
+/// Matrices of a plant over time. Every part is empty (as the model says, always) or has one matrix per step:
+/// entry t-1 of A, B and process_covariance leads from time t-1 to t, entry t-1 of C is that of sample t.
+struct GARRISON_EXPORT Series {
+  std::vector<Matrix> A = {};                   ///< n x n
+  std::vector<Matrix> B = {};                   ///< n x p
+  std::vector<Matrix> C = {};                   ///< all C_i on top of each other, total_outputs x n
+  std::vector<Matrix> process_covariance = {};  ///< n x n, symmetric positive semidefinite
+
+  bool empty() const { return A.empty() && B.empty() && C.empty() && process_covariance.empty(); }
+  /// Of the step from t-1 to t, or of sample t >= 1.
+  const Matrix& A_at(const Model& model, int t) const { return at(A, t, model.A()); }
+  const Matrix& B_at(const Model& model, int t) const { return at(B, t, model.B()); }
+
+ private:
+  static const Matrix& at(const std::vector<Matrix>& all, int t, const Matrix& constant) {
+    return all.empty() ? constant : all[static_cast<std::size_t>(t - 1)];
+  }
+};
+
+/// Refuses matrices of other shapes than the model's, fewer than `steps`, or not finite. @throws InvalidInput
+GARRISON_EXPORT void require_series(const Series& series, const Model& model, int steps);
+
+}  // namespace garrison

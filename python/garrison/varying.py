@@ -1,0 +1,361 @@
+"""Plants and networks that change in time: a constant part, and what replaces it sample by sample."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from garrison import _core
+from garrison.arguments import entries, whole
+from garrison.numeric import matched, numbers
+from garrison.words import hinted, refusal, shown
+
+Array = NDArray[np.float64]
+#: matrices over time, or a function of the time
+OverTime = ArrayLike | Callable[[int], ArrayLike]
+_PARTS = ("A", "B", "C", "process_covariance")
+
+
+class VaryingModel:
+    """A plant that changes in time: x(t+1) = A(t) x(t) + B(t) u(t) + w(t), y(t) = C(t) x(t) + v(t).
+
+    Taken by `simulate`, `replay`, `central_kalman` and `local_kalman`. Filters: `ScalarGain`, `Saturation` without
+    detector, adaptive and table, and filters of your own (`agent.A`, `agent.C` are those of the sample); the others are
+    designed for one A and C and refuse it. No theorem covers it, so bounds are absent (`BoundKind.VARYING`). Where only
+    C changes, between finitely many rows (sightings), give a constant Model all rows and measure nan where there is no
+    sighting: everything holds then, bounds and certificates too. Immutable; compares by value, copies and pickles.
+
+    Parameters
+    ----------
+    model : Model
+        The constant part: sizes, noise, names, and the matrices that do not change.
+    A : (T, n, n) array or function, optional
+        A[t] leads from time t to t + 1. A function is called with t = 0..steps-1.
+    B : (T, n, p) array or function, optional
+        Likewise; needs a model with B.
+    C : list of (T, m_i, n) arrays, (T, outputs, n) array or function, optional
+        Entry r is that of sample r + 1, one array per agent or all rows on top of each other. A function is called with
+        t = 1..steps and returns the rows of all agents, (outputs, n) or a list with those of each.
+    process_covariance : (T, n, n) array or function, optional
+        Of w(t); simulated, and used by the Kalman filters.
+    steps : int, optional
+        T, where functions are given.
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit the model, or each other.
+    """
+
+    @hinted
+    def __init__(
+        self,
+        model: _core.Model,
+        *,
+        A: OverTime | None = None,
+        B: OverTime | None = None,
+        C: OverTime | Sequence[ArrayLike] | None = None,
+        process_covariance: OverTime | None = None,
+        steps: int | None = None,
+    ) -> None:
+        if not isinstance(model, _core.Model):
+            raise refusal("VaryingModel.model", shown(model), "a garrison.Model, the constant part")
+        n, p, m = model.states, model.inputs, model.outputs
+        T = None if steps is None else whole("steps", steps, 1)
+        rows = [len(c) for c in model.C]
+        given = {
+            "A": _over_time("A", A, (n, n), T, 0),
+            "B": _over_time("B", B, (n, p), T, 0),
+            "C": _over_time("C", _stacked(C, rows), (m, n), T, 1),
+            "process_covariance": _over_time("process_covariance", process_covariance, (n, n), T, 0),
+        }
+        self._model = model
+        self._parts = {name: value for name, value in given.items() if value is not None}
+        if not self._parts:
+            raise refusal("VaryingModel", "nothing that changes", f"one of {', '.join(_PARTS)} over time")
+        lengths = {name: len(value) for name, value in self._parts.items()}
+        if len(set(lengths.values())) > 1:
+            got = ", ".join(f"{name} of {length} steps" for name, length in lengths.items())
+            raise refusal("VaryingModel", got, "equally many of each")
+        for value in self._parts.values():
+            value.flags.writeable = False
+
+    @classmethod
+    @hinted
+    def from_continuous(
+        cls,
+        A: ArrayLike,
+        C: Any,
+        times: ArrayLike,
+        *,
+        process_intensity: ArrayLike | float | None = None,
+        B: ArrayLike | None = None,
+        **model: Any,
+    ) -> VaryingModel:
+        """The plant dx/dt = A x + B u + white noise at irregular times, exactly (Van Loan 1978); u is held in between.
+
+        times: (T + 1,) increasing, in the unit of time of A; the first is that of the start, sample t is at times[t].
+        process_intensity: spectral density of the noise, (n, n) or a number (times the identity). The rest as in Model.
+        Raises InvalidInput.
+        """
+        at = numbers("times", times)
+        if at.ndim != 1 or len(at) < 2 or not np.isfinite(at).all() or not (np.diff(at) > 0).all():
+            raise refusal("times", f"{shown(times)}", "at least two finite numbers, each larger than the one before")
+        plant = np.atleast_2d(numbers("A", A))
+        n = len(plant)
+        intensity = np.zeros((n, n)) if process_intensity is None else numbers("process_intensity", process_intensity)
+        if intensity.ndim == 0:
+            intensity = intensity * np.eye(n)
+        G = np.zeros((n, 0)) if B is None else np.asarray(numbers("B", B)).reshape(n, -1)
+        found = [_core.discretise(plant, intensity, float(period), G) for period in np.diff(at)]
+        parts: dict[str, Any] = {"A": np.array([f[0] for f in found])}
+        if process_intensity is not None:
+            parts["process_covariance"] = np.array([f[1] for f in found])
+            model = {"process_covariance": found[0][1]} | model
+        if B is not None:
+            parts["B"] = np.array([f[2] for f in found])
+            model = {"B": found[0][2]} | model
+        return cls(_core.Model(found[0][0], C, **model), **parts)
+
+    @property
+    def model(self) -> _core.Model:
+        """The constant part."""
+        return self._model
+
+    @property
+    def steps(self) -> int:
+        """How many steps it is given for."""
+        return len(next(iter(self._parts.values())))
+
+    @property
+    def parts(self) -> dict[str, Array]:
+        """What changes, by name: (T, rows, n) arrays; C with the rows of all agents on top of each other."""
+        return dict(self._parts)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, VaryingModel):
+            return NotImplemented
+        same = self._model == other._model and self._parts.keys() == other._parts.keys()
+        return same and all(np.array_equal(v, other._parts[k]) for k, v in self._parts.items())
+
+    def __hash__(self) -> int:
+        return hash((self._model, tuple(self._parts), self.steps))
+
+    def __reduce__(self) -> Any:
+        return _varying, (self._model, dict(self._parts))
+
+    def __deepcopy__(self, memo: Any) -> VaryingModel:
+        return self
+
+    def __repr__(self) -> str:
+        parts = "".join(f", {k}={v.tolist()!r}" for k, v in self._parts.items())
+        return f"garrison.VaryingModel({self._model!r}{parts})"
+
+    def __str__(self) -> str:
+        return f"{self._model} and {', '.join(self._parts)} over {self.steps} steps"
+
+
+def _varying(model: _core.Model, parts: dict[str, Any]) -> VaryingModel:
+    return VaryingModel(model, **parts)
+
+
+def _stacked(given: Any, rows: list[int]) -> Any:
+    """C of all agents on top of each other: from one array per agent, or a function that returns such a list."""
+    if callable(given):
+        return lambda t: _on_top(f"C({t})", given(t))
+    if isinstance(given, (list, tuple)) and len(given) == len(rows) and all(np.ndim(one) == 3 for one in given):
+        parts = [numbers(f"C[{i}]", one) for i, one in enumerate(given)]
+        for i, (part, m) in enumerate(zip(parts, rows, strict=True)):
+            if part.shape[1] != m or len(part) != len(parts[0]):
+                raise refusal(f"C[{i}]", f"{part.shape}", f"({len(parts[0])}, {m}, n), as the model has {m} rows there")
+        return np.concatenate(parts, axis=1)
+    return given
+
+
+def _on_top(which: str, value: Any) -> Any:
+    if isinstance(value, (list, tuple)) and any(np.ndim(one) == 2 for one in value):
+        return np.concatenate([np.atleast_2d(numbers(f"{which}[{i}]", one)) for i, one in enumerate(value)])
+    return value
+
+
+def _over_time(
+    name: str, given: OverTime | None, shape: tuple[int, int], steps: int | None, first: int
+) -> Array | None:
+    if given is None:
+        return None
+    if callable(given):
+        if steps is None:
+            raise refusal(f"VaryingModel.{name}", "a function and no steps", "steps, how many times it is asked for")
+        values = [numbers(f"{name}({t})", given(t)) for t in range(first, first + steps)]
+        for t, value in enumerate(values, first):
+            if value.shape != shape:
+                raise refusal(f"{name}({t})", f"{value.shape}", f"{shape}")
+        return np.array(values)
+    value = numbers(name, given)
+    if value.ndim != 3 or value.shape[1:] != shape or len(value) == 0:
+        raise refusal(f"VaryingModel.{name}", f"{value.shape}", f"(steps, {shape[0]}, {shape[1]})")
+    if steps is not None and len(value) != steps:
+        raise refusal(f"VaryingModel.{name}", f"{len(value)} steps", f"{steps}, as `steps` says")
+    if not np.isfinite(value).all():
+        raise refusal(f"VaryingModel.{name}", "a number that is not finite", "finite numbers")
+    return value.copy()
+
+
+class VaryingNetwork:
+    """A network whose links come and go: at every sample a message arrives over those that are present.
+
+    Filters are designed for the network of all links that ever exist; one that is absent is a lost message (bounds and
+    certificates treat it so). Taken by `simulate` and `replay`. Immutable; compares by value, copies and pickles.
+
+    Parameters
+    ----------
+    network : Network, or list of Networks
+        Of all links, with `present`; or the network of every sample, the first of sample 1, all with the same agents.
+    present : (T, links) array of bool, optional
+        Whether each of `network.edges` is there at samples 1..T; of an undirected network, both ways.
+
+    Raises
+    ------
+    InvalidInput
+        Sizes do not fit.
+    """
+
+    @hinted
+    def __init__(self, network: _core.Network | Iterable[_core.Network], present: ArrayLike | None = None) -> None:
+        if isinstance(network, _core.Network):
+            if present is None:
+                raise refusal("VaryingNetwork.present", "none", f"(steps, {len(network.edges)}) of True or False")
+            self._network, self._present = network, _presence(network, present)
+        else:
+            listed = entries("VaryingNetwork.network", network, "a Network with `present`, or a list of Networks")
+            self._network, self._present = _united(listed)
+        self._present.flags.writeable = False
+
+    @property
+    def network(self) -> _core.Network:
+        """Of all links that ever exist."""
+        return self._network
+
+    @property
+    def present(self) -> NDArray[np.bool_]:
+        """(T, links): whether each of `network.edges` is there at samples 1..T."""
+        return self._present
+
+    @property
+    def steps(self) -> int:
+        """How many samples it is given for."""
+        return len(self._present)
+
+    @property
+    def cuts(self) -> list[tuple[int, int, int, int]]:
+        """(sender, receiver, start, stop) of every absence, as `link` takes them."""
+        found: list[tuple[int, int, int, int]] = []
+        for k, (sender, receiver) in enumerate(self._network.edges):
+            change = np.diff(np.concatenate([[0], ~self._present[:, k], [0]]).astype(int))
+            for start, stop in zip(np.flatnonzero(change == 1) + 1, np.flatnonzero(change == -1) + 1, strict=True):
+                found.append((int(sender), int(receiver), int(start), int(stop)))
+                if not self._network.directed:
+                    found.append((int(receiver), int(sender), int(start), int(stop)))
+        return found
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, VaryingNetwork):
+            return NotImplemented
+        return self._network == other._network and np.array_equal(self._present, other._present)
+
+    def __hash__(self) -> int:
+        return hash((self._network, self._present.tobytes()))
+
+    def __reduce__(self) -> Any:
+        return VaryingNetwork, (self._network, np.array(self._present))
+
+    def __deepcopy__(self, memo: Any) -> VaryingNetwork:
+        return self
+
+    def __repr__(self) -> str:
+        return f"garrison.VaryingNetwork({self._network!r}, {self._present.tolist()!r})"
+
+    def __str__(self) -> str:
+        return f"{self._network} over {self.steps} samples"
+
+
+def _presence(network: _core.Network, present: ArrayLike) -> NDArray[np.bool_]:
+    found = numbers("present", present)
+    links = len(network.edges)
+    if found.ndim != 2 or found.shape[1] != links or len(found) == 0:
+        raise refusal("present", f"{found.shape}", f"(steps, {links}), a column for each of network.edges")
+    if not np.isin(found, (0.0, 1.0)).all():
+        raise refusal("present", "another number", "True or False, 1 or 0")
+    return found.astype(bool)
+
+
+def _united(networks: list[Any]) -> tuple[_core.Network, NDArray[np.bool_]]:
+    for k, one in enumerate(networks):
+        if not isinstance(one, _core.Network):
+            raise refusal(f"VaryingNetwork.network[{k}]", shown(one), "a garrison.Network")
+        alike = (
+            (one.agents, one.directed, list(one.names)),
+            (
+                networks[0].agents,
+                networks[0].directed,
+                list(networks[0].names),
+            ),
+        )
+        if alike[0] != alike[1]:
+            raise refusal(
+                f"VaryingNetwork.network[{k}]", str(one), f"the agents and direction of the first, {networks[0]}"
+            )
+    if not networks:
+        raise refusal("VaryingNetwork.network", "an empty list", "one network per sample")
+    edges = [{(int(a), int(b)) for a, b in one.edges} for one in networks]
+    union = sorted(set().union(*edges))
+    first = networks[0]
+    network = _core.Network(union, agents=first.agents, directed=first.directed, names=list(first.names) or None)
+    columns = [(int(a), int(b)) for a, b in network.edges]
+    return network, np.array([[edge in there for edge in columns] for there in edges], dtype=bool).reshape(
+        len(networks), len(columns)
+    )
+
+
+def parted(model: Any) -> tuple[Any, dict[str, Array]]:
+    """The constant part of a plant, and what changes of it, as the core takes it."""
+    return (model.model, model.parts) if isinstance(model, VaryingModel) else (model, {})
+
+
+def undriven(model: _core.Model) -> _core.Model:
+    """The model without its known inputs: errors and bounds of all filters are the same (docs/adr/0016)."""
+    if not model.inputs:
+        return model
+    kept = {k: v for k, v in model.__getstate__().items() if k not in ("B", "inputs")}
+    if "units" in kept:
+        kept["units"] = {k: v for k, v in kept["units"].items() if k not in model.input_names}
+    return _core.Model(**kept)
+
+
+def links_of(network: Any, link: dict[str, Any], steps: int) -> tuple[Any, dict[str, Any]]:
+    """The network of all links, and the faults of the links with the absences among them."""
+    if not isinstance(network, VaryingNetwork):
+        return network, link
+    if network.steps < steps:
+        raise refusal("network", f"a network over {network.steps} samples", f"at least {steps}, one per sample")
+    return network.network, link | {"cuts": [*link.get("cuts", []), *network.cuts]}
+
+
+def inputs_of(model: _core.Model, given: Any, steps: int) -> Array:
+    """Known inputs, (steps, p): from an array, a table matched by name or a function of t = 0..steps-1."""
+    if given is None:
+        return np.zeros((0, 0))
+    if callable(given):
+        given = [numbers(f"inputs({t})", given(t)).ravel() for t in range(steps)]
+    found = numbers("inputs", matched("inputs", given, list(model.input_names) or None))
+    if found.ndim == 1 and model.inputs == 1:
+        found = found[:, None]
+    if found.ndim != 2:
+        raise refusal("inputs", f"{found.shape}", f"({steps}, {model.inputs}), a row u(t) per step")
+    return found
+
+
+__all__ = ["VaryingModel", "VaryingNetwork", "inputs_of", "links_of", "parted", "undriven"]

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "garrison/filters/extended_kalman.hpp"
+
+#include <cmath>
+
+#include "kalman_estimate.hpp"
+
+namespace garrison {
+namespace {
+
+using Index = Eigen::Index;
+
+std::string shape(const Matrix& m) { return std::to_string(m.rows()) + " x " + std::to_string(m.cols()); }
+
+template <class M>
+M checked(const char* name, M value, Index rows, Index cols, int t) {
+  if (value.rows() != rows || value.cols() != cols)
+    refuse(name, shape(value), std::to_string(rows) + " x " + std::to_string(cols) + " numbers");
+  if (!value.allFinite())
+    refuse(name, "a number that is not finite at time " + std::to_string(t), "finite numbers",
+           "the estimate may have left the range of the function");
+  return value;
+}
+
+void require(const NonlinearPlant& plant, const MatrixRef& y, const VectorRef& x0, const MatrixRef& P0,
+             const MatrixRef& inputs) {
+  const Index n = x0.size();
+  if (!x0.allFinite()) refuse("x0", "a number that is not finite", "finite numbers");
+  checked("P0", Matrix(P0), n, n, 0);
+  checked("process_covariance", plant.process_covariance, n, n, 0);
+  if (plant.measurement_variance.size() != y.cols())
+    refuse("measurement_variance", std::to_string(plant.measurement_variance.size()) + " numbers",
+           std::to_string(y.cols()) + ", one per column of measurements");
+  if (!(plant.measurement_variance.array() >= 0.0).all() || !plant.measurement_variance.allFinite())
+    refuse("measurement_variance", "a number that is negative or not finite", "finite numbers >= 0");
+  if (inputs.rows() != y.rows())
+    refuse("inputs", std::to_string(inputs.rows()) + " rows",
+           std::to_string(y.rows()) + ", one per step: row t is u(t)");
+  if (!inputs.allFinite()) refuse("inputs", "a number that is not finite", "known inputs at all times");
+}
+
+}  // namespace
+
+Matrix central_differences(const std::function<Vector(const Vector&)>& g, const Vector& x) {
+  Matrix all;
+  for (Index k = 0; k < x.size(); ++k) {
+    const double step = std::cbrt(0x1p-52) * std::max(1.0, std::abs(x(k)));
+    Vector up = x;
+    Vector down = x;
+    up(k) += step;
+    down(k) -= step;
+    const Vector above = g(up);
+    if (k == 0) all.resize(above.size(), x.size());
+    all.col(k) = (above - g(down)) / (up(k) - down(k));
+  }
+  return all;
+}
+
+Matrix extended_kalman(const NonlinearPlant& plant, const MatrixRef& measurements, const VectorRef& x0,
+                       const MatrixRef& P0, const MatrixRef& inputs, const Screen& screen) {
+  kalman::require_screen(screen);
+  require(plant, measurements, x0, P0, inputs);
+  const Index n = x0.size();
+  const Index m = measurements.cols();
+  const Matrix process_root = kalman::root(plant.process_covariance);
+  kalman::Estimate now{x0, kalman::root(P0)};
+  Matrix estimates(measurements.rows() + 1, n);
+  estimates.row(0) = now.x;
+  for (Index r = 0; r < measurements.rows(); ++r) {
+    const int t = static_cast<int>(r);
+    const Vector u = inputs.row(r);
+    const auto f = [&](const Vector& x) { return checked("f", plant.f(x, u, t), n, 1, t); };
+    const auto h = [&](const Vector& x) { return checked("h", plant.h(x, t + 1), m, 1, t + 1); };
+    const Matrix F = plant.f_jacobian ? checked("f_jacobian", plant.f_jacobian(now.x, u, t), n, n, t)
+                                      : central_differences(f, now.x);
+    now.predict(f(now.x), F, process_root);
+    const Matrix H = plant.h_jacobian ? checked("h_jacobian", plant.h_jacobian(now.x, t + 1), m, n, t + 1)
+                                      : central_differences(h, now.x);
+    const Vector offset = h(now.x) - H * now.x;
+    const Vector y = measurements.row(r);
+    now.correct({H, plant.measurement_variance, y, offset}, screen);
+    estimates.row(r + 1) = now.x;
+  }
+  return estimates;
+}
+
+}  // namespace garrison
