@@ -126,13 +126,24 @@ std::vector<std::string> Model::state_names() const {
   return names;
 }
 
+namespace {
+
+/// What an attacker can reach, of models that are known to have as many agents.
+bool same_reach(const Model& a, const Model& b) {
+  for (int i = 0; i < a.agents(); ++i)
+    if (a.exposed(i) != b.exposed(i)) return false;
+  return true;
+}
+
+}  // namespace
+
 bool operator==(const Model& a, const Model& b) {
   const Noise& p = a.noise_;
   const Noise& q = b.noise_;
   return same(a.A_, b.A_) && same(a.B_, b.B_) && same(a.C_, b.C_) && same(p.process_bound, q.process_bound) &&
          same(p.measurement_bound, q.measurement_bound) && same(p.process_covariance, q.process_covariance) &&
          same(p.measurement_covariance, q.measurement_covariance) &&
-         same(p.agent_process_covariance, q.agent_process_covariance) && a.exposed_ == b.exposed_ &&
+         same(p.agent_process_covariance, q.agent_process_covariance) && same_reach(a, b) &&
          a.labels_ == b.labels_;
 }
 

@@ -67,7 +67,7 @@ SplitSystem split_outputs(const Model& model, const Network& network) {
   for (int i = 0; i < model.agents(); ++i) join(i, i);
   const int parts = static_cast<int>(owner.size());
   // Measurements keep their order, and with it their names, sources and units.
-  return {Model(model.A(), std::move(C), std::move(noise), {}, model.labels()),
+  return {Model(model.A(), std::move(C), std::move(noise), {}, model.labels(), model.B()),
           Network(parts, edges, network.directed(), part_names(model, network, owner, first)),
           std::move(owner)};
 }

@@ -317,3 +317,30 @@ def test_a_saved_run_runs_again(tmp_path: Path, certificate: str) -> None:
     mine = gr.simulate(MODEL, NETWORK, gr.filters.ScalarGain(), steps=3, inputs=U[:3], attack=own)
     with pytest.raises(gr.InvalidInput, match="an attack written in Python"):
         gr.again(mine)
+
+
+def test_other_functions_take_models_with_inputs() -> None:
+    prepared = gr.prepare(MODEL, NETWORK, gr.filters.ScalarGain())
+    assert gr.Prepared.from_bytes(prepared.to_bytes()).model == MODEL
+    assert "sensors may lie" in str(gr.analyze(MODEL, NETWORK))
+    several = gr.Model(A, [[[1, 0], [0, 1]]], B=B, inputs=["thrust"])
+    split = gr.split_outputs(several, gr.Network([], agents=1))[0]
+    assert np.array_equal(split.B, B) and split.input_names == ["thrust"]
+    rows = gr.compare(MODEL, NETWORK, attacked=[1], filters={"plain": gr.filters.ScalarGain()}, steps=30, trials=2).rows
+    assert {row["status"] for row in rows if row["filter"] == "plain"} == {"ok"}
+    check = gr.check(MODEL, NETWORK, gr.filters.ScalarGain(), certificate="flooded", failure=0, attacked=1)
+    assert any(q["name"] == "certificate_expected" and np.isfinite(q["value"]) for q in check.quantities)
+
+
+def test_labels_of_plots_and_tables() -> None:
+    pytest.importorskip("pandas")
+    model = gr.Model([[0.9]], [[1]] * 3, units="K", process_bound=0.1, measurement_bound=0.1)
+    network = gr.Network([(0, 1), (1, 2)], names=["a", "b", "c"])
+    run = gr.simulate(model, network, gr.filters.Saturation(threshold=1, rounds=3), steps=20)
+    errors, statistics = run.plot(agents=["a", "c"]).axes
+    assert errors.get_ylabel() == "error (K)"
+    assert [t.get_text() for t in statistics.get_legend().get_texts()][:2] == ["statistic of a", "statistic of c"]
+    assert run.to_pandas().attrs["units"]["error"] == "K"
+    assert run.why_no_bound("b", 3) == run.why_no_bound(1, 3)
+    with pytest.raises(gr.InvalidInput, match='did you mean "b"'):
+        run.why_no_bound("bb", 3)

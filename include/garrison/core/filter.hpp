@@ -108,6 +108,8 @@ inline void next_measurement(const Local& local, const double* x, double* out) n
 /// - Optional: `uncover(gains, state)`: a gap lies behind this state, so no bound, no test and no accusation
 /// may rest on
 ///   it; `shape(local, gains, sender, t, message)`: sizes and derived indices of a message that will be read;
+///   `most_missing(gains)`: sensors that may lack a measurement at once; where there are more, drivers that
+///   see all of them uncover everybody before the sample;
 ///   `part(gains, id, neighbours)`: what one agent needs of the gains, the rest left empty;
 ///   `runs(gains)`: whether this build has all that they ask for (a solver, say).
 /// - What is not inline of all this is in src/filters/<family>/runtime, which nodes link without design,

@@ -83,6 +83,7 @@ class Engine final : public Runner {
 
   void step(std::int64_t t, const double* y) override {
     if (certified_) certified_->begin(t, y);
+    if constexpr (requires { F::most_missing(*gains_); }) notice_missing(F::most_missing(*gains_), y);
     filter(t, y);
     if (certified_) certified_->finish(workers_);
   }
@@ -180,6 +181,20 @@ class Engine final : public Runner {
     varying_ = false;
     A_ = model_.A();
     sight(model_.stacked());
+  }
+
+  /// Who sees all measurements knows what no agent can: that too many are missing.
+  void notice_missing(int most, const double* y) noexcept {
+    std::ptrdiff_t numbers = 0;
+    for (int r = 0; r < model_.total_outputs(); ++r) numbers += y[r] != y[r] ? 1 : 0;
+    if (numbers <= most) return;
+    const auto any = [&](const Place& p, const double* own) {
+      return std::any_of(own, own + p.outputs, [](double v) { return std::isnan(v); });
+    };
+    int sensors = 0;
+    for (std::size_t k = 0; k < places_.size(); ++k) sensors += any(places_[k], y + first_output_[k]) ? 1 : 0;
+    if (sensors <= most) return;
+    for (State& s : states_) garrison::uncover<F, n>(*gains_, s);
   }
 
   auto locals() const {

@@ -17,10 +17,12 @@
 //
 // Where we leave the print: the test has a rounding guard; "= s" in line 6 reads ">= s"; a bound is reported
 // only by an agent that still tests, because (16) is false for the others; an agent that missed a message, or
-// heard from one that did, reports no bound, tests nothing, and its set is not united with others.
-// Bounds and proofs cover attacked sensors, not agents that lie in their messages: one liar that forges
-// `proved` has anybody isolated, one that clears `intact` switches all tests off; drivers say so when such an
-// attack is simulated, and drop the bounds.
+// heard from one that did, reports no bound, tests nothing, and its set is not united with others. The same
+// holds for all once more than s sensors lack a measurement in one sample. (Only who sees all measurements
+// can count them: an agent on its own takes it for granted, and `uncover` tells it.) Bounds and proofs cover
+// attacked sensors, not agents that lie in their messages: one liar that forges `proved` has anybody
+// isolated, one that clears `intact` switches all tests off; drivers say so when such an attack is simulated,
+// and drop the bounds.
 #pragma once
 
 #include <algorithm>
@@ -164,12 +166,14 @@ struct GARRISON_EXPORT Saturation {
   /// Bounds and detector need one initial estimate for all (docs/filters/saturation.md#s1); @throws
   /// InvalidInput.
   static void check_start(const Gains& gains, const Matrix& x0);
-  /// What a user should know of a run: it refuted an assumption.
-  static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
+  /// What a user should know of a run: it refuted an assumption, or too many measurements were missing.
+  static std::vector<std::string> warnings(const Params& params, const Model& model, const VerdictLog& log);
   /// Eight trials at once; null when the detector makes trials take different branches.
   static std::unique_ptr<TrialsRunner> trials(std::shared_ptr<const Gains> gains, const Model& model,
                                               const Network& network);
   static int rounds(const Gains& g) { return g.rounds; }
+  /// A missing measurement is an update that fails to come, as that of an attacked sensor may.
+  static int most_missing(const Gains& g) { return g.setting.attacked; }
   /// Why a plant that changes in time cannot be taken; empty: it can.
   static std::string needs_constant(const Gains& g) {
     const bool rests = g.detector || g.adaptive || !g.table.empty();
