@@ -20,6 +20,10 @@ Array = NDArray[np.float64]
 _RATE = "false_alarm"
 #: smallest nominal rate that is tried, and the relative accuracy of the one that is found
 _LEAST, _ACCURACY = 1e-300, 5e-3
+#: parts of the records in which rates are looked at apart, and deviations between these that are allowed for
+_PARTS, _MARGIN = 5, 1.0
+#: alarms expected on the records, among tests that do not overlap, from which on the rate asked for can be judged
+_ENOUGH = 5.0
 
 
 @dataclass(frozen=True)
@@ -27,7 +31,9 @@ class Calibration:
     """A filter whose false alarms on clean records are as frequent as asked.
 
     filter: the same with the nominal rate `nominal` in place of `asked`. tests: of all sensors together, over which
-    the rate is taken; got, expected: share of alarms among them now, and with the filter as it was given.
+    the rate is taken; got, before: share of alarms among them now, and with the filter as it was given. by_part: the
+    share now in each fifth of the records: what a later record may differ by. judged: there are enough tests that do
+    not overlap to judge so rare an alarm; where there are not, the rate on other records may be another one altogether.
     thresholds (N, 3): of every sensor's statistic the level that it exceeds at the rate asked for, and an interval
     that holds the true one with 95 % if the tests are independent (tests over overlapping windows are not: take it as
     optimistic); nan where there are too few tests. model: with noise bounds that hold on these records too; the
@@ -44,7 +50,9 @@ class Calibration:
     nominal: float
     before: float
     got: float
+    by_part: tuple[float, ...]
     tests: int
+    judged: bool
     thresholds: Array
     model: _core.Model
     exceeds: float
@@ -62,8 +70,9 @@ def calibrate(
 ) -> Calibration:
     """Set a filter's nominal false-alarm rate so that the rate asked for is what clean records give.
 
-    The nominal rate is the one at which the empirical quantile of statistic / threshold over all sensors and samples is
-    1 (split conformal).
+    The nominal rate is the one at which the share of alarms on these records is the one asked for, less an allowance
+    for what fifths of them differ by beyond chance: weather, seasons and drifts make tests of months to come differ as
+    much from these as these among themselves.
 
     Parameters
     ----------
@@ -99,17 +108,11 @@ def calibrate(
         again = _core.make_filter(filter.name, filter.params | {_RATE: rate})
         return replay(model, network, again, measurements=y, keep=("report",), conditions=False)
 
-    def ratio(run: Run) -> Array:
-        assert run.statistic is not None
-        assert run.threshold is not None
-        found = np.ravel(run.statistic / run.threshold)
-        return np.asarray(found[np.isfinite(found)])
-
     def over(rate: float) -> float:
-        return float(_core.certificate.empirical_quantile(ratio(run_at(rate)), asked)[0])
+        return _allowed(_ratios(run_at(rate)), asked) / asked
 
     first = run_at(asked)
-    tests = len(ratio(first))
+    tests = int(np.isfinite(_ratios(first)).sum())
     if tests < 1.0 / asked:
         raise refusal(
             "measurements", count(tests, "test"), f"at least {1.0 / asked:.0f}", "calibrate on more clean records"
@@ -125,14 +128,40 @@ def calibrate(
         _core.make_filter(filter.name, filter.params | {_RATE: nominal}),
         asked,
         nominal,
-        float((ratio(first) > 1.0).mean()),
-        float((ratio(last) > 1.0).mean()),
+        _share(_ratios(first)),
+        _share(_ratios(last)),
+        tuple(_share(part) for part in np.array_split(_ratios(last), _PARTS)),
         tests,
+        tests * asked >= _ENOUGH * max(1, filter.params.get("window", 1)),
         thresholds,
         inflated,
         exceeds,
         clean_levels(model, y, attacked, asked),
     )
+
+
+def _ratios(run: Run) -> Array:
+    """Statistic / threshold of every sample and sensor; nan = not tested."""
+    assert run.statistic is not None
+    assert run.threshold is not None
+    found: Array = (run.statistic / run.threshold)[0]
+    return found
+
+
+def _share(ratios: Array) -> float:
+    """Of the tests that are an alarm; nan without tests."""
+    tests = np.isfinite(ratios).sum()
+    return float((ratios > 1.0).sum() / tests) if tests else float("nan")
+
+
+def _allowed(ratios: Array, asked: float) -> float:
+    """The share of alarms, and what parts of the records differ by beyond chance on top."""
+    shares = np.array([_share(part) for part in np.array_split(ratios, _PARTS)])
+    shares = shares[np.isfinite(shares)]
+    if len(shares) < 2:
+        return _share(ratios)
+    chance = asked * len(shares) / np.isfinite(ratios).sum()
+    return _share(ratios) + _MARGIN * float(np.sqrt(max(0.0, np.var(shares, ddof=1) - chance)))
 
 
 def _matching(over: Callable[[float], float], asked: float) -> float:

@@ -114,7 +114,8 @@ class Run:
         """Share of the samples from `start` on at which each agent's measurement was suspected (clipped)."""
         if self.verdict is None:
             raise refusal("limited", "a run without verdicts", 'keep to contain "report"')
-        suspected = self.verdict[self._trial(trial), whole("start", start, 0) :] == Verdict.SUSPECTED
+        first = whole("start", start, 0, self.verdict.shape[1] - 1)
+        suspected = self.verdict[self._trial(trial), first:] == Verdict.SUSPECTED
         return np.asarray(suspected.mean(axis=0), dtype=float)
 
     def why_no_bound(self, agent: int | str, time: int, trial: int = 0) -> str:

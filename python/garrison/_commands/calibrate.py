@@ -32,16 +32,27 @@ def do(args: argparse.Namespace) -> int:
         return OK
     console = console_for()
     rows = [
-        [label, f"{c.asked:.3g}", f"{c.before:.3g}", f"{c.nominal:.3g}", f"{c.got:.3g}", str(c.tests)]
-        for label, c in found
+        [label, f"{c.asked:.3g}", f"{c.before:.3g}", f"{c.nominal:.3g}", _now(c), str(c.tests)] for label, c in found
     ]
-    head = ["filter", "asked", "got before", "false_alarm to set", "got now", "tests"]
+    head = ["filter", "asked", "got before", "false_alarm to set", "got now (by fifths of the records)", "tests"]
     print_table(f"{scenario.title}: false alarms on the records, taken as clean", head, rows, console)
     for label, c in found:
         levels = [[name, *(f"{v:.4g}" for v in row)] for name, row in zip(scenario.names, c.thresholds, strict=True)]
         print_table(f"{label}: levels of the statistic", ["agent", "level", "95 % from", "to"], levels, console)
-    print_warnings(scenario.notes)
+    print_warnings([*scenario.notes, *(_unjudged(label, c) for label, c in found if not c.judged)])
     return OK
+
+
+def _now(c: Calibration) -> str:
+    parts = [v for v in c.by_part if v == v]  # nan: nothing was tested there
+    return f"{c.got:.3g} ({min(parts):.2g} to {max(parts):.2g})" if parts else f"{c.got:.3g}"
+
+
+def _unjudged(label: str, c: Calibration) -> str:
+    return (
+        f"{label}: an alarm in {1.0 / c.asked:.0f} tests is too rare to be judged on these records; on others the rate "
+        "may be another one: calibrate on longer ones, or ask for more frequent alarms"
+    )
 
 
 def _all(scenario: Scenario) -> list[tuple[str, Calibration]]:
@@ -64,6 +75,8 @@ def _plain(label: str, scenario: Scenario, c: Calibration) -> dict[str, Any]:
         "before": c.before,
         "false_alarm": c.nominal,
         "got": c.got,
+        "by_part": list(c.by_part),
+        "judged": c.judged,
         "tests": c.tests,
         "levels": levels,
         "process_bound": c.model.process_bound,

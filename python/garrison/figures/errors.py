@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.figures.style import LINES, axes, label_ends, plain, time_label, times
+from garrison.figures.style import LINES, axes, label_ends, log_scale, plain, time_label, times
 from garrison.jobs import Row
 from garrison.scenario import Scenario
 
@@ -33,8 +33,8 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figu
         start = times(scenario, np.array([attack.start]))[0]
         label = "attack starts" if k == 0 else None
         ax.axvline(start, color="black", linewidth=0.8, linestyle=(0, (2, 2)), label=label)
-    if ax.get_lines() and all(np.nanmax(np.asarray(row.error)) > 0 for row in shown):
-        ax.set_yscale("log")
+    if ax.get_lines():
+        log_scale(ax, np.concatenate([np.ravel(np.asarray(row.error)) for row in shown]))
     ax.set_ylabel("mean error, log scale")
     ax.set_xlabel(time_label(scenario))
     label_ends(ax)

@@ -7,7 +7,7 @@ import matplotlib.dates
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.figures.style import plain, time_label, times
+from garrison.figures.style import log_scale, plain, time_label, times
 from garrison.record import Run
 from garrison.scenario import Scenario
 
@@ -50,8 +50,7 @@ def innovation_figure(scenario: Scenario, run: Run, before: int = 30, after: int
         note = " (attacked)" if k in hit else ""
         weight = "bold" if k in hit else "normal"
         ax.set_title(f"{plain(scenario.names[k])}{note}", fontsize=9, loc="left", fontweight=weight)
-        if np.nanmax(run.statistic[0, at, k], initial=0.0) > 0:
-            ax.set_yscale("log")
+        log_scale(ax, run.statistic[0, at, k])
         ax.tick_params(labelsize=7)
         if scenario.dates and isinstance(scenario.dates[0], dt.date):
             locator = _DATES.AutoDateLocator(maxticks=4)

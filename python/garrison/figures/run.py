@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.figures.style import LINES, axes, plain, trial_words
+from garrison.figures.style import LINES, axes, log_scale, plain, trial_words
 from garrison.longform import common_unit
 from garrison.record import Run
 
@@ -56,11 +56,6 @@ def _others(runs: Sequence[Run], trial: int, ax: Any, agents: Any) -> None:
             ax.plot(mean, color=colour, linestyle=style, label=f"mean error of {plain(run.filter.name)}")
 
 
-def _log(ax: Any, values: Any) -> None:
-    if np.nanmax(values, initial=0.0) > 0:
-        ax.set_yscale("log")
-
-
 def _drawn(bounds: Any) -> Any:
     """The largest bound of an agent; a gap where some agent has none."""
     largest = bounds.max(axis=1)
@@ -79,7 +74,7 @@ def _errors(run: Run, trial: int, ax: Any, agents: Any) -> bool:
         ax.plot(_drawn(run.bound[trial][:, agents]), color="#D55E00", linestyle="-.", label="certified bound")
         if run.published is not None and np.isfinite(run.published[trial]).any():
             ax.plot(_drawn(run.published[trial][:, agents]), color="#666666", linestyle=":", label="published bound")
-    _log(ax, error)
+    log_scale(ax, error)
     unit = common_unit(run)
     ax.set_ylabel(f"error ({plain(unit)})" if unit else "error")
     return True
@@ -93,6 +88,6 @@ def _statistics(run: Run, trial: int, ax: Any, agents: Any) -> bool:
     lines = ax.plot(run.statistic[trial][:, agents], color="#0072B2", linewidth=0.6, alpha=0.6)
     lines[0].set_label("statistic, one line per agent")
     ax.plot(run.threshold[trial][:, agents].max(axis=1), color="#D55E00", linestyle="--", label="largest threshold")
-    _log(ax, run.statistic[trial])
+    log_scale(ax, run.statistic[trial])
     ax.set_ylabel("test statistic")
     return True

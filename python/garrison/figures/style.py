@@ -37,6 +37,13 @@ _MOST_DIRECT = 9
 _ROW = 0.058  # of the height of the axes, from one label to the next
 
 
+def log_scale(ax: Any, values: Any) -> None:
+    """A logarithmic vertical axis, where something can be drawn on it."""
+    found = np.asarray(values, dtype=float)
+    if (np.isfinite(found) & (found > 0)).any():
+        ax.set_yscale("log")
+
+
 def label_ends(ax: Any) -> None:
     """Write the label of every line at its right end in its colour, none over another; of vertical ones at the top.
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/saturation/constants.hpp"
 
+#include <cmath>
 #include <string>
 
 namespace garrison::saturation {
@@ -39,7 +40,7 @@ Constants constants(const Setting& s) {
   k.q0 = q0_at(s, k.p0);
   k.F_eta0 = F_at(s, k.p0, s.eta0);
   k.cond9_margin = s.eta0 * (1.0 - k.F_eta0) - k.q0;
-  k.cond9 = k.cond9_margin >= -1e-12 * (s.eta0 * (1.0 + k.F_eta0) + k.q0);
+  k.cond9 = std::isfinite(k.cond9_margin) && k.cond9_margin >= -1e-12 * (s.eta0 * (1.0 + k.F_eta0) + k.q0);
   return k;
 }
 

@@ -243,6 +243,8 @@ struct GARRISON_EXPORT Structural {
  private:
   /// Deviations, in stationary ones, above which a test can tell an alarm and nothing else.
   static constexpr double kBlind = 10.0;
+  /// By which P grows, per sample, while all that is measured is left out: nothing speaks for the estimate.
+  static constexpr double kNobody = 1.3;
   /// The most that P is taken to be, in stationary variances.
   static constexpr double kMostVariance = 1e16;
   /// Start errors that are reckoned with, in stationary variances.

@@ -165,6 +165,7 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
   if (carried && g.isolate) std::fill_n(more, size, 0.0);
   // That a measurement was over its level says of an honest sensor that the estimate is off.
   bool out = false;
+  bool heeded = false;
   double growth = 1.0;
   const auto leave = [&](int e, bool by_level) {
     const Heard& j = heard[e];
@@ -179,6 +180,7 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     before = 1;
   };
   const auto use = [&](int e, double innovation) {
+    heeded = true;
     const double* column = g.columns.data() + heard[e].first;
     for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
     if (g.isolate) s.left_out[static_cast<std::size_t>(e)] = 0;
@@ -210,6 +212,7 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
   }
   if constexpr (n != Dynamic) std::copy_n(x, nn, s.x.data());
   if (!carried) return !out;
+  if (out && !heeded) growth = std::max(growth, kNobody);
   if (g.isolate)
     for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
   run_widest_of<UpdateSpread<n>, n>(&l, &g, &s);
