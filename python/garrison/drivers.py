@@ -100,6 +100,7 @@ def simulate(
     certificate: str = "none",
     failure: float = 1e-6,
     attacked: int | None = None,
+    levels: tuple[float, float] | None = None,
     design: _core.Design | None = None,
 ) -> Run:
     """Simulate the plant, attack it, filter it.
@@ -155,6 +156,9 @@ def simulate(
         noise.
     attacked : int, optional
         Most sources that lie, >= 0; default the filter's parameter of that name.
+    levels : tuple of two floats, optional
+        (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
+        (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
     design : Design, optional
         Made before of these very three (`prepare` does that).
 
@@ -174,7 +178,9 @@ def simulate(
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     require_room(model, filter, kept, trials, steps)
     data = _core.simulate(
-        _designed(model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
+        _designed(
+            model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked, levels)
+        ),
         steps=steps,
         x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
         start_error=arguments.number("start_error", start_error),
@@ -222,6 +228,7 @@ def replay(
     certificate: str = "none",
     failure: float = 1e-6,
     attacked: int | None = None,
+    levels: tuple[float, float] | None = None,
     design: _core.Design | None = None,
 ) -> Run:
     """Feed recorded measurements to a filter.
@@ -272,6 +279,9 @@ def replay(
         noise.
     attacked : int, optional
         Most sources that lie, >= 0; default the filter's parameter of that name.
+    levels : tuple of two floats, optional
+        (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
+        (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
     design : Design, optional
         Made before of these very three (`prepare` does that).
 
@@ -292,7 +302,9 @@ def replay(
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     require_room(model, filter, kept, trials, y.shape[-2] if y.ndim >= 2 else 0)
     data = _core.replay(
-        _designed(model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
+        _designed(
+            model, network, filter, design, arguments.certificate(filter, certificate, failure, attacked, levels)
+        ),
         measurements=y,
         truth=None if truth is None else numbers("truth", truth),
         trials=trials,
