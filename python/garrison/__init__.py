@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from garrison.calibration import Calibration, calibrate
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
+    from garrison.exposing import Exposed, expose
     from garrison.fitting import Fit, fit
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
@@ -73,6 +74,8 @@ _LATER = {
     "analyze": "answers",
     "Calibration": "calibration",
     "calibrate": "calibration",
+    "Exposed": "exposing",
+    "expose": "exposing",
     "Fit": "fitting",
     "fit": "fitting",
     "Mitigated": "mitigation",
@@ -100,6 +103,7 @@ __all__ = [
     "DesignInfeasible",
     "Designed",
     "Error",
+    "Exposed",
     "Filter",
     "Fit",
     "InvalidInput",
@@ -124,6 +128,7 @@ __all__ = [
     "check",
     "compare",
     "design",
+    "expose",
     "filters",
     "fit",
     "lambda0",

@@ -15,7 +15,7 @@ LAYERS = (
     ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms"),
     ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform", "labelled"),
     ("attacks", "record", "doubts", "refuted"),
-    ("drivers", "fitting", "calibration", "certificate"),
+    ("drivers", "fitting", "calibration", "certificate", "exposing"),
     ("prepared", "designing"),
     ("resilience", "mitigation", "lmi", "scenario", "answers"),
     ("jobs", "anatomy", "sweeps", "comparison", "importers"),
