@@ -473,7 +473,8 @@ void bind_agents(py::module_& m) {
             if (wanted.z1 > 0.0) found["levels"] = std::pair(wanted.z1, wanted.z2);
             return found;
           },
-          "What its runs certify (certificate, failure, attacked, and levels if given); None = nothing but the family's own "
+          "What its runs certify (certificate, failure, attacked, and levels if given); None = nothing but "
+          "the family's own "
           "bound.")
       .def_property_readonly("model", &Prepared::model)
       .def_property_readonly("network", &Prepared::network)
