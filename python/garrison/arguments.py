@@ -171,7 +171,10 @@ def pair_of_levels(levels: Any) -> tuple[float, float]:
     found = entries("levels", levels, words)
     if len(found) != 2:
         raise refusal("levels", shown(levels), words, "garrison.fit(...).levels(attacked, failure) finds them")
-    return number("levels[0]", found[0]), number("levels[1]", found[1])
+    z1, z2 = number("levels[0]", found[0]), number("levels[1]", found[1])
+    if not (z1 > 0 and z2 > 0):
+        raise refusal("levels", shown(levels), words)
+    return z1, z2
 
 
 def link(value: Mapping[str, Any] | None) -> dict[str, Any]:
