@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A whole step of a saturated consensus filter, with and without a certificate.
+#include <map>
 #include <memory>
 #include <random>
 
@@ -26,9 +27,9 @@ class CertifiedStep {
     const Model model(A, C, {kNaN, Vector(), 0.01 * Matrix::Identity(4, 4), R});
     prepared_ = make_filter("saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{rounds}}})
                     ->prepare(model, network);
-    if (spread != "none")
-      prepared_ =
-          certified(*prepared_, {spread == "local" ? Spread::local : Spread::flooded, 1e-6, 3, subsets});
+    const std::map<std::string, Spread> spreads{
+        {"local", Spread::local}, {"flooded", Spread::flooded}, {"direct", Spread::direct}};
+    if (spread != "none") prepared_ = certified(*prepared_, {spreads.at(spread), 1e-6, 3, subsets});
     runner_ = prepared_->runner(1);
     runner_->reset(Matrix::Zero(4, agents), nullptr);
     for (int i = 0; i < agents; ++i) agents_.push_back(prepared_->agent(i));

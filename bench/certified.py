@@ -9,7 +9,7 @@ SAMPLES = 200
 
 def cost(agents: int, rounds: int, repeats: int) -> Rows:
     """W2 (no subsets) and, where there are few sets, W3; n = 4, s = 3."""
-    kinds = {"none": ("none", 0), "local, W2": ("local", 0), "flooded, W2": ("flooded", 0)}
+    kinds = {"none": ("none", 0), "local, W2": ("local", 0), "direct, W2": ("direct", 0), "flooded, W2": ("flooded", 0)}
     if agents <= 12:
         kinds["flooded, W3"] = ("flooded", 1000)
     steps = {name: peers.CertifiedStep(agents, rounds, *kind) for name, kind in kinds.items()}

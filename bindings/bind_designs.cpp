@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Designs, their files, and the logs of agents made from them.
+#include <tuple>
+
 #include "agents.hpp"
 #include "bytes.hpp"
 #include "garrison/node/log.hpp"
@@ -10,11 +12,13 @@ namespace {
 
 constexpr const char* kSpreads[] = {"local", "flooded", "direct"};
 
-std::optional<certificate::Wanted> wanted_of(const std::string& name, double failure, int attacked) {
+std::optional<certificate::Wanted> wanted_of(const std::string& name, double failure, int attacked,
+                                             const std::pair<double, double>& levels) {
   if (name == "none") return std::nullopt;
   certificate::Wanted wanted;
   wanted.failure = failure;
   wanted.attacked = attacked;
+  std::tie(wanted.z1, wanted.z2) = levels;
   const auto* const found = std::find(std::begin(kSpreads), std::end(kSpreads), name);
   if (found == std::end(kSpreads)) {
     std::vector<std::string> known{"none"};
@@ -56,25 +60,29 @@ void bind_designs(py::module_& m) {
   bind_log(m);
   py::class_<Prepared, std::shared_ptr<Prepared>>(m, "Design", "A filter designed for one model and network.")
       .def(py::init([](const Model& model, const Network& network, const FilterHandle& filter,
-                       const std::string& certificate, double failure, int attacked) {
-             const auto wanted = wanted_of(certificate, failure, attacked);
+                       const std::string& certificate, double failure, int attacked,
+                       const std::pair<double, double>& levels) {
+             const auto wanted = wanted_of(certificate, failure, attacked, levels);
              const py::gil_scoped_release no_gil;
              auto prepared = filter.filter->prepare(model, network);
              if (wanted) prepared = certified(*prepared, *wanted);
              return std::const_pointer_cast<Prepared>(prepared);
            }),
            py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("certificate") = "none",
-           py::arg("failure") = 1e-6, py::arg("attacked") = 0)
+           py::arg("failure") = 1e-6, py::arg("attacked") = 0, py::arg("levels") = std::pair(0.0, 0.0))
       .def_property_readonly(
           "certificate",
           [](const Prepared& p) -> py::object {
             const auto plan = p.certificate();
             if (plan == nullptr) return py::none();
             const auto& wanted = plan->wanted;
-            return py::dict(py::arg("certificate") = kSpreads[static_cast<std::size_t>(wanted.spread)],
-                            py::arg("failure") = wanted.failure, py::arg("attacked") = wanted.attacked);
+            py::dict found(py::arg("certificate") = kSpreads[static_cast<std::size_t>(wanted.spread)],
+                           py::arg("failure") = wanted.failure, py::arg("attacked") = wanted.attacked);
+            if (wanted.z1 > 0.0) found["levels"] = std::pair(wanted.z1, wanted.z2);
+            return found;
           },
-          "What its runs certify (certificate, failure, attacked); None = nothing but the family's own "
+          "What its runs certify (certificate, failure, attacked, and levels if given); None = nothing but "
+          "the family's own "
           "bound.")
       .def_property_readonly("model", &Prepared::model)
       .def_property_readonly("network", &Prepared::network)

@@ -65,8 +65,7 @@ if TYPE_CHECKING:
     from garrison.certifying import Certified, certify
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
-    from garrison.fitting import Fit
-    from garrison.identifying import fit
+    from garrison.exposing import Exposed, expose
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
     from garrison.resilience import Resilience, resilience_per_byte
@@ -80,6 +79,8 @@ _LATER = {
     "calibrate": "calibration",
     "Certified": "certifying",
     "certify": "certifying",
+    "Exposed": "exposing",
+    "expose": "exposing",
     "Fit": "fitting",
     "fit": "identifying",
     "Mitigated": "mitigation",
@@ -108,6 +109,7 @@ __all__ = [
     "DesignInfeasible",
     "Designed",
     "Error",
+    "Exposed",
     "Filter",
     "Fit",
     "InvalidInput",
@@ -137,6 +139,7 @@ __all__ = [
     "check",
     "compare",
     "design",
+    "expose",
     "extended_kalman",
     "filters",
     "fit",

@@ -150,7 +150,7 @@ SPREADS = ("none", "local", "flooded", "direct")
 ONE_SPREAD = ", ".join(f'"{name}"' for name in SPREADS[:-1]) + f' or "{SPREADS[-1]}"'
 
 
-def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any) -> dict[str, Any]:
+def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any, levels: Any = None) -> dict[str, Any]:
     """What to certify: `attacked` is the filter's own where it has one."""
     if not isinstance(name, str):
         raise refusal("certificate", shown(name), ONE_SPREAD)
@@ -161,11 +161,20 @@ def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any) ->
     if attacked is None:
         advice = "say how many sources may be attacked at a time"
         raise refusal("attacked", f"no value, with certificate {name!r}", "a whole number >= 0", advice)
-    return {
-        "certificate": name,
-        "failure": number("failure", failure),
-        "attacked": whole("attacked", attacked, 0),
-    }
+    out = {"certificate": name, "failure": number("failure", failure), "attacked": whole("attacked", attacked, 0)}
+    return out if levels is None else out | {"levels": pair_of_levels(levels)}
+
+
+def pair_of_levels(levels: Any) -> tuple[float, float]:
+    """z1 and z2, as Fitted.levels and calibrate give them."""
+    words = "two numbers > 0, (z1, z2)"
+    found = entries("levels", levels, words)
+    if len(found) != 2:
+        raise refusal("levels", shown(levels), words, "garrison.fit(...).levels(attacked, failure) finds them")
+    z1, z2 = number("levels[0]", found[0]), number("levels[1]", found[1])
+    if not (z1 > 0 and z2 > 0):
+        raise refusal("levels", shown(levels), words)
+    return z1, z2
 
 
 def link(value: Mapping[str, Any] | None) -> dict[str, Any]:

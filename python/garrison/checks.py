@@ -79,6 +79,7 @@ def check(
     certificate: str = "none",
     failure: float = 1e-6,
     attacked: int | None = None,
+    levels: tuple[float, float] | None = None,
 ) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
 
@@ -101,6 +102,9 @@ def check(
         noise.
     attacked : int, optional
         Most sources that lie, >= 0; default the filter's parameter of that name.
+    levels : tuple of two floats, optional
+        (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
+        (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
 
     Returns
     -------
@@ -114,6 +118,6 @@ def check(
     """
     require_order("check", model, network, filter)
     conditions, quantities = _core.check(model, network, filter, number("seconds", seconds))
-    if wanted := arguments.certificate(filter, certificate, failure, attacked):
+    if wanted := arguments.certificate(filter, certificate, failure, attacked, levels):
         quantities += expected_certificate(_core.Design(model, network, filter, **wanted))
     return Check(conditions, quantities)

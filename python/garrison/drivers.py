@@ -107,6 +107,7 @@ def simulate(
     certificate: str = "none",
     failure: float = 1e-6,
     attacked: int | None = None,
+    levels: tuple[float, float] | None = None,
     design: _core.Design | None = None,
 ) -> Run:
     """Simulate the plant, attack it, filter it.
@@ -166,6 +167,9 @@ def simulate(
         noise.
     attacked : int, optional
         Most sources that lie, >= 0; default the filter's parameter of that name.
+    levels : tuple of two floats, optional
+        (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
+        (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
     design : Design, optional
         Made before of these very three (`prepare` does that).
 
@@ -188,7 +192,7 @@ def simulate(
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     require_room(base, filter, kept, trials, steps)
     data = _core.simulate(
-        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
+        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked, levels)),
         steps=steps,
         x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
         start_error=arguments.number("start_error", start_error),
@@ -264,6 +268,7 @@ def replay(
     certificate: str = "none",
     failure: float = 1e-6,
     attacked: int | None = None,
+    levels: tuple[float, float] | None = None,
     design: _core.Design | None = None,
 ) -> Run:
     """Feed recorded measurements to a filter.
@@ -316,6 +321,9 @@ def replay(
         noise.
     attacked : int, optional
         Most sources that lie, >= 0; default the filter's parameter of that name.
+    levels : tuple of two floats, optional
+        (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
+        (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
     design : Design, optional
         Made before of these very three (`prepare` does that).
 
@@ -341,7 +349,7 @@ def replay(
     known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
     require_room(base, filter, kept, trials, samples)
     data = _core.replay(
-        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked)),
+        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked, levels)),
         measurements=y,
         truth=None if truth is None else numbers("truth", truth),
         trials=trials,

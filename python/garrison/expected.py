@@ -38,7 +38,12 @@ def expected_certificate(design: _core.Design) -> list[dict[str, Any]]:
     bound, kind = made["bound"][0, -1], made["bound_kind"][0, -1]
     own = np.isin(kind, _OWN) & np.isfinite(bound)
     failure = wanted["failure"]
-    law = "for noise within its bounds" if failure == 0 else f"at {failure:g} per agent and sample"
+    if failure == 0:
+        law = "for noise within its bounds"
+    elif "levels" in wanted:
+        law = f"at levels that clean records exceed at the rate {failure:g}"
+    else:
+        law = f"at {failure:g} per agent and sample"
     who = f"with any {wanted['attacked']} sources lying"
     return [
         {

@@ -115,6 +115,7 @@ def prepare(
     certificate: str = "none",
     failure: float = 1e-6,
     attacked: int | None = None,
+    levels: tuple[float, float] | None = None,
 ) -> Prepared:
     """Design the filter for this model and network, once.
 
@@ -138,6 +139,9 @@ def prepare(
     attacked : int, optional
         Most sources that lie, >= 0; default the filter's parameter of that name. A source is an agent, or what
         the model names as source. More than the filter was told of: its own bound does not count.
+    levels : tuple of two floats, optional
+        (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
+        (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
 
     Returns
     -------
@@ -152,5 +156,5 @@ def prepare(
         No gains exist.
     """
     require_order("prepare", model, network, filter)
-    wanted = arguments.certificate(filter, certificate, failure, attacked)
+    wanted = arguments.certificate(filter, certificate, failure, attacked, levels)
     return Prepared(_core.Design(model, network, filter, **wanted))

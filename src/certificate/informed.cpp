@@ -21,7 +21,7 @@ Vector faded(const ErrorSystem& s, const Matrix& power, const VectorRef& start) 
   Vector sum = Vector::Zero(s.agents());
   for (Eigen::Index i = 0; i < s.agents(); ++i)
     for (Eigen::Index l = 0; l < s.agents(); ++l)
-      sum(i) += spectral_norm(power.block(i * n, l * n, n, n)) * start(l);
+      if (start(l) > 0.0) sum(i) += spectral_norm(power.block(i * n, l * n, n, n)) * start(l);
   return sum;
 }
 

@@ -86,8 +86,9 @@ struct LeverageWorkspace::Room {
   bool keeps(const Rows& rows, int j) const { return out[static_cast<std::size_t>(rows.source(j))] == 0; }
   void begin(const Rows& rows, const Assumption& a);
   bool refute(const Rows& rows, const Assumption& a);
-  bool fit_rows(const Rows& rows, const Assumption& a);
+  void choose_frame(const Rows& rows);
   double spare(int left);
+  bool fit_rows(const Rows& rows, const Assumption& a);
   double in_frame(const Rows& rows, const Assumption& a, int left, double mu);
   double top(const std::vector<double>& of, int k);
   void close(const Rows& rows);
@@ -140,16 +141,18 @@ bool LeverageWorkspace::Room::refute(const Rows& rows, const Assumption& a) {
   return count_out > before;
 }
 
-/// Steps 2 and 3, the sums per source: false when the kept rows do not determine the state.
+/// Step 2, which no measurement enters.
+void LeverageWorkspace::Room::choose_frame(const Rows& rows) {
+  if (count_out == 0) return;
+  frame = &part;
+  if (part_out != out) part.make(rows, [&](int j) { return keeps(rows, j); });
+  part_out = out;
+}
+
+/// Step 3, the sums per source: false when a number is lost to overflow.
 bool LeverageWorkspace::Room::fit_rows(const Rows& rows, const Assumption& a) {
-  own = false;
   const auto kept = [&](int j) { return keeps(rows, j); };
-  if (count_out > 0) {
-    frame = &part;
-    if (part_out != out) part.make(rows, kept);
-    part_out = out;
-  }
-  if (!frame->determined || !frame->fit.locate(rows, kept)) return false;
+  if (!frame->fit.locate(rows, kept)) return false;
   std::fill(influence.begin(), influence.end(), 0.0);
   if (a.bounded) std::fill(noise.begin(), noise.end(), 0.0);
   const Eigen::Index n = frame->fit.state().size();
@@ -167,8 +170,9 @@ bool LeverageWorkspace::Room::fit_rows(const Rows& rows, const Assumption& a) {
   return true;
 }
 
-/// mu: what `left` liars leave of the leverage.
+/// mu: what `left` liars leave of the leverage; 0 when the kept rows do not determine the state.
 double LeverageWorkspace::Room::spare(int left) {
+  if (!frame->determined) return 0.0;
   if (frame->left == left) return frame->mu;
   frame->left = left;
   frame->mu = 1.0 - top(frame->leverage, left);
@@ -215,9 +219,10 @@ const Witness& leverage_ball(const Rows& rows, const Assumption& a, LeverageWork
       break;
     }
     if (room.own && !refuted) break;
-    if (!room.fit_rows(rows, a)) break;
+    room.choose_frame(rows);
+    // Whether there is an answer does not depend on the measurements: no sums over them when there is none.
     const double mu = room.spare(left);
-    if (!(mu > kLeast)) break;
+    if (!(mu > kLeast) || !room.fit_rows(rows, a)) break;
     const double bG = room.in_frame(rows, a, left, mu);
     const detail::LeastSquares& fit = room.frame->fit;
     const double b = bG / std::sqrt(fit.least());

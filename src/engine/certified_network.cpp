@@ -17,6 +17,7 @@ struct CertifiedNetwork::Agents {
   bool reaches_all = false;
   std::int64_t bare_bytes = 0;               // of such a sample, measurements and regions aside
   std::int64_t region_bytes = 0;             // of the regions
+  std::int64_t bytes_of_region = 0;          // in one message
   std::vector<std::int64_t> measured_bytes;  // and of each measurement
   bool alike = false;  // all relay the same region, and where all is flooded also found the same
 
@@ -37,14 +38,16 @@ void CertifiedNetwork::Agents::plan_at_once(const certificate::Plan& plan, const
   for (int i = 0; i < network.agents(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     const std::int64_t messages = static_cast<std::int64_t>(rounds) * listeners[at];
+    bytes_of_region = static_cast<std::int64_t>(8 * said[at].ball.size());
     bare_bytes += messages * static_cast<std::int64_t>(wire::size(said[at], network.agents()));
-    region_bytes += messages * static_cast<std::int64_t>(8 * said[at].ball.size());
+    region_bytes += static_cast<std::int64_t>(flooded ? std::min(rounds, certificate::kRepeats) : rounds) *
+                    listeners[at] * bytes_of_region;
     std::int64_t heard = listeners[at];  // how often this agent's measurement is
     if (flooded) {
       heard = 0;
       for (int j = 0; j < network.agents(); ++j)
         heard += static_cast<std::int64_t>(listeners[static_cast<std::size_t>(j)]) *
-                 (rounds - std::min(rounds, flood.hops(i, j)));
+                 std::clamp(rounds - flood.hops(i, j), 0, certificate::kRepeats);
     }
     measured_bytes.insert(measured_bytes.end(), static_cast<std::size_t>(plan.outputs(i)), 8 * heard);
   }
@@ -69,8 +72,7 @@ std::int64_t CertifiedNetwork::Agents::bytes_of_first_regions(int rounds,
       if (certifiers[static_cast<std::size_t>(j)]->memory().age >= 0)
         earliest = std::min(earliest, flood.hops(j, i));
     const auto at = static_cast<std::size_t>(i);
-    bytes += static_cast<std::int64_t>(rounds - 1 - earliest) * listeners[at] *
-             static_cast<std::int64_t>(8 * said[at].ball.size());
+    bytes += static_cast<std::int64_t>(rounds - 1 - earliest) * listeners[at] * bytes_of_region;
   }
   return bytes;
 }

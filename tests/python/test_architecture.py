@@ -15,7 +15,7 @@ LAYERS = (
     ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms"),
     ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform", "labelled"),
     ("attacks", "record", "doubts", "refuted", "varying"),
-    ("drivers", "kalman", "fitting", "fitting_full", "identifying", "calibration", "certificate"),
+    ("drivers", "kalman", "fitting", "fitting_full", "identifying", "calibration", "certificate", "exposing"),
     ("prepared", "designing", "certifying"),
     ("resilience", "mitigation", "lmi", "scenario", "answers"),
     ("jobs", "anatomy", "sweeps", "comparison", "importers"),

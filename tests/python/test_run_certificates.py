@@ -8,7 +8,9 @@ from pathlib import Path
 import garrison as gr
 import numpy as np
 import pytest
+from conftest import ROOT
 from garrison.cli import main
+from garrison.scenario import read_scenario
 
 NAMES = ("truth", "bound", "bound_kind", "published")
 
@@ -87,9 +89,14 @@ def test_the_data_free_table_bounds_where_the_published_bound_ends() -> None:
     plain = gr.simulate(model, network, gr.filters.Saturation(**options), **told)
     table = gr.filters.Saturation(**options, table=True)
     run = gr.simulate(model, network, table, **told)
-    assert np.isnan(plain.bound[0, 10:]).all() and (run.bound_kind[0, 10:] == gr.BoundKind.TABLE).all()
+    assert (run.bound_kind[0, 5] == gr.BoundKind.TABLE).all()  # the attacker is proved in this sample
+    assert np.isnan(plain.bound[0, 10:]).all() and (run.bound_kind[0, 10:] == gr.BoundKind.INFORMED).all()
     assert (run.error <= run.bound).all()
-    assert gr.check(model, network, table)["table bound"] == pytest.approx(run.bound[0, -1].max(), rel=2e-3)
+    table_bound = gr.check(model, network, table)["table bound"]
+    assert run.bound[0, -1].max() < table_bound
+    calm = gr.simulate(model, network, table, steps=200, conditions=False)
+    assert (calm.bound_kind[0, -1] == gr.BoundKind.TABLE).all()
+    assert table_bound == pytest.approx(calm.bound[0, -1].max(), rel=2e-3)
 
 
 def test_a_bound_for_fewer_liars_does_not_stand_in_for_the_certificate() -> None:
@@ -194,3 +201,35 @@ def test_fit_stores_levels_that_clean_records_keep(wind: Path, tmp_path: Path) -
     assert levels["z1"] > gaussian[0] and levels["z2"] > gaussian[1]  # tails of real records
     assert np.allclose(kept["inflated"]["measurement_bound"], 1.1 * np.array(kept["measurement_bound"]))
     assert kept["inflated"]["process_bound"] == pytest.approx(1.1 * kept["process_bound"])
+
+
+def test_levels_of_clean_records_take_the_place_of_the_gaussian_ones() -> None:
+    told = {"certificate": "flooded", "failure": 1e-3, "attacked": 1}
+    runs = {"steps": 20, "seed": 1, "conditions": False}
+    plain = gr.simulate(*parts(), **told, **runs)
+    wide = gr.simulate(*parts(), **told, **runs, levels=(9.0, 9.0))
+    assert (wide.bound[:, 1:] > plain.bound[:, 1:]).all()
+    design = gr.prepare(*parts(), **told, levels=(9.0, 9.0))
+    assert design.certificate == told | {"levels": (9.0, 9.0)}
+    assert np.array_equal(design.simulate(**runs).bound, wide.bound)
+    assert "clean records" in str(gr.check(*parts(), **told, levels=(9.0, 9.0)))
+
+
+@pytest.mark.parametrize("levels", [(1.0,), (0.0, 1.0), (4.0, float("nan")), "calibrated", 5.0])
+def test_levels_that_are_none_are_refused(levels: object) -> None:
+    with pytest.raises(gr.InvalidInput, match="levels"):
+        gr.prepare(*parts(), certificate="flooded", failure=1e-3, attacked=1, levels=levels)
+    with pytest.raises(gr.InvalidInput, match="levels"):
+        gr.prepare(*parts(), certificate="flooded", failure=0.0, attacked=1, levels=(4.0, 4.0))
+
+
+def test_a_scenario_takes_the_levels_of_its_fit() -> None:
+    wind = ROOT / "examples" / "wind" / "hijacked.toml"
+    scenario = read_scenario(wind, set={"certificate.failure": 1e-3, "certificate.levels": "calibrated"})
+    assert scenario.fitted is not None
+    assert scenario.certificate["levels"] == scenario.fitted.levels(3, 1e-3)
+    given = read_scenario(wind, set={"certificate.levels": [6.0, 5.5]})
+    assert given.certificate["levels"] == (6.0, 5.5)
+    for wrong, why in (({"failure": 1e-6, "levels": "calibrated"}, "failure >="), ({"levels": "all"}, "levels")):
+        with pytest.raises(gr.InvalidInput, match=why):
+            read_scenario(wind, set={f"certificate.{key}": value for key, value in wrong.items()})

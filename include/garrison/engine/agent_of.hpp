@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "garrison/certificate/online/certifier.hpp"
 #include "garrison/engine/agent.hpp"
+#include "garrison/engine/evidence_shelf.hpp"
 #include "garrison/wire/archive.hpp"
 #include "garrison/wire/blake2b.hpp"
 #include "garrison/wire/message.hpp"
@@ -45,9 +47,7 @@ class AgentOf final : public Agent {
     silence_.assign(static_cast<std::size_t>(local_.outputs), kNaN);
     set_state(Vector::Zero(local_.states), start());
     mailbox_.assign(places, outgoing_);
-    evidence_.resize(certifier_ ? places : 0);
-    for (std::size_t k = 0; k < evidence_.size(); ++k)
-      certifier_->shape_evidence(part_.neighbours[k % part_.neighbours.size()], evidence_[k]);
+    if (certifier_) evidence_.emplace(*certifier_, part_.neighbours, places);
     Message any = outgoing_;
     most_bytes_ = 0;
     const auto look_at = [&](int sender, certificate::Evidence& said) {
@@ -109,7 +109,7 @@ class AgentOf final : public Agent {
     const std::size_t at = place(t, envelope.round, neighbour);
     if (arrived_[at] == t) return Refusal::duplicate;
     shape<F, n>(local_, *gains_, envelope.sender, t, mailbox_[at]);
-    const Refusal refusal = decode(body, at);
+    const Refusal refusal = decode(body, at, neighbour);
     if (refusal == Refusal::none) arrived_[at] = t;
     return refusal;
   }
@@ -333,14 +333,17 @@ class AgentOf final : public Agent {
                             const Use& use) const noexcept {
     return certifier_ ? use(Both{message, evidence}) : use(message);
   }
-  Refusal decode(std::span<const std::byte> body, std::size_t place) noexcept {
+  Refusal decode(std::span<const std::byte> body, std::size_t place, std::size_t neighbour) noexcept {
     if (!certifier_) return wire::decode(body, local_.agents, mailbox_[place]);
-    Both both{mailbox_[place], evidence_[place]};
+    Both both{mailbox_[place], evidence_->open(place, neighbour)};
     return wire::decode(body, local_.agents, both);
   }
   void hear_evidence(const Inbox<Message>& inbox) noexcept {
-    for (std::size_t k = 0; k < inbox.size(); ++k)
-      certifier_->hear(round_, inbox.sender(k), evidence_[slots_[k]]);
+    std::size_t neighbour = 0;  // both are in ascending order
+    for (std::size_t k = 0; k < inbox.size(); ++k) {
+      while (part_.neighbours[neighbour] != inbox.sender(k)) ++neighbour;
+      certifier_->hear(round_, inbox.sender(k), evidence_->take(slots_[k], neighbour));
+    }
   }
 
   /// Place of an agent among the neighbours; their number when it is none of them.
@@ -374,7 +377,7 @@ class AgentOf final : public Agent {
   State state_;
   Message outgoing_;
   std::vector<Message> mailbox_;
-  std::vector<certificate::Evidence> evidence_;  // of the message in each place; empty without a certificate
+  std::optional<EvidenceShelf> evidence_;  // of the message in each place; none without a certificate
   certificate::Evidence said_;
   std::vector<std::int64_t> arrived_;  // the sample that the message in each place is of
   std::vector<std::uint32_t> slots_;   // of the round that is being fused

@@ -5,19 +5,30 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace garrison::wire {
 
 static_assert(std::numeric_limits<double>::is_iec559);
 
+// The loops are for big-endian processors: compilers do not turn them into one access everywhere.
+
 template <class Unsigned>
 void store(std::byte* at, Unsigned value) noexcept {
+  if constexpr (std::endian::native == std::endian::little) {
+    std::memcpy(at, &value, sizeof(Unsigned));
+    return;
+  }
   for (std::size_t k = 0; k < sizeof(Unsigned); ++k) at[k] = static_cast<std::byte>(value >> (8 * k));
 }
 template <class Unsigned>
 Unsigned load(const std::byte* at) noexcept {
   Unsigned value = 0;
+  if constexpr (std::endian::native == std::endian::little) {
+    std::memcpy(&value, at, sizeof(Unsigned));
+    return value;
+  }
   for (std::size_t k = 0; k < sizeof(Unsigned); ++k)
     value |= static_cast<Unsigned>(static_cast<Unsigned>(std::to_integer<std::uint8_t>(at[k])) << (8 * k));
   return value;

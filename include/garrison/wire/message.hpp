@@ -138,33 +138,21 @@ class Decoder : public NumbersOf<Decoder> {
     if (!has(bytes)) return;
     const std::byte* const bits = at_;
     at_ += bytes;
-    for (std::size_t first = 0; first < values.size(); first += 8) {
-      const unsigned present = std::to_integer<unsigned>(bits[first / 8]);
-      const std::size_t count = std::min<std::size_t>(8, values.size() - first);
-      double* const group = values.data() + first;
-      if (present >> count != 0) return refuse_as(Refusal::set);
-      if (!has(8 * ones(present))) return;
-      bool fine = true;
-      // All or none of a group is what there is almost always.
-      if (present == 0) {
-        std::fill_n(group, count, kNaN);
-      } else if (present == (1U << count) - 1U) {
-        for (std::size_t k = 0; k < count; ++k) {
-          group[k] = load_double(at_ + 8 * k);
-          fine &= std::abs(group[k]) < kHuge;
-        }
-        at_ += 8 * count;
-      } else {
-        for (std::size_t k = 0; k < count; ++k) {
-          group[k] = kNaN;
-          if ((present >> k & 1U) == 0) continue;
-          group[k] = load_double(at_);
-          fine &= std::abs(group[k]) < kHuge;
-          at_ += 8;
-        }
+    std::size_t present = 0;
+    for (std::size_t first = 0; first < bytes; first += 8) present += ones(word(bits, first, bytes));
+    const std::size_t beyond = 8 * bytes - values.size();
+    if (beyond > 0 && std::to_integer<unsigned>(bits[bytes - 1]) >> (8 - beyond) != 0)
+      return refuse_as(Refusal::set);
+    if (!has(8 * present)) return;
+    bool fine = true;
+    for (std::size_t k = 0; k < present; ++k) fine &= std::abs(load_double(at_ + 8 * k)) < kHuge;
+    if (!fine) return refuse_as(Refusal::number);
+    if (present < values.size()) std::fill(values.begin(), values.end(), kNaN);
+    for (std::size_t first = 0; first < bytes && present > 0; first += 8)
+      for (std::uint64_t rest = word(bits, first, bytes); rest != 0; rest &= rest - 1) {
+        values[8 * first + static_cast<std::size_t>(std::countr_zero(rest))] = load_double(at_);
+        at_ += 8;
       }
-      if (!fine) return refuse_as(Refusal::number);
-    }
   }
   void numbers(std::string_view, std::span<double> values) {
     if (!has(8 * values.size())) return;
@@ -218,11 +206,18 @@ class Decoder : public NumbersOf<Decoder> {
   }
 
  private:
-  /// Bits that are set in a byte; without a call, which std::popcount is on the oldest processors.
-  static constexpr std::size_t ones(unsigned byte) {
-    byte -= byte >> 1 & 0x55U;
-    byte = (byte & 0x33U) + (byte >> 2 & 0x33U);
-    return (byte + (byte >> 4)) & 0x0fU;
+  /// Up to eight bytes as a word, the first one in the lowest bits.
+  static std::uint64_t word(const std::byte* bits, std::size_t first, std::size_t bytes) {
+    std::uint64_t all = 0;
+    for (std::size_t k = 0; k < 8 && first + k < bytes; ++k)
+      all |= std::to_integer<std::uint64_t>(bits[first + k]) << (8 * k);
+    return all;
+  }
+  /// Bits that are set; without a call, which std::popcount is on the oldest processors.
+  static constexpr std::size_t ones(std::uint64_t bits) {
+    bits -= bits >> 1 & 0x5555555555555555U;
+    bits = (bits & 0x3333333333333333U) + (bits >> 2 & 0x3333333333333333U);
+    return ((bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fU) * 0x0101010101010101U >> 56;
   }
   int take16() {
     const int value = load<std::uint16_t>(at_);

@@ -710,6 +710,10 @@ class Design:
         certificate: str = "none",
         failure: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
         attacked: typing.SupportsInt | typing.SupportsIndex = 0,
+        levels: tuple[
+            typing.SupportsFloat | typing.SupportsIndex,
+            typing.SupportsFloat | typing.SupportsIndex,
+        ] = (0.0, 0.0),
     ) -> None: ...
     def agent(self, id: typing.SupportsInt | typing.SupportsIndex) -> Agent: ...
     def part(self, id: typing.SupportsInt | typing.SupportsIndex) -> bytes:
@@ -720,7 +724,7 @@ class Design:
     @property
     def certificate(self) -> typing.Any:
         """
-        What its runs certify (certificate, failure, attacked); None = nothing but the family's own bound.
+        What its runs certify (certificate, failure, attacked, and levels if given); None = nothing but the family's own bound.
         """
     @property
     def filter(self) -> typing.Any: ...

@@ -49,7 +49,7 @@ def _draw_bounds(ax: Any, scenario: Scenario, shown: list[Row]) -> None:
         _draw_bound(ax, scenario, row.run.bound, "certified bound", color=colour, linewidth=3, alpha=0.35)
         if row.run.published is not None:
             look = {"color": "#666666", "linewidth": 1.2, "linestyle": (0, (6, 2))}
-            _draw_bound(ax, scenario, row.run.published, "published bound", **look)
+            _draw_bound(ax, scenario, row.run.published, "published bound, where it holds", **look)
         return
 
 

@@ -73,7 +73,8 @@ def _errors(run: Run, trial: int, ax: Any, agents: Any) -> bool:
     if run.bound is not None and np.isfinite(run.bound[trial]).any():
         ax.plot(_drawn(run.bound[trial][:, agents]), color="#D55E00", linestyle="-.", label="certified bound")
         if run.published is not None and np.isfinite(run.published[trial]).any():
-            ax.plot(_drawn(run.published[trial][:, agents]), color="#666666", linestyle=":", label="published bound")
+            published = _drawn(run.published[trial][:, agents])
+            ax.plot(published, color="#666666", linestyle=":", label="published bound, where it holds")
     log_scale(ax, error)
     unit = common_unit(run)
     ax.set_ylabel(f"error ({plain(unit)})" if unit else "error")

@@ -150,11 +150,12 @@ def _error_note(scenario: Scenario) -> str:
             "attackers send."
         )
     failure = wanted["failure"]
-    law = (
-        "for the worst noise that the model allows"
-        if failure == 0
-        else f"except with probability {failure:g} per agent and sample, for the model's noise"
-    )
+    if failure == 0:
+        law = "for the worst noise that the model allows"
+    elif "levels" in wanted:
+        law = f"at levels that noise like that of clean records exceeds at the rate {failure:g}"
+    else:
+        law = f"except with probability {failure:g} per agent and sample, for the model's noise"
     return (
         f"{means}The certified bound is the largest of any agent: it holds {law}, whatever the attackers send "
         "and whatever messages are lost, for any filter. The published bound is what the filter's paper alone promises."

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.arguments import ONE_SPREAD, SPREADS
+from garrison.arguments import ONE_SPREAD, SPREADS, pair_of_levels
 from garrison.fitting import Fit
 from garrison.numeric import numbers
 from garrison.objects import named
@@ -34,7 +34,7 @@ TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "d
 RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error", "inputs"]
 LINK_KEYS = ["drop", "delay", "delay_rounds"]
 NOISE_KEYS = ["law"]
-CERTIFICATE_KEYS = ["spread", "failure", "attacked"]
+CERTIFICATE_KEYS = ["spread", "failure", "attacked", "levels"]
 
 
 @dataclass
@@ -152,6 +152,7 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
         places=ground.places,
         fitted=fitted,
     )
+    _levels(scenario.certificate, fitted, "[certificate] levels")
     _put(scenario, recording)
     for entry in tables_of("attack", document.get("attack", []), folder):
         scenario.attacks.append(read_attack(entry, names, scenario.records, scenario.steps))
@@ -228,7 +229,29 @@ def _certificate(section: Section) -> dict[str, Any]:
         raise refusal(section.place("failure"), shown(out["failure"]), "a probability in [0, 1)", "0 = deterministic")
     if "attacked" in section:
         out["attacked"] = section.whole("attacked", 0, 0)
+    if "levels" in section:
+        out["levels"] = section.table["levels"]
     return out
+
+
+def _levels(certificate: dict[str, Any], fitted: Fit | None, where: str) -> None:
+    """Puts numbers in place of the word: the levels that the records of the fit exceed at the rate `failure`."""
+    given = certificate.get("levels")
+    if given != "calibrated":
+        if given is not None:
+            certificate["levels"] = pair_of_levels(given)
+        return
+    words = '"calibrated" with a model that is fitted to records, or [z1, z2]'
+    if fitted is None:
+        raise refusal(where, shown(given), words)
+    if "attacked" not in certificate:
+        raise refusal(where, shown(given), "`attacked` beside it", "the levels depend on it")
+    found = fitted.levels(certificate["attacked"], certificate["failure"]) if certificate["failure"] > 0 else None
+    if found is None:
+        least = 2.0 / (len(fitted.records.dates) + 1)
+        advice = f"take failure >= {least:.2g}; for several states there are none"
+        raise refusal(where, f"{shown(given)} with failure {certificate['failure']:g}", words, advice)
+    certificate["levels"] = found
 
 
 def _noise(section: Section, recording: Recording | None) -> str:

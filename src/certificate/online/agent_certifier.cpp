@@ -76,6 +76,7 @@ AgentCertifier::AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::sp
   for (const std::size_t r : row_) source_.push_back(number.at(plan_->source[r]));
   one_row_each_ = number.size() == row_.size();
   y_.resize(row_.size());
+  since_.resize(row_.size());
   present_.resize(row_.size());
   used_.resize(row_.size());
   ends_.resize(2 * row_.size());
@@ -124,6 +125,7 @@ void AgentCertifier::move_to(std::int64_t t) noexcept {
   std::fill(y_.begin(), y_.end(), kNaN);
   known_ = 0;
   judged_ = false;
+  region_since_ = next_round_ = 0;
 }
 
 void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
@@ -155,28 +157,31 @@ void AgentCertifier::begin_knowing(std::int64_t t, const double* all, const Agen
 void AgentCertifier::learn(std::size_t at, double y) noexcept {
   if (!std::isnan(y_[at]) || !(std::abs(y) < kHuge)) return;
   y_[at] = y;
+  since_[at] = next_round_;
   ++known_;
 }
 
 void AgentCertifier::say(int round, Evidence& out) const noexcept {
   if (flooded_) {
-    std::copy(y_.begin(), y_.end(), out.measurements.begin());
+    for (std::size_t k = 0; k < y_.size(); ++k)
+      out.measurements[k] = round < since_[k] + kRepeats ? y_[k] : kNaN;
   } else {
     const auto me =
         static_cast<std::size_t>(std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin());
     for (std::size_t k = 0; k < out.measurements.size(); ++k)
       out.measurements[k] = round == 0 ? y_[at_[me] + k] : kNaN;
   }
-  const bool has = memory_.age >= 0 && !direct_;
+  if (direct_) return;
+  const bool has = memory_.age >= 0 && (!flooded_ || round < region_since_ + kRepeats);
   out.age = has ? memory_.age : 0;
   out.fresh = has ? memory_.fresh : 0;
-  if (direct_) return;
   std::copy(memory_.ball.begin(), memory_.ball.end(), out.ball.begin());
   out.ball.back() = memory_.ball_radius;
   if (!has) std::fill(out.ball.begin(), out.ball.end(), kNaN);
 }
 
 void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
+  next_round_ = round + 1;
   if (flooded_) {
     for (std::size_t k = 0; k < y_.size() && known_ < static_cast<int>(y_.size()); ++k)
       learn(k, in.measurements[k]);
@@ -185,10 +190,10 @@ void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
     for (std::size_t k = 0; k < in.measurements.size(); ++k)
       learn(at_[static_cast<std::size_t>(at)] + k, in.measurements[k]);
   }
-  if (direct_) return;
+  if (direct_ || !(in.ball.back() >= 0.0)) return;
   bool whole = in.age <= std::max(plan_->ages(), 0) && in.fresh <= in.age && eligible(in.age, in.fresh);
   for (const double v : in.ball) whole = whole && !std::isnan(v);
-  if (whole && in.ball.back() >= 0.0) offer(in.ball.data(), in.ball.back(), in.age, in.fresh);
+  if (whole) offer(in.ball.data(), in.ball.back(), in.age, in.fresh);
 }
 
 void AgentCertifier::end_round(int round) noexcept {

@@ -70,6 +70,9 @@ class AgentCertifier final : public Certifier {
   std::vector<std::size_t> row_;  // in the plan, of each entry of y_
   std::vector<int> source_;       // numbered from 0 among the rows that may become known
   std::vector<double> y_;         // NaN = not known (yet)
+  std::vector<int> since_;        // first round in which each entry of y_ is passed on
+  int region_since_ = 0;          // the same of the region
+  int next_round_ = 0;            // in which what is heard now can be passed on
   int known_ = 0;
   bool one_row_each_ = true;          // no source has several rows
   std::vector<char> present_, used_;  // of each entry of y_: it was known, and is a row, in rows_

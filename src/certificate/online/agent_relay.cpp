@@ -32,6 +32,7 @@ bool AgentCertifier::goes_before(const double* center, double radius, int age) c
 
 /// Takes over a ball that is better than the own one.
 void AgentCertifier::offer(const double* center, double radius, int age, int fresh) noexcept {
+  if (memory_.age < 0 || fresh < memory_.fresh) region_since_ = next_round_;
   if (memory_.age >= 0) {
     memory_.fresh = std::min(memory_.fresh, fresh);
     if (!eligible(age, memory_.fresh)) return;

@@ -23,6 +23,11 @@ void require_wanted(const Wanted& wanted, const Model& model) {
   if (wanted.attacked < 0) refuse("attacked", std::to_string(wanted.attacked), "a whole number >= 0");
   if (wanted.subsets < 0 || wanted.subsets > 1000000)
     refuse("subsets", std::to_string(wanted.subsets), "a whole number in 0..1000000");
+  const bool given = wanted.z1 != 0.0 || wanted.z2 != 0.0;
+  if (given && !(wanted.z1 > 0.0 && wanted.z1 < kHuge && wanted.z2 > 0.0 && wanted.z2 < kHuge))
+    refuse("levels", text(wanted.z1) + " and " + text(wanted.z2), "two numbers > 0, in standard deviations");
+  if (given && wanted.failure == 0.0)
+    refuse("levels", "levels with failure = 0", "none", "noise within its bounds exceeds no level");
   if (wanted.failure == 0.0) {
     if (model.noise().measurement_bound.size() == 0)
       refuse("failure", "0 with a model without measurement_bound", "bounds on all measurement noises",
@@ -134,7 +139,10 @@ Plan make_plan(const Wanted& wanted, const Model& model, const Network& network)
     }
     plan.first.push_back(model.offset(i) + model.outputs(i));
   }
-  if (!plan.deterministic()) {
+  if (wanted.z1 > 0.0) {
+    plan.z1 = wanted.z1;
+    plan.z2_full = plan.z2_partial = wanted.z2;
+  } else if (!plan.deterministic()) {
     const double share = kSampleShare * wanted.failure;
     plan.z1 = two_sided(share / plan.all_rows);
     plan.z2_full = chi(share, model.states());

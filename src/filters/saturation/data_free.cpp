@@ -28,11 +28,31 @@ certificate::Kernels kernels_of(const certificate::ErrorSystem& system) {
   }
 }
 
+/// Hops between the agents that are furthest apart; of a connected network.
+int diameter(const Network& network) {
+  int furthest = 0;
+  const auto N = static_cast<std::size_t>(network.agents());
+  for (int from = 0; from < network.agents(); ++from) {
+    std::vector<int> hops(N, -1);
+    std::vector<int> queue{from};
+    hops[static_cast<std::size_t>(from)] = 0;
+    for (std::size_t at = 0; at < queue.size(); ++at)
+      for (const int j : network.neighbours(queue[at])) {
+        int& found = hops[static_cast<std::size_t>(j)];
+        if (found >= 0) continue;
+        found = hops[static_cast<std::size_t>(queue[at])] + 1;
+        queue.push_back(j);
+      }
+    furthest = std::max(furthest, hops[static_cast<std::size_t>(queue.back())]);
+  }
+  return furthest;
+}
+
 }  // namespace
 
 DataFree DataFree::of(int agent) const {
   if (empty()) return {};
-  return {d.col(column(agent)), H.col(column(agent)), agent};
+  return {d.col(column(agent)), H.col(column(agent)), worst, proved.of(column(agent)), agent};
 }
 
 Matrix averaging(const Network& network, double alpha, std::span<const double> omega, int rounds) {
@@ -59,8 +79,9 @@ DataFree data_free(const Model& model, const Network& network, const DataFreeOpt
   if (numbers > kMostNumbers)
     refuse("saturation.table", "a network of " + std::to_string(numbers) + " numbers (agents times states)",
            "at most " + std::to_string(kMostNumbers), "leave it out: the bound of the paper remains");
-  const auto system = certificate::error_system(model.A(), detail::sensor_rows(model),
-                                                averaging(network, o.alpha, o.omega, o.rounds));
+  const Matrix C = detail::sensor_rows(model);
+  const Matrix J = averaging(network, o.alpha, o.omega, o.rounds);
+  const auto system = certificate::error_system(model.A(), C, J);
   const auto kernels = kernels_of(system);
   const double b_w = model.noise().process_bound;
   const Vector& b_v = model.noise().measurement_bound;
@@ -89,6 +110,9 @@ DataFree data_free(const Model& model, const Network& network, const DataFreeOpt
     found.d.row(last) = table->steady->d.transpose();
     found.H.row(last) = (table->steady->eta + system.row_length * b_w + b_v).transpose();
   }
+  found.worst = found.d.rowwise().maxCoeff();
+  if (o.detector && o.rounds > 0)
+    found.proved = proved_sets(model.A(), C, J, o.attacked, diameter(network), o.rounds, b_w, b_v);
   return found;
 }
 

@@ -62,9 +62,9 @@ Saturation::Gains Saturation::design(const Params& p, const Model& model, const 
   const Facts facts = saturation::detail::facts(model, p.attacked, p.adaptive);
   g.setting = saturation::detail::setting(p, model, facts, rates);
   if (p.table)
-    g.table = saturation::data_free(
-        model, network,
-        {p.attacked, p.initial_error, p.adaptive ? kNaN : p.threshold, g.alpha, g.omega, g.rounds});
+    g.table = saturation::data_free(model, network,
+                                    {p.attacked, p.initial_error, p.adaptive ? kNaN : p.threshold, g.alpha,
+                                     g.omega, g.rounds, p.detector});
   if (p.adaptive) {
     g.varpi = facts.varpi;
     return g;

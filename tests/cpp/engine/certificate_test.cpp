@@ -47,7 +47,7 @@ Setup setup(int n, std::uint64_t seed) {
 const std::vector<Wanted> kWanted{{Spread::local, 0.0, 1, 1000},    {Spread::local, 1e-6, 1, 1000},
                                   {Spread::direct, 1e-6, 1, 1000},  {Spread::direct, 0.0, 1, 1000},
                                   {Spread::flooded, 1e-6, 1, 1000}, {Spread::flooded, 1e-6, 1, 0},
-                                  {Spread::flooded, 0.0, 1, 1000}};
+                                  {Spread::flooded, 0.0, 1, 1000},  {Spread::local, 1e-3, 1, 0, 6.0, 5.5}};
 
 /// Bounds of agents driven by hand, [time][agent], with their kinds behind.
 struct ByHand {
@@ -294,4 +294,50 @@ TEST_CASE("a certificate that cannot be given is refused by name") {
   CHECK_THROWS_WITH_AS(
       certified(*filter->prepare(bounded, Network::complete(3)), {Spread::local, 0.0, 3, 1000}),
       doctest::Contains("attacked: got 3"), InvalidInput);
+}
+
+TEST_CASE("levels that are given take the place of those of the covariances") {
+  const Setup s = setup(3, 12);
+  const auto plan = certificate::make_plan({Spread::flooded, 1e-3, 1, 1000, 6.0, 5.5}, s.model, s.network);
+  CHECK(plan.z1 == 6.0);
+  CHECK(plan.z2_full == 5.5);
+  CHECK(plan.z2_partial == 5.5);
+  const auto refused = [&](const Wanted& wanted, const char* why) {
+    CHECK_THROWS_WITH_AS(certificate::make_plan(wanted, s.model, s.network), doctest::Contains(why),
+                         InvalidInput);
+  };
+  refused({Spread::flooded, 1e-3, 1, 1000, 6.0, 0.0}, "levels: got 6 and 0");
+  refused({Spread::flooded, 1e-3, 1, 1000, kNaN, 5.5}, "two numbers > 0");
+  refused({Spread::flooded, 0.0, 1, 1000, 6.0, 5.5}, "levels with failure = 0");
+}
+
+TEST_CASE("what is flooded reaches everybody although each agent passes it on a few times only") {
+  // A chain: everything has to pass through everybody.
+  const int N = 6;
+  std::vector<Edge> edges;
+  for (int i = 0; i + 1 < N; ++i) edges.push_back({i, i + 1});
+  const Network network(N, edges);
+  const Model model(Matrix::Identity(1, 1), std::vector<Matrix>(N, Matrix::Ones(1, 1)),
+                    {kNaN, {}, Matrix::Identity(1, 1), std::vector<Matrix>(N, Matrix::Ones(1, 1))});
+  const auto filter = make_filter("scalar_gain", {{"rounds", std::int64_t{12}}});
+  // Estimates stay 0, so a bound tells how many rows it is of.
+  const auto prepared = certified(*filter->prepare(model, network), {Spread::flooded, 1e-6, 1, 0});
+  const Matrix y = Matrix::Zero(1, N);
+  RunOptions o;
+  o.start = Vector::Zero(1);
+  const Record all = replay(*prepared, Log{y.data(), nullptr, 1, 1}, o);
+  std::size_t whole = 0;
+  constexpr int kSeeds = 200;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    o.seed = static_cast<std::uint64_t>(seed);
+    o.link = LinkFaults{.drop = 0.05};
+    const Record lossy = replay(*prepared, Log{y.data(), nullptr, 1, 1}, o);
+    for (int i = 0; i < N; ++i) {
+      const auto at = static_cast<std::size_t>(N + i);
+      CHECK((lossy.bound[at] >= all.bound[at] || std::isinf(lossy.bound[at])));
+      whole += lossy.bound[at] == all.bound[at] ? 1 : 0;
+    }
+  }
+  MESSAGE("all rows at an agent: " << whole << " of " << kSeeds * N << " at 5 % loss");
+  CHECK(whole > 0.98 * kSeeds * N);
 }

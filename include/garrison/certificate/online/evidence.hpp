@@ -14,10 +14,15 @@ inline constexpr int kMostAge = 1000;
 /// With Gaussian noise a region may be so many samples older than the freshest that was to be had.
 inline constexpr int kChoice = 3;
 
+/// Flooded, a measurement is passed on in so many rounds after it became known, and a region after the
+/// freshest that was to be had changed; both are decided by losses alone. One is enough where nothing is
+/// lost.
+inline constexpr int kRepeats = 3;
+
 /// Fields in the sense of core/fields.hpp; drivers put them behind those of the filter's message.
 struct Evidence {
-  /// The sender's own measurements (local; in the first round only), or those of the whole network that it
-  /// knows (flooded). NaN = absent.
+  /// The sender's own measurements (local; in the first round only), or those of the whole network that have
+  /// become known to it of late (flooded). NaN = absent.
   std::vector<double> measurements;
   /// A region that contains the state unless a named assumption is false: its centre, moved to this sample,
   /// and its radius when it was new; all absent = none.
@@ -29,6 +34,7 @@ struct Evidence {
   template <class V>
   void visit(V& v) {
     v.sparse("certificate.measurements", measurements);
+    if (ball.empty()) return;
     v.sparse("certificate.ball", ball);
     v.count("certificate.age", age, kMostAge);
     v.count("certificate.fresh", fresh, kMostAge);

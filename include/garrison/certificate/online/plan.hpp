@@ -27,6 +27,10 @@ struct Wanted {
   double failure = 1e-6;
   int attacked = 0;    ///< s
   int subsets = 1000;  ///< W3 is used where at most so many sets of honest sources are to be tried, else W2
+  /// Levels of W instead of those of the covariances, in standard deviations: those that clean records exceed
+  /// at the rate `failure` (calibrated_levels), whatever their law. Both 0 = none.
+  double z1 = 0.0;
+  double z2 = 0.0;
 
   bool operator==(const Wanted&) const = default;
   template <class V>
@@ -35,6 +39,8 @@ struct Wanted {
     v("failure", failure);
     v.range("attacked", attacked, 0, INT32_MAX);
     v.range("subsets", subsets, 0, 1000000);
+    v("z1", z1);
+    v("z2", z2);
   }
 };
 
@@ -45,7 +51,8 @@ struct Wanted {
 /// leave, one per agent, beyond z2_partial (T2). An agent uses its own region of this sample and one that was
 /// relayed: the smallest of those that are at most kChoice samples older than the freshest to be had, whose
 /// age losses alone decide. So it rests on kChoice + 2 events F, which share three quarters, and on kChoice +
-/// 1 sums of process noise, which share the rest.
+/// 1 sums of process noise, which share the rest. With levels that are given, each F fails with `failure` for
+/// an agent, and a bound with at most kChoice + 2 and a quarter of it.
 struct GARRISON_EXPORT Plan {
   Wanted wanted;
   bool family = true;  ///< the bound of the filter's family holds for as many attacked sources, too

@@ -8,6 +8,7 @@
 #include "garrison/core/error.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
+#include "garrison/filters/saturation/proved_sets.hpp"
 
 namespace garrison::saturation {
 
@@ -16,11 +17,19 @@ namespace garrison::saturation {
 struct DataFree {
   Matrix d;  ///< steps + 2 rows, a column per agent: ||e_i(t)|| <= d(t, i); the last row holds for ever after
   Matrix H;  ///< the same for honest innovations: |h_j(t)| <= H(t, j); row 0 is NaN
-  int only = -1;  ///< of this agent alone, in column 0; -1 = of all
+  Vector worst;       ///< the largest of each row of d, over all agents
+  ProvedSets proved;  ///< with the detector: once all attackers are
+  int only = -1;      ///< of this agent alone, in column 0; -1 = of all
 
   bool empty() const { return d.size() == 0; }
   double bound(int agent, std::int64_t t) const { return d(row(t), column(agent)); }
   double level(int agent, std::int64_t t) const { return H(row(t), column(agent)); }
+  /// Bound once all attackers are proved: `set` of `proved`, which the agent's list was first at the end of
+  /// sample `full`.
+  double bound_after(int agent, std::int64_t t, int set, std::int64_t full) const {
+    const std::int64_t t0 = full + proved.spread;
+    return proved.bound(set, column(agent), t - t0, worst(row(t0)));
+  }
   /// What one agent needs of it.
   GARRISON_EXPORT DataFree of(int agent) const;
 
@@ -28,6 +37,8 @@ struct DataFree {
   void visit(V& v) {
     v("d", d);
     v("H", H);
+    v("worst", worst);
+    v("proved", proved);
     v.range("only", only, -1, INT32_MAX);
   }
 
@@ -44,6 +55,7 @@ struct DataFreeOptions {
   double alpha = 0.0;               ///< consensus step
   std::span<const double> omega{};  ///< Chebyshev weight per round; empty = plain
   int rounds = 0;
+  bool detector = false;  ///< also for agents that know all attackers
 };
 
 /// The averaging of a whole sample, N x N: column j is what a unit at agent j becomes.

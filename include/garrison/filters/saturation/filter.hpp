@@ -112,6 +112,8 @@ struct GARRISON_EXPORT Saturation {
     double p = kNaN;           // p at t-1
     std::int64_t t = 0;        // sample of x
     int d = 0;                 // |I_i(t-1)|
+    std::int64_t full = -1;    // sample at whose end all attackers were proved here; -1 = not yet
+    int which = -1;            // of Gains::table.proved
     bool started = false;      // rho and p have moved on from the start
     bool refuted = false;      // more are proved than can be attacked
     bool intact = true;        // no message is missing behind this estimate, and the start was covered
@@ -129,6 +131,8 @@ struct GARRISON_EXPORT Saturation {
       v("p", p);
       v("t", t);
       v.range("d", d, 0, INT32_MAX);
+      v.range("full", full, -1, INT64_MAX / 4);
+      v.range("which", which, -1, INT32_MAX);
       v("started", started);
       v("refuted", refuted);
       v("intact", intact);
@@ -318,10 +322,8 @@ struct GARRISON_EXPORT Saturation {
     if (g.bounded && s.intact && !(g.detector && s.proved.size() >= g.setting.attacked))
       r.bound = rho_now(g, s) + p_now(g, s);
     if (!covered(g, s)) return r;
-    const double d = g.table.bound(l.id, s.t);
-    if (r.bound <= d || d == kInfinity) return r;
-    r.bound = d;
-    r.kind = CertificateKind::table;
+    offer(g.table.bound(l.id, s.t), CertificateKind::table, r);
+    if (s.full >= 0) offer(g.table.bound_after(l.id, s.t, s.which, s.full), CertificateKind::informed, r);
     return r;
   }
 
@@ -384,6 +386,10 @@ struct GARRISON_EXPORT Saturation {
     if (g.adaptive) s.level = saturation::adaptive_threshold(g.setting, s.rho, s.p);
     if (!g.detector) return;
     s.d = s.proved.size();
+    if (s.full < 0 && knows_all(g, s) && g.table.proved.sets() > 0) {
+      s.full = s.t;  // the sample before this one
+      s.which = g.table.proved.find(s.proved);
+    }
     s.level = saturation::detection_threshold(g.setting, s.rho, s.p);
   }
 
@@ -396,6 +402,12 @@ struct GARRISON_EXPORT Saturation {
   }
 
  private:
+  /// Takes over a bound that is less than what is there, which NaN is not.
+  static void offer(double bound, CertificateKind kind, Report& r) noexcept {
+    if (r.bound <= bound || !(bound < kInfinity)) return;
+    r.bound = bound;
+    r.kind = kind;
+  }
   /// As many sensors are proved as can be attacked: the others need no test.
   template <int n>
   static bool knows_all(const Gains& g, const State<n>& s) noexcept {
