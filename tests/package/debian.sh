@@ -25,7 +25,7 @@ runs() {  # PREFIX OF COMMANDS...: the command, the module, and the main job
   "$@" python3 -m garrison --version
   "$@" python3 -c 'import garrison, importlib.metadata as m; assert m.version("garrison") == garrison.__version__'
   "$@" garrison-node --version
-  "$@" garrison run /usr/share/doc/garrison/examples/wind/hijacked.toml -o /tmp/garrison-out --force
+  "$@" garrison run /usr/share/doc/garrison/examples/wind/hijacked.toml -o /tmp/garrison-out --force >"$work/run.log"
   "$@" test -s /tmp/garrison-out/report.html
 }
 
