@@ -19,7 +19,7 @@ using namespace garrison::node::test;
 
 namespace {
 
-constexpr int kTurns = 7;
+constexpr int kTurns = 21;
 constexpr double kMostOfCurve = 0.5, kMostOfRaw = 1.3;
 
 /// What the processes of a turn share.
@@ -97,6 +97,13 @@ Turn turn(Mesh::Kind kind, int nodes, int rounds) {
   return out;
 }
 
+/// Of turns that followed each other, so that both had the same load beside them.
+double ratio(const std::vector<double>& some, const std::vector<double>& others) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < some.size(); ++k) all.push_back(some[k] / others[k]);
+  std::sort(all.begin(), all.end());
+  return all[all.size() / 2];
+}
 double middle(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
@@ -120,13 +127,14 @@ int main(int count, char** words) {
   for (const Mesh::Kind kind : Mesh::kinds())
     std::printf("%-7s %2d processes: %7.0f us a round (median of %d turns), %5.2f us of CPU a message\n",
                 Mesh::word(kind), nodes, middle(round[kind]), kTurns, middle(message[kind]));
-  const double ours = middle(round[Mesh::Kind::sealed]), raw = middle(round[Mesh::Kind::raw]);
-  bool met = ours <= kMostOfRaw * raw;
-  std::printf("sealed: %.2f of raw datagrams (1.3 allowed)", ours / raw);
+  const auto& ours = round[Mesh::Kind::sealed];
+  const double of_raw = ratio(ours, round[Mesh::Kind::raw]);
+  bool met = of_raw <= kMostOfRaw;
+  std::printf("sealed: %.2f of raw datagrams (1.3 allowed)", of_raw);
   if (round.count(Mesh::Kind::curve) != 0) {
-    const double curve = middle(round[Mesh::Kind::curve]);
-    met = met && ours <= kMostOfCurve * curve;
-    std::printf(", %.2f of ZeroMQ CURVE (0.5 allowed)\n", ours / curve);
+    const double of_curve = ratio(ours, round[Mesh::Kind::curve]);
+    met = met && of_curve <= kMostOfCurve;
+    std::printf(", %.2f of ZeroMQ CURVE (0.5 allowed)\n", of_curve);
   } else {
     met = false;
     std::printf(

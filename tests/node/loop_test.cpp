@@ -109,7 +109,7 @@ TEST_CASE("three loops over sockets: complete, replayed to the bit, and no memor
       node->allocated = allocations() - before;
     });
   }
-  ::usleep(static_cast<useconds_t>(start + 40'000 * 22 - garrison::node::now().wall));
+  ::usleep(static_cast<useconds_t>(std::max<Micros>(0, start + 40'000 * 22 - garrison::node::now().wall)));
   for (auto& node : nodes) node->loop.end();
   for (std::thread& thread : threads) thread.join();
 

@@ -19,10 +19,12 @@ from conftest import ROOT
 from garrison import _core
 from garrison.cli import main as garrison
 from garrison.net import Client
+from garrison.net.accept.load import Load
 from garrison.net.command import main
 from garrison.net.folder import write_network
 from garrison.net.plan import read_plan
 from garrison.net.programs import LIAR, is_there, program
+from garrison.net.soak import Soak
 from test_node_web import status as example
 
 SCENARIO = (ROOT / "tests" / "node" / "ring.toml").read_text()
@@ -300,6 +302,25 @@ def test_accept_measures_a_row_and_refuses_unknown_ones(programs: str, capsys: p
     assert main(["accept", "--list"]) == 0
     listed = capsys.readouterr().out.splitlines()
     assert any(re.match(r"kills +100 s +2 kills a second", line) for line in listed)
+
+
+def test_a_soak_says_what_grew_and_what_stayed_open(plan: Path) -> None:
+    soak = Soak(read_plan(plan), end=0.0)
+    assert soak.broken() == []
+    soak.memory = {0: [9_000_000, 4_000_000, 4_100_000, 4_200_000], 2: [4_000_000, 4_000_000, 4_000_000, 6_000_000]}
+    soak.files = {0: {12, 13}, 2: {12, 15}}
+    assert soak.growth() == 2_000_000
+    assert [re.sub(r"\D+", " ", line).split()[:1] for line in soak.broken()] == [["2000000"], ["2"]]
+
+
+def test_another_load_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = iter([100.0, 100.2, 100.0, 102.0])  # seconds of all processors
+    monkeypatch.setattr("garrison.net.accept.load._machine", lambda: next(machine))
+    monkeypatch.setattr("garrison.net.accept.load._ours", lambda: 5.0)
+    clock = iter([0.0, 1.0, 0.0, 1.0])
+    monkeypatch.setattr("garrison.net.accept.load.time.monotonic", lambda: next(clock))
+    assert Load().words() == ""
+    assert "others took 2.00 of" in Load().words()
 
 
 def _signed(seed: bytes, run: bytes, first: int, digest: bytes) -> bytes:

@@ -76,6 +76,7 @@ def main(argv: list[str] | None = None) -> int:
             return _soak(args)
         plan = read_plan(args.file)
         plan.relay |= ATTACK if args.attack else {}
+        plan.state_every_s = 1.0 if args.kills else plan.state_every_s
         plan.liar = None if args.liar is None else _named(plan, args.liar)
         if args.out is not None:
             return _up(plan, _empty(Path(args.out)), args)
@@ -93,6 +94,7 @@ def _soak(args: argparse.Namespace) -> int:
         raise refusal("--seconds", f"{args.seconds:g}", "a number in 30..86400")
     plan = band(10, 5, 50.0, args.seconds)
     plan.relay |= WEATHER
+    plan.state_every_s = 1.0
     soak = Soak(plan, time.time() + args.seconds)
     outcome = carried_out(plan, args.programs, meanwhile=soak)
     outcome.broken += soak.broken()

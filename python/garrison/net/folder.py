@@ -53,7 +53,7 @@ def write_network(plan: Plan, folder: Path, start: float, programs: str | None) 
     for node in nodes:
         plan.reference.prepared.save(node.path / "part.gdesign", agent=node.id)
         np.savetxt(node.path / "sensor.csv", plan.reference.sensor(node.id), fmt="%.17g", delimiter=",")
-        node.settings.write_text(_settings(node))
+        node.settings.write_text(_settings(plan, node))
         node.clock.write_bytes(bytes(8))
     return nodes
 
@@ -101,7 +101,7 @@ def _heard(plan: Plan, agents: int) -> list[list[int]]:
     return [sorted(ids) for ids in heard]
 
 
-def _settings(node: NodeFolder) -> str:
+def _settings(plan: Plan, node: NodeFolder) -> str:
     return document(
         {
             "name": node.name,
@@ -112,8 +112,7 @@ def _settings(node: NodeFolder) -> str:
             "sensor": {"source": "file", "path": "sensor.csv"},
             "clock": {"require_synchronised": False},
             "socket": {"path": "node.sock"},
-            # Power cuts have to meet the moment in which it is written.
-            "state": {"every_s": 1},
+            "state": {"every_s": plan.state_every_s},
         },
         [],
     )

@@ -28,6 +28,7 @@ class Plan:
     seed: int = 1
     relay: dict[str, float] = field(default_factory=dict)
     expect: dict[str, float] = field(default_factory=dict)
+    state_every_s: float = 60.0  # 1 where power cuts have to meet the moment in which it is written
     wrong_clock: str | None = None  # a library before the daemons, by which their clocks can step
     liar: int | None = None  # an agent that tells some neighbours something else, with keys
 

@@ -46,7 +46,9 @@ def _attack(seconds: float, programs: str | None) -> Measured:
 
 
 def _kills(seconds: float, programs: str | None) -> Measured:
-    outcome = carried_out(band(10, 3, 100.0, seconds), programs, kills=int(2 * seconds))
+    plan = band(10, 3, 100.0, seconds)
+    plan.state_every_s = 1.0
+    outcome = carried_out(plan, programs, kills=int(2 * seconds))
     back = sorted(seconds for seconds in outcome.back if seconds is not None)
     text = f"{len(back)} of {len(outcome.back)} back; median {np.median(back):.2f} s, longest {back[-1]:.2f} s"
     return _said(outcome, text, back[-1] <= 1.0)

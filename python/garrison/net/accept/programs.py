@@ -52,7 +52,7 @@ def _simulated(mode: str, seeds: float, programs: str | None) -> Measured:
 
 def _latency(_seconds: float, programs: str | None) -> Measured:
     """Of ten and of thirty, with the priority that a node has."""
-    runs = [_printed([*real_time(), program(LATENCY, programs), *size]) for size in (["10", "1000"], ["30", "200"])]
+    runs = [_printed([*real_time(), program(LATENCY, programs), *size]) for size in (["10", "500"], ["30", "100"])]
     return Measured("\n      ".join(run.text for run in runs), all(run.met for run in runs))
 
 
