@@ -93,6 +93,8 @@ std::vector<double> held_out(const MatrixRef& z, const MatrixRef& u, const Autor
 }
 
 void require(const MatrixRef& z, const MatrixRef& u, const AutoregressionOptions& o) {
+  if (z.rows() < 2 || z.cols() < 1)
+    refuse("records", std::to_string(z.rows()) + " x " + std::to_string(z.cols()), "samples x stations");
   if (o.most < 1 || o.most > 1000) refuse("fit.most", std::to_string(o.most), "a number in 1..1000");
   if (o.order < 0 || o.order > o.most)
     refuse("fit.order", std::to_string(o.order),
@@ -137,6 +139,9 @@ Identified identified(const Autoregression& found, const Matrix& season, const F
   if (!(noise > 0.0 && noise < 1.0)) refuse("fit.noise", text(noise), "a share in (0, 1)");
   const Index n = found.A.rows();
   const Index N = found.residual_covariance.rows();
+  if (season.cols() != N || found.residual_covariance.cols() != N || found.A.cols() != n || N < 1 || n < N)
+    refuse("season", std::to_string(season.rows()) + " x " + std::to_string(season.cols()),
+           "a column per station of the autoregression (" + std::to_string(N) + ")");
   Identified m;
   m.options = options;
   m.season = season;

@@ -140,6 +140,10 @@ void fit_measurement_noise(const Matrix& x, const Matrix& y, Identified& m) {
 Matrix anomalies(const MatrixRef& raw, std::int64_t first, const FitOptions& options, Matrix& season) {
   if (raw.rows() < 2 || raw.cols() < 1) refuse("records", shape(raw), "samples x stations");
   require_options(raw, options);
+  if (const std::int64_t least = 2 * std::int64_t{options.harmonics} + 2; raw.rows() < least)
+    refuse("fit.harmonics",
+           std::to_string(options.harmonics) + " with " + std::to_string(raw.rows()) + " records",
+           "at least " + std::to_string(least) + " records", "use more records, or fewer harmonics");
   const Matrix z = transformed(raw, options);
   const Matrix X = seasonal_design(z.rows(), first, options);
   season.resize(X.cols(), z.cols());

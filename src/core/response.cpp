@@ -4,6 +4,12 @@
 namespace garrison {
 
 Vector driven(const Matrix& A, const Vector& x, const Matrix& B, const VectorRef& u) {
+  if (A.cols() != x.size() || B.rows() != A.rows() || B.cols() != u.size())
+    refuse("B",
+           std::to_string(B.rows()) + " x " + std::to_string(B.cols()) + " for " + std::to_string(x.size()) +
+               " states and " + std::to_string(u.size()) + " inputs",
+           "a row per state and a column per input, and A " + std::to_string(x.size()) + " x " +
+               std::to_string(x.size()));
   Matrix both(A.rows(), A.cols() + B.cols());
   both << A, B;
   Vector together(x.size() + u.size());

@@ -25,6 +25,7 @@ M checked(const char* name, M value, Index rows, Index cols, int t) {
 void require(const NonlinearPlant& plant, const MatrixRef& y, const VectorRef& x0, const MatrixRef& P0,
              const MatrixRef& inputs) {
   const Index n = x0.size();
+  if (n < 1) refuse("x0", "no number", "one per state");
   if (!x0.allFinite()) refuse("x0", "a number that is not finite", "finite numbers");
   checked("P0", Matrix(P0), n, n, 0);
   checked("process_covariance", plant.process_covariance, n, n, 0);

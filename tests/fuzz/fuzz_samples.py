@@ -85,6 +85,10 @@ def samples() -> dict[str, list[Any]]:
         ],
         "weights": [weights],
         "AgentInfo": [_agent_info(model, network)],
+        "VaryingModel": [gr.VaryingModel(model, A=np.repeat(np.asarray(model.A)[None], 3, axis=0))],
+        "VaryingNetwork": [gr.VaryingNetwork([network] * 3)],
+        "Response": [_core.Response(gr.Model([[0.5]], [[1.0]], B=[[1.0]]))],
+        "Autoregression": [_core.autoregress(wind, np.zeros((900, 0)), order=1)],
     }
     found["FitOptions"] = [found["Identified"][0].options]
     driven = [f for f in filters if f.name in ("saturation", "rdkf", "structural", "partial_sharing")]

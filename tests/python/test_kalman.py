@@ -162,6 +162,7 @@ def test_a_linear_plant_is_the_central_filter() -> None:
         ({"f": lambda x, u, t: x[:1]}, "f: got 1 x 1, expected 2 x 1"),
         ({"h": lambda x, t: x * np.nan}, "h: got a number that is not finite"),
         ({"f": 3}, "f: got 3, expected a function"),
+        ({"start": []}, "x0: got no number"),
         ({"f_jacobian": lambda x, u, t: np.eye(3)}, "f_jacobian: got 3 x 3, expected 2 x 2"),
         ({"h_jacobian": 1}, "h_jacobian: got 1"),
         ({"inputs": np.zeros((3, 1))}, "inputs: got 3 rows, expected 300"),

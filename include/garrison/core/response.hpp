@@ -29,7 +29,7 @@ class GARRISON_EXPORT Response {
 };
 
 /// A x + B u, summed in the order of a plant whose state is (x, u): bits do not depend on which of them is
-/// meant.
+/// meant. @throws InvalidInput when sizes do not fit
 GARRISON_EXPORT Vector driven(const Matrix& A, const Vector& x, const Matrix& B, const VectorRef& u);
 
 }  // namespace garrison

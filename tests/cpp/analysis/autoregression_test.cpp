@@ -79,4 +79,7 @@ TEST_CASE("what cannot be fitted is refused") {
   Matrix season;
   CHECK_THROWS_WITH_AS(identified(autoregress(z, u, {.order = 1}), season, {}, 1.0),
                        doctest::Contains("fit.noise"), InvalidInput);
+  CHECK_THROWS_WITH_AS(identified(autoregress(z, u, {.order = 1}), Matrix::Zero(1, 3), {}, 0.1),
+                       doctest::Contains("season: got 1 x 3, expected a column per station"), InvalidInput);
+  says(Matrix(100, 0), u, {}, "records: got 100 x 0");
 }

@@ -65,6 +65,11 @@ TEST_CASE("a plant that was stacked by hand has the same bits") {
   }
 }
 
+TEST_CASE("sizes that do not fit are refused") {
+  CHECK_THROWS_WITH_AS(driven(Matrix::Identity(2, 2), Vector::Zero(3), Matrix::Ones(2, 1), Vector::Zero(1)),
+                       doctest::Contains("B: got 2 x 1 for 3 states and 1 inputs"), InvalidInput);
+}
+
 TEST_CASE("an input that is held is the limit of many short steps") {
   const Matrix F{{0.0, 1.0}, {-2.0, -0.3}};
   const Matrix G{{0.0}, {1.5}};
