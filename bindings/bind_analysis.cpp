@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Analysis that needs no run: subsets, observability, the theorems of the saturation filter.
 #include "bindings.hpp"
+#include "budget.hpp"
 #include "garrison/analysis/observability.hpp"
 #include "garrison/analysis/subsets.hpp"
 #include "garrison/filters/saturation/coordinates.hpp"
@@ -53,8 +54,14 @@ void bind_subsets(py::module_& m) {
   m.def("lambda0_orthogonal", &lambda0_orthogonal, py::arg("C"), py::arg("s"),
         "Closed form of lambda0 for rows that are parallel or orthogonal; None for others.");
   m.def("observable", &observable, py::arg("A"), py::arg("C"), "(A, C) is observable, C (m, n).");
-  m.def("s_sparse_observable", &s_sparse_observable, py::arg("A"), py::arg("C"), py::arg("s"),
-        "(A, kept rows) is observable whichever s rows of C are lost.");
+  m.def(
+      "s_sparse_observable",
+      [](const MatrixRef& A, const MatrixRef& C, int s, double seconds) {
+        return within_budget(seconds, [&] { return s_sparse_observable(A, C, s); });
+      },
+      py::arg("A"), py::arg("C"), py::arg("s"), py::arg("seconds") = 30.0,
+      "(A, kept rows) is observable whichever s rows of C are lost. Raises InvalidInput where seconds do not "
+      "suffice.");
   m.def(
       "one_step_sparse_observable",
       [](const MatrixRef& C, int s) {

@@ -10,10 +10,12 @@
 
 namespace garrison {
 
-/// `compute` within `seconds` (inf = no limit); a pending KeyboardInterrupt ends it and is raised.
+/// `compute` within `seconds` (inf = no limit) and the budget of the caller; a pending KeyboardInterrupt ends
+/// it and is raised.
 template <class Compute>
 auto within_budget(double seconds, Compute&& compute) {
-  const BudgetScope scope(Budget(seconds, [] { return PyErr_CheckSignals() != 0; }));
+  const BudgetScope scope(
+      Budget(seconds, [outer = current_budget()] { return outer.over() || PyErr_CheckSignals() != 0; }));
   try {
     auto result = std::forward<Compute>(compute)();
     if (PyErr_Occurred() != nullptr) throw pybind11::error_already_set();

@@ -1,8 +1,9 @@
 """Arguments of the public functions, read one by one: each is of the kind that is asked for, or refused by name."""
 
+import inspect
 import operator
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -221,6 +222,18 @@ def callback(which: str, value: Any, takes: str = "(done, total)") -> Any:
             raise refusal(which, f"{shown(value)}, which fails: {error}", f"a function of {takes}") from error
 
     return call
+
+
+def require_arguments(which: str, function: Callable[..., Any], takes: tuple[str, ...]) -> None:
+    """Refuse a function that cannot be called with so many arguments; what tells nothing of itself may pass."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return
+    try:
+        signature.bind(*takes)
+    except TypeError as error:
+        raise refusal(which, f"a function whose call fails: {error}", f"a function of ({', '.join(takes)})") from None
 
 
 def table(which: str, value: Any) -> Array:

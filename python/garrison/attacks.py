@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from garrison import _core
 from garrison._core import Attack
 from garrison._core.attacks import *  # noqa: F403  (what the core registers)
-from garrison.arguments import entries
+from garrison.arguments import entries, require_arguments
 from garrison.words import hinted, refusal, refuse_attribute, require_order, shown
 
 #: the name of every attack's function
@@ -38,6 +38,7 @@ def make(name: str, agents: Iterable[int] | int | None = None, **arguments: Any)
 def _custom(
     name: str,
     function: Callable[..., Any],
+    takes: tuple[str, ...],
     agents: Iterable[int] | int | None,
     start: int | None,
     stop: int | None,
@@ -46,6 +47,7 @@ def _custom(
 ) -> Attack:
     if not callable(function):
         raise refusal(name, shown(function), "a function")
+    require_arguments(name, function, takes)
     if (agents is None) == (schedule is None):
         got = "neither agents nor schedule" if agents is None else "both agents and schedule"
         raise refusal(name, got, "exactly one of them")
@@ -92,7 +94,7 @@ def custom(
     every trial, so it may remember. Runs are single-threaded with it. The rest as for every attack. What the function
     raises comes back with its traceback and a note that names the agent and the sample.
     """
-    return _custom("custom", function, agents, start, stop, schedule, probability)
+    return _custom("custom", function, ("t", "agent", "y", "rng"), agents, start, stop, schedule, probability)
 
 
 @hinted
@@ -112,7 +114,8 @@ def custom_message(
     round, sender and receiver only. It is called once per neighbour and round, and must not remember anything. The
     rest as in `custom`.
     """
-    return _custom("custom_message", function, agents, start, stop, schedule, probability)
+    takes = ("t", "round", "sender", "receiver", "message", "rng")
+    return _custom("custom_message", function, takes, agents, start, stop, schedule, probability)
 
 
 @hinted

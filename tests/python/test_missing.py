@@ -46,3 +46,27 @@ def test_the_run_says_which_sample_ended_the_bound() -> None:
     assert np.isfinite(run.bound[0, 9]).all()
     assert np.isnan(run.bound[0, 10:]).all()
     assert any("no measurement at sample 10" in line for line in run.warnings)
+
+
+def test_all_that_is_left_out_is_let_in_again_within_sixty_samples() -> None:
+    """A jam, then a lie of all sensors, then the truth: with nobody honest left, nothing speaks for the estimate."""
+    for agents, jump in ((1, 100.0), (1, 2000.0), (3, 2000.0)):
+        model = gr.Model(
+            [[1.0, 1.0], [0.0, 1.0]],
+            [[[1.0, 0.0]]] * agents,
+            process_covariance=[[1 / 3, 1 / 2], [1 / 2, 1.0]],
+            measurement_covariance=100.0,
+        )
+        network = gr.Network.complete(agents) if agents > 1 else gr.Network([], agents=1)
+        filt = gr.filters.Structural(false_alarm=1e-4, test="innovation", isolate=True)
+        for seed in range(3):
+            y = np.asarray(gr.simulate(model, network, filt, steps=700, seed=seed, keep=["measurements"]).measurements)[
+                0
+            ]
+            y[300:340] = np.nan
+            y[340:500] += (jump + 5.0 * np.arange(160))[:, None]
+            verdict = gr.replay(model, network, filt, measurements=y).verdict[0, 1:]
+            accused = (verdict == gr.Verdict.ATTACKED).any(axis=1)
+            assert jump < 1000 or accused[340], (agents, jump, seed)
+            assert accused[500:].any()
+            assert not accused[560:600].any(), (agents, jump, seed)

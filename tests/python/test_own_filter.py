@@ -236,3 +236,10 @@ def test_ctrl_c_in_the_users_code_ends_the_run() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         gr.simulate(MODEL, NETWORK, broken("sense", interrupted), steps=1000)
+
+
+def test_a_function_of_other_arguments_is_refused_when_it_is_given() -> None:
+    with pytest.raises(gr.InvalidInput, match=r"expected a function of \(t, agent, y, rng\)"):
+        gr.attacks.custom(lambda t: t, agents=[1])
+    with pytest.raises(gr.InvalidInput, match=r"expected a function of \(t, round, sender, receiver, message, rng\)"):
+        gr.attacks.custom_message(lambda t, message: message, agents=[1])
