@@ -172,3 +172,23 @@ def test_models_that_certificates_cannot_use_are_refused() -> None:
         gr.certify(shared, y, attacked=0)
     with pytest.raises(gr.InvalidInput, match="measurements"):
         gr.certify(double_integrator(), np.zeros((4, 5)), attacked=1)
+
+
+def test_known_inputs_are_taken_out() -> None:
+    push = 0.5 * np.array([[0.005], [0.1]])
+    model = gr.Model(
+        [[1, 0.1], [0, 1]],
+        [[[1.0, 0.0]]] * 6,
+        process_covariance=push @ push.T,
+        measurement_covariance=1.0,
+        B=[[0.005], [0.1]],
+    )
+    u = 3.0 * np.sin(np.arange(120) / 5.0)[:, None]
+    run = gr.simulate(model, gr.Network.complete(6), gr.filters.Lfre(), steps=120, seed=4, inputs=u)
+    y = np.array(run.measurements[0])
+    y[:, 0] += 30.0
+    found = gr.certify(model, y, attacked=1, inputs=u)
+    assert inside(found, run.truth[0, 1:])
+    assert found.answered[5:].all()
+    shifted = gr.certify(model, y, attacked=1)  # without them the same plant is not where it is said to be
+    assert not inside(shifted, run.truth[0, 1:])

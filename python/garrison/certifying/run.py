@@ -15,6 +15,7 @@ from garrison.certifying.methods import by_bank, by_window, steady
 from garrison.certifying.plant import Plant
 from garrison.drivers import output_names
 from garrison.numeric import matched, numbers
+from garrison.varying import inputs_of
 from garrison.words import hinted, refusal, shown
 
 Array = NDArray[np.float64]
@@ -39,6 +40,7 @@ def certify(
     moving: bool = False,
     start: ArrayLike | None = None,
     start_covariance: ArrayLike | None = None,
+    inputs: ArrayLike | Callable[[int], ArrayLike] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Certified:
     """Certify the state from measurements alone: a region that holds whatever at most `attacked` sources say.
@@ -66,6 +68,8 @@ def certify(
         The liars may change from sample to sample.
     start, start_covariance : (n,) and (n, n) array, optional
         For a bank: mean and covariance of the state at the first sample, before its measurements.
+    inputs : (samples, p) array, table or function of t, optional
+        Known inputs of a model with B: row k moved the plant to the sample of row k of the measurements.
     progress : callable, optional
         progress(done, total) is called after every sample.
 
@@ -97,13 +101,16 @@ def certify(
     first = _start(model.states, start, start_covariance, chosen)
     tell = arguments.callback("progress", progress)
     told = (lambda done: tell(done, len(y))) if tell else (lambda _: None)
-    white = plant.whitened(y)
+    driven = _driven(model, inputs_of(model, inputs, len(y)), len(y))
+    if first is not None:
+        first = first[0] - driven[0], first[1]
+    white = plant.whitened(y - driven @ np.concatenate([np.asarray(C) for C in model.C]).T)
     if chosen == "bank":
         record = by_bank(plant, white, s, failure, length, first, _MOST_MEMBERS, told)
     else:
         record = by_window(plant, white, s, failure, length, moving, told)
     return Certified(
-        center=record.center,
+        center=record.center + driven,
         box=record.box,
         radius=record.radius,
         proved=[[plant.names[k] for k in some] for some in record.proved],
@@ -114,6 +121,20 @@ def certify(
         window=length,
         steady=steady(plant, s, failure, len(y), _MOST_PAIRS) if chosen == "bank" else None,
     )
+
+
+def _driven(model: _core.Model, inputs: Array, samples: int) -> Array:
+    """What known inputs alone did to the state by every sample (docs/adr/0016)."""
+    states = np.zeros((samples, model.states))
+    if not inputs.size:
+        return states
+    if len(inputs) != samples:
+        raise refusal("inputs", f"{len(inputs)} rows", f"{samples}, one per row of the measurements")
+    response = _core.Response(model)
+    for k, u in enumerate(inputs):
+        response.advance(u)
+        states[k] = response.state
+    return states
 
 
 def _method(method: Any, moving: bool, members: int) -> str:
