@@ -710,10 +710,10 @@ class Design:
         certificate: str = "none",
         failure: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
         attacked: typing.SupportsInt | typing.SupportsIndex = 0,
-        levels: tuple[
-            typing.SupportsFloat | typing.SupportsIndex,
-            typing.SupportsFloat | typing.SupportsIndex,
-        ] = (0.0, 0.0),
+        levels: tuple[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex] = (
+            0.0,
+            0.0,
+        ),
     ) -> None: ...
     def agent(self, id: typing.SupportsInt | typing.SupportsIndex) -> Agent: ...
     def part(self, id: typing.SupportsInt | typing.SupportsIndex) -> bytes:
@@ -1221,9 +1221,10 @@ def s_sparse_observable(
     A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     s: typing.SupportsInt | typing.SupportsIndex,
+    seconds: typing.SupportsFloat | typing.SupportsIndex = 30.0,
 ) -> bool:
     """
-    (A, kept rows) is observable whichever s rows of C are lost.
+    (A, kept rows) is observable whichever s rows of C are lost. Raises InvalidInput where seconds do not suffice.
     """
 
 def simulate(
