@@ -2,6 +2,7 @@
 
 import io
 import json
+import tokenize
 import zipfile
 import zlib
 from typing import Any
@@ -40,6 +41,8 @@ def unpack(data: bytes, name: str) -> tuple[dict[str, Any], dict[str, NDArray[An
         AttributeError,
         NotImplementedError,
         RuntimeError,
+        SyntaxError,
+        tokenize.TokenError,
         zipfile.BadZipFile,
         zlib.error,
     ) as error:

@@ -7,8 +7,8 @@
 
 namespace garrison {
 
-/// s(t+1) = A s(t) + B u(t), s(0) = 0. With x = z + s, z is a plant without inputs, of which y - C s is
-/// measured: a filter that is fed with these estimates z with the same error and the same bounds.
+/// s(t+1) = A s(t) + B u(t), s(0) = 0: filters get y - C s, and their estimates plus s are of the plant.
+/// Threads: one at a time.
 class GARRISON_EXPORT Response {
  public:
   explicit Response(const Model& model);

@@ -10,9 +10,9 @@
 
 namespace garrison {
 
-/// Room for one Evidence per place of a mailbox. Places borrow it from their neighbour's stack: where
-/// messages are fused soon after they came, the same few stay in the processor's cache. Nothing is allocated
-/// after construction.
+/// Room for one Evidence per place of a mailbox, borrowed from their neighbour's stack: where messages are
+/// fused soon after they came, the same few stay in the cache. Nothing is allocated after construction.
+/// Threads: one at a time.
 class EvidenceShelf {
  public:
   /// Place p is of neighbour p modulo their number; `places` is a multiple of that.
