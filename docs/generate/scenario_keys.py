@@ -86,7 +86,7 @@ MEANINGS = {
         "spread": '"none"; "local": from the measurements of an agent and its neighbours; '
         '"flooded": from all that the rounds bring; "direct": as "local", where agents may lie in their messages',
         "failure": "probability per agent and sample that it is wrong, for Gaussian noise; 0: for bounded noise",
-        "levels": 'z1 and z2 that clean records exceed at the rate `failure`, or "calibrated": of those of `[model] fit`',
+        "levels": 'z1 and z2 that clean records exceed at the rate `failure`, or "calibrated": those of the fit',
         "attacked": "most attacked sensors at a time; left out: that of the filter",
     },
     "noise": {"law": '"auto", or a law that the model has the bounds or covariances for'},

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "clearly_observable.hpp"
 #include "garrison/analysis/modes.hpp"
 #include "garrison/analysis/subsets.hpp"
 #include "garrison/core/budget.hpp"
-#include "clearly_observable.hpp"
 #include "row_groups.hpp"
 #include "splitting.hpp"
 

@@ -34,9 +34,9 @@ namespace garrison {
 /// then on, until it is stationary again, an agent carries a bound P_i >= cov(e_i) of its own error (Jensen)
 /// and tests against m times the deviation that follows from it: fewer false alarms than asked, never more
 /// (docs/adr/0008). Messages tell P_i and how long their sender is off. Nothing is tested for `settle`
-/// samples after the start (threshold NaN, verdict "not tested"). Where the bounded deviation is above 10 times
-/// the stationary one, a measurement beyond even that is an alarm, and one within says nothing: the verdict
-/// stays "not tested" and no alarm ends.
+/// samples after the start (threshold NaN, verdict "not tested"). Where the bounded deviation is above 10
+/// times the stationary one, a measurement beyond even that is an alarm, and one within says nothing: the
+/// verdict stays "not tested" and no alarm ends.
 ///
 /// With `isolate` innovations are tested before they are used: an agent leaves out every measurement, its own
 /// or one it hears, that is over its level, and withholds its own while its alarm lasts. P_i grows meanwhile,
