@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/solvers.hpp"
+#include "garrison/kernel/hypotenuse.hpp"
 #include "require.hpp"
 
 namespace garrison::certificate {
@@ -41,7 +42,7 @@ double spectral_norm(const MatrixRef& block) {
       block.rows() < block.cols() ? Matrix(scaled * scaled.transpose()) : Matrix(scaled.transpose() * scaled);
   if (gram.rows() == 2) {  // closed form: designs ask for millions of them
     const double half = 0.5 * (gram(0, 0) - gram(1, 1));
-    return scale * std::sqrt(0.5 * (gram(0, 0) + gram(1, 1)) + std::hypot(half, gram(0, 1)));
+    return scale * std::sqrt(0.5 * (gram(0, 0) + gram(1, 1)) + hypotenuse(half, gram(0, 1)));
   }
   const auto values = Eigen::SelfAdjointEigenSolver<Matrix>(gram, Eigen::EigenvaluesOnly).eigenvalues();
   return scale * std::sqrt(values(values.size() - 1));
