@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core
-from garrison.arguments import number, pair_of_levels, table, whole
-from garrison.words import refusal
+from garrison.arguments import flag, number, pair_of_levels, table, whole
+from garrison.words import refusal, shown
 
 
 @dataclass
@@ -75,6 +75,9 @@ def expose(
     InvalidInput
         Shapes do not fit, or the noise is not known.
     """
+    if not isinstance(model, _core.Model):
+        raise refusal("model", shown(model), "a garrison.Model")
+    fixed = flag("fixed", fixed)
     y = table("measurements", measurements)
     if y.shape[1] != model.outputs:
         raise refusal("measurements", f"shape {y.shape}", f"(samples, {model.outputs})")
