@@ -71,7 +71,9 @@ def _run(
         run.warnings.append("the plant changes in time: no theorem and no condition of a filter covers it")
     run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
     quiet = max((a.start for a in attacks), default=0)
-    run.warnings += [] if "C" in series else refuted.of_bounds(model, filter, run.measurements)
+    if "C" not in series:
+        constant = not series and not model.inputs
+        run.warnings += refuted.of_bounds(model, filter, run.measurements, constant=constant)
     run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
     run.warnings += [] if "A" in series else doubts.of_divergence(model, run.estimate, run.error, quiet)
     return run

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.circuits import Circuits
 
 Array = NDArray[np.float64]
 #: times `false_alarm` that most sensors must exceed, and standard deviations of a rate beyond that
-_TIMES, _SURE = 2.0, 5.0
+_TIMES, _SURE = 1.5, 4.0
 #: fewest sensors of which a median says something while one lies
 _SENSORS = 3
 #: most sensors that measure the same and are compared with each other
@@ -47,27 +48,47 @@ def _per_sensor(rare: NDArray[np.bool_]) -> NDArray[np.int64]:
     return np.bincount(np.flatnonzero(rare) % sensors, minlength=sensors)
 
 
-def of_bounds(model: _core.Model, filter: _core.Filter, measurements: Array | None) -> list[str]:
-    """A line when sensors that measure the same contradict each other more than `attacked` of them can explain.
+def of_bounds(
+    model: _core.Model, filter: _core.Filter, measurements: Array | None, *, constant: bool = True
+) -> list[str]:
+    """A line when sensors contradict each other more than `attacked` of them can explain.
 
-    Where two differ by more than the sum of their bounds, one of them is off by more than its own. Pairs without a
-    common sensor are counted: over the whole first trial where the attacked ones must stay the same (a detector), else
-    in one sample.
+    Of those that measure the same, where two differ by more than the sum of their bounds, one of them is off by more
+    than its own. Pairs without a common sensor are counted: over the whole first trial where the attacked ones must
+    stay the same (a detector), else in one sample. Of others, groups whose rows of C depend on each other, and
+    (constant: a plant without inputs) on those of the sample before.
     """
     attacked = filter.params.get("attacked")
     bounds = np.asarray(model.measurement_bound, dtype=float)
     if measurements is None or not isinstance(attacked, int) or len(bounds) != model.agents:
         return []
+    for_good = bool(filter.params.get("detector", False))
     groups = _groups(model)
-    pairs = _for_good if filter.params.get("detector", False) else _in_one_sample
+    pairs = _for_good if for_good else _in_one_sample
     with np.errstate(invalid="ignore", over="ignore"):
         found = sum(pairs(measurements[0][:, columns], bounds[agents]) for columns, agents in groups)
     most = int(np.max(found)) if groups else 0
-    if most <= attacked:
+    limits = f"and only {attacked} sensors may be attacked"
+    if most > attacked:
+        return [
+            f"{most} pairs of sensors that measure the same differ by more than measurement_bound allows, {limits}: "
+            "measurement_bound is too small, or more of them lie"
+        ]
+    circuits = Circuits(model, measurements[0], bounds, for_good=for_good)
+    most = circuits.in_one_sample()
+    if most > attacked:
+        return [
+            f"{most} groups of {model.states + 1} sensors contradict themselves by more than measurement_bound allows, "
+            f"{limits}: measurement_bound is too small, or more of them lie"
+        ]
+    if not constant or not math.isfinite(model.process_bound):
+        return []
+    most = circuits.over_a_step(model.process_bound)
+    if most <= (attacked if for_good else 2 * attacked):  # other ones may lie in the next sample
         return []
     return [
-        f"{most} pairs of sensors that measure the same differ by more than measurement_bound allows, and only "
-        f"{attacked} sensors may be attacked: measurement_bound is too small, or more of them lie"
+        f"{most} groups of {model.states + 1} sensors change from one sample to the next by more than process_bound "
+        f"and measurement_bound allow, {limits}: one of these bounds is too small, A is wrong, or more of them lie"
     ]
 
 

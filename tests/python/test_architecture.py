@@ -12,7 +12,7 @@ PACKAGE = ROOT / "python" / "garrison"
 LAYERS = (
     ("_core",),
     ("words", "verdict", "bound_kind", "drawing"),
-    ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms"),
+    ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms", "circuits"),
     ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform", "labelled"),
     ("attacks", "record", "doubts", "refuted", "varying"),
     ("drivers", "kalman", "fitting", "fitting_full", "identifying", "calibration", "certificate", "exposing"),
