@@ -12,6 +12,7 @@ from pathlib import Path
 
 import garrison as gr
 import pytest
+from garrison.cli import main
 from garrison.scenario.overrides import overridden
 from garrison.sweeps import grid, pool
 from garrison.sweeps.work import Task, work
@@ -103,12 +104,12 @@ def test_what_is_there_is_not_run_again_and_other_sweeps_are_refused(scenario: P
     assert counted[0] == (len(parts) - len(parts[::3]), len(parts))
     assert all(part.stat().st_mtime_ns == stamp for part, stamp in stamps.items())
     assert first.folder == out
-    with pytest.raises(gr.InvalidInput, match="another trials"):
+    with pytest.raises(gr.InvalidInput, match="differs in trials"):
         gr.sweep(scenario, set=SET, trials=11, out=out)
-    with pytest.raises(gr.InvalidInput, match="another points"):
+    with pytest.raises(gr.InvalidInput, match="differs in points"):
         gr.sweep(scenario, set={"attack.value": [1]}, trials=10, out=out)
     scenario.write_text(SCENARIO.replace("steps = 30", "steps = 31"), encoding="utf-8")
-    with pytest.raises(gr.InvalidInput, match="another scenario"):
+    with pytest.raises(gr.InvalidInput, match="differs in scenario"):
         gr.sweep(scenario, set=SET, trials=10, out=out)
     strange = tmp_path / "strange"
     strange.mkdir()
@@ -252,3 +253,12 @@ def test_the_command(scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixtu
     points.write_text("filter.threshold,attack.value\n0.5,1\n0.7,3\n", encoding="utf-8")
     assert main(["sweep", str(scenario), "--points", str(points), "-o", str(tmp_path / "rows")]) == 0
     assert main(["sweep", str(scenario), "--points", str(points), "--set", "a=1", "-o", str(tmp_path / "both")]) == 2
+
+
+def test_sweeps_of_no_end_are_refused_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["init", str(tmp_path / "s.toml")]) == 0
+    given = ["sweep", str(tmp_path / "s.toml"), "-o", str(tmp_path / "sw"), "--set"]
+    assert main([*given, "filter.threshold=0.5:1:1000000000"]) == 2
+    assert "filter.threshold: got 1000000000 values, expected at most 1000000" in capsys.readouterr().err
+    assert main([*given, "filter.threshold=0.5:1:2000", "--set", "run.seed=1:2000:2000"]) == 2
+    assert "got 4000000 points in all" in capsys.readouterr().err

@@ -2,6 +2,7 @@
 
 import csv
 import itertools
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,8 @@ from garrison.arguments import entries
 from garrison.words import refusal
 
 Point = dict[str, Any]
+#: runs beyond which nobody waits; each of them takes about a kilobyte before it starts
+_MOST = 1_000_000
 
 
 def points_of(values: Mapping[str, Iterable[Any]]) -> list[Point]:
@@ -22,6 +25,9 @@ def points_of(values: Mapping[str, Iterable[Any]]) -> list[Point]:
         if not found:
             raise refusal(f"set[{key!r}]", "no values", "one at least")
         lists.append(found)
+    points = math.prod(len(found) for found in lists)
+    if points > _MOST:
+        raise refusal("set", f"{points} points in all", f"at most {_MOST}", "fewer values per key, or a CSV of points")
     return [dict(zip(values, some, strict=True)) for some in itertools.product(*lists)]
 
 
@@ -50,6 +56,8 @@ def _range(key: str, words: str) -> list[float]:
         raise refusal(f"--set {key}", repr(words), "a:b:n or log:a:b:n, n values from a to b") from None
     if n < 1 or not np.isfinite([a, b]).all() or (log and not (a > 0 and b > 0)):
         raise refusal(f"--set {key}", repr(words), "finite ends (> 0 with log) and n >= 1")
+    if n > _MOST:
+        raise refusal(f"--set {key}", f"{n} values", f"at most {_MOST}")
     return [float(v) for v in (np.geomspace(a, b, n) if log else np.linspace(a, b, n))]
 
 

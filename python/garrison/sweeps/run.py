@@ -189,7 +189,7 @@ def _claimed(folder: Path, plan: dict[str, Any], path: Path) -> int | None:
     plain = json.loads(json.dumps(plan))
     for key, value in plain.items():
         if found.get(key) != value:
-            what = f"{folder} with a sweep of another {key}"
+            what = f"{folder}, whose sweep differs in {key}"
             raise refusal("out", what, "a new folder, or the same sweep", f"it was made from {found.get('path', path)}")
     arguments.folder("out", parts)
     return block
