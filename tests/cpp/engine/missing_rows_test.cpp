@@ -88,6 +88,7 @@ TEST_CASE("a missing output leaves the others in use, in every family with sever
           CHECK(largest <= 1e-12);
         }
     }
-  CHECK(compared == std::set<std::string>{"saturation", "scalar_gain", "partial_sharing"});
+  for (const char* family : {"saturation", "scalar_gain", "partial_sharing"})
+    CHECK(compared.contains(family));
   CHECK(single == std::set<std::string>{"structural"});
 }
