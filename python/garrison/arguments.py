@@ -54,6 +54,14 @@ def number(which: str, value: Any) -> float:
     return found
 
 
+def probability(which: str, value: Any) -> float:
+    """A number strictly between 0 and 1."""
+    found = number(which, value)
+    if not 0.0 < found < 1.0:
+        raise refusal(which, f"{found:g}", "a probability in (0, 1)")
+    return found
+
+
 def flag(which: str, value: Any) -> bool:
     """True or false."""
     if not isinstance(value, bool):

@@ -111,14 +111,15 @@ def calibrate(
     def over(rate: float) -> float:
         return _allowed(_ratios(run_at(rate)), asked) / asked
 
-    first = run_at(asked)
-    tests = int(np.isfinite(_ratios(first)).sum())
+    before = _ratios(run_at(asked))
+    tests = int(np.isfinite(before).sum())
     if tests < 1.0 / asked:
         raise refusal(
             "measurements", count(tests, "test"), f"at least {1.0 / asked:.0f}", "calibrate on more clean records"
         )
     nominal = _matching(over, asked)
     last = run_at(nominal)
+    after = _ratios(last)
     assert last.statistic is not None
     thresholds = np.array(
         [_core.certificate.empirical_quantile(s, asked) for s in np.reshape(last.statistic, (-1, model.agents)).T]
@@ -128,9 +129,9 @@ def calibrate(
         _core.make_filter(filter.name, filter.params | {_RATE: nominal}),
         asked,
         nominal,
-        _share(_ratios(first)),
-        _share(_ratios(last)),
-        tuple(_share(part) for part in np.array_split(_ratios(last), _PARTS)),
+        _share(before),
+        _share(after),
+        tuple(_share(part) for part in np.array_split(after, _PARTS)),
         tests,
         tests * asked >= _ENOUGH * max(1, filter.params.get("window", 1)),
         thresholds,

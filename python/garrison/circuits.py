@@ -19,10 +19,10 @@ class Circuits:
     too small. Several partings are tried; the one that refutes most counts.
     """
 
-    def __init__(self, model: _core.Model, y: Array, bounds: Array, *, for_good: bool) -> None:
+    def __init__(self, model: _core.Model, y: Array, bounds: Array, *, attacked: int, for_good: bool) -> None:
         agents = np.flatnonzero([len(C) == 1 for C in model.C])[:_MANY]
         columns = np.cumsum([0, *(len(C) for C in model.C)])[agents]
-        self.n, self.for_good = model.states, for_good
+        self.n, self.attacked, self.for_good = model.states, attacked, for_good
         self.A = np.asarray(model.A, dtype=float)
         self.rows = np.array([np.asarray(model.C[i], dtype=float)[0] for i in agents]).reshape(-1, self.n)
         self.bounds, self.y = bounds[agents], y[:, columns]
@@ -64,7 +64,7 @@ class Circuits:
     def _partings(self) -> Iterator[NDArray[np.int_]]:
         """(groups, n + 1) sensors each."""
         size, sensors = self.n + 1, len(self.rows)
-        if size > sensors or self.n > _STATES:
+        if self.n > _STATES or sensors // size <= self.attacked:  # none, or too few to say anything
             return
         rng = np.random.default_rng(0)
         for _ in range(_PARTINGS):

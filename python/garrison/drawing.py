@@ -14,3 +14,10 @@ def drawn(picture: str, *what: Any) -> Figure:
 
     figure: Figure = getattr(figures, picture)(*what)
     return figure
+
+
+def animated(*what: Any) -> None:
+    """Writes the animation that garrison.figures makes of something. Raises as `drawn`."""
+    from garrison import figures
+
+    figures.animate(*what)

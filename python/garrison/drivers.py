@@ -11,7 +11,7 @@ from garrison.numeric import matched, numbers
 from garrison.objects import attack_of, described_attack, plain_data
 from garrison.record import Run
 from garrison.sizes import require_memory
-from garrison.varying import VaryingModel, VaryingNetwork, inputs_of, links_of, parted
+from garrison.varying import Inputs, VaryingModel, VaryingNetwork, inputs_of, links_of, parted
 from garrison.words import count, hinted, refusal, require_order
 
 Array = NDArray[np.float64]
@@ -92,7 +92,7 @@ def simulate(
     filter: _core.Filter,
     *,
     steps: int,
-    inputs: ArrayLike | Callable[[int], ArrayLike] | None = None,
+    inputs: Inputs = None,
     attack: Attacks = (),
     trials: int = 1,
     first_trial: int = 0,
@@ -255,7 +255,7 @@ def replay(
     filter: _core.Filter,
     *,
     measurements: ArrayLike,
-    inputs: ArrayLike | Callable[[int], ArrayLike] | None = None,
+    inputs: Inputs = None,
     truth: ArrayLike | None = None,
     start: ArrayLike | None = None,
     attack: Attacks = (),

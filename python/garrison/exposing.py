@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core
-from garrison.arguments import flag, number, pair_of_levels, table, whole
+from garrison.arguments import flag, pair_of_levels, probability, table, whole
 from garrison.words import refusal, shown
 
 
@@ -85,9 +85,7 @@ def expose(
         raise refusal("model", "no measurement_covariance", "covariances of all measurement noises")
     s = whole("attacked", attacked, 0, model.agents)
     most = whole("limit", limit, 0, 1_000_000)
-    delta = number("failure", failure)
-    if not 0 < delta < 1:
-        raise refusal("failure", f"{delta:g}", "a probability in (0, 1)")
+    delta = probability("failure", failure)
     names, ids = _sources(model)
     C = np.vstack([np.asarray(c, dtype=float).reshape(-1, len(model.A)) for c in model.C])
     R = np.concatenate([_variances(i, r) for i, r in enumerate(model.measurement_covariance)])

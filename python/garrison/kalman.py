@@ -9,11 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core, arguments
 from garrison.drivers import output_names
 from garrison.numeric import matched, numbers
-from garrison.varying import VaryingModel, inputs_of, parted
+from garrison.varying import Inputs, VaryingModel, inputs_of, parted
 from garrison.words import hinted, refusal, require_plant
 
 Array = NDArray[np.float64]
-Inputs = ArrayLike | Callable[[int], ArrayLike] | None
 
 
 def _screen(gate: float | None, huber: float | None) -> dict[str, Any]:
@@ -149,7 +148,7 @@ def extended_kalman(
     measurement_variance: ArrayLike | float,
     start: ArrayLike,
     start_covariance: ArrayLike | float = 1.0,
-    inputs: ArrayLike | Callable[[int], ArrayLike] | None = None,
+    inputs: Inputs = None,
     f_jacobian: Callable[..., ArrayLike] | None = None,
     h_jacobian: Callable[..., ArrayLike] | None = None,
     gate: float | None = None,

@@ -14,6 +14,7 @@ from garrison.alarms import Alarm, intervals
 from garrison.arguments import alone, entries, read, whole, write
 from garrison.arguments import path as path_of
 from garrison.bound_kind import BoundKind
+from garrison.drawing import animated, drawn
 from garrison.families import family_of
 from garrison.notebook import of_run
 from garrison.objects import described, filter_of, model_of, network_of
@@ -222,8 +223,6 @@ class Run:
         agents: numbers or names of those that are shown; None: all. compare: other runs, whose errors are drawn into
         the same figure. The process's matplotlib backend stays as it is.
         """
-        from garrison.figures import run_figure, string_figure
-
         trial, chosen = self._trial(trial), self._agents(agents)
         others = entries("plot: compare", compare, "other runs")
         for other in others:
@@ -232,8 +231,8 @@ class Run:
             other._trial(trial)
         string = family_of(self.filter).picture == "string"
         if string and chosen is None and not others and self.truth is not None and self.bound is not None:
-            return string_figure(self, trial)
-        return run_figure(self, trial, chosen, others)
+            return drawn("string_figure", self, trial)
+        return drawn("run_figure", self, trial, chosen, others)
 
     def _agents(self, given: Iterable[int | str] | None) -> list[int] | None:
         """Numbers of agents that were given by number or name."""
@@ -258,9 +257,7 @@ class Run:
         trial = self._trial(trial)
         if family_of(self.filter).picture != "string" or self.truth is None or self.measurements is None:
             raise refusal("animate", "a run without vehicles or measurements", "one of a platoon")
-        from garrison.figures import animate
-
-        animate(self, path_of("path", path), trial)
+        animated(self, path_of("path", path), trial)
 
     def to_xarray(self) -> Any:
         """An xarray.Dataset of all arrays and signals (extra: xarray).

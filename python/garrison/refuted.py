@@ -74,7 +74,7 @@ def of_bounds(
             f"{most} pairs of sensors that measure the same differ by more than measurement_bound allows, {limits}: "
             "measurement_bound is too small, or more of them lie"
         ]
-    circuits = Circuits(model, measurements[0], bounds, for_good=for_good)
+    circuits = Circuits(model, measurements[0], bounds, attacked=attacked, for_good=for_good)
     most = circuits.in_one_sample()
     if most > attacked:
         return [

@@ -16,6 +16,8 @@ from garrison.words import hinted, refusal, shown
 Array = NDArray[np.float64]
 #: matrices over time, or a function of the time
 OverTime = ArrayLike | Callable[[int], ArrayLike]
+#: known inputs: an array, a table or a function of the time; None: none
+Inputs = OverTime | None
 _PARTS = ("A", "B", "C", "process_covariance")
 
 
@@ -296,23 +298,13 @@ def _united(networks: list[Any]) -> tuple[_core.Network, NDArray[np.bool_]]:
     for k, one in enumerate(networks):
         if not isinstance(one, _core.Network):
             raise refusal(f"VaryingNetwork.network[{k}]", shown(one), "a garrison.Network")
-        alike = (
-            (one.agents, one.directed, list(one.names)),
-            (
-                networks[0].agents,
-                networks[0].directed,
-                list(networks[0].names),
-            ),
-        )
-        if alike[0] != alike[1]:
-            raise refusal(
-                f"VaryingNetwork.network[{k}]", str(one), f"the agents and direction of the first, {networks[0]}"
-            )
+        first = networks[0]
+        if (one.agents, one.directed, list(one.names)) != (first.agents, first.directed, list(first.names)):
+            raise refusal(f"VaryingNetwork.network[{k}]", str(one), f"the agents and direction of the first, {first}")
     if not networks:
         raise refusal("VaryingNetwork.network", "an empty list", "one network per sample")
     edges = [{(int(a), int(b)) for a, b in one.edges} for one in networks]
     union = sorted(set().union(*edges))
-    first = networks[0]
     network = _core.Network(union, agents=first.agents, directed=first.directed, names=list(first.names) or None)
     columns = [(int(a), int(b)) for a, b in network.edges]
     return network, np.array([[edge in there for edge in columns] for there in edges], dtype=bool).reshape(
@@ -358,4 +350,4 @@ def inputs_of(model: _core.Model, given: Any, steps: int) -> Array:
     return found
 
 
-__all__ = ["VaryingModel", "VaryingNetwork", "inputs_of", "links_of", "parted", "undriven"]
+__all__ = ["Inputs", "VaryingModel", "VaryingNetwork", "inputs_of", "links_of", "parted", "undriven"]

@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 base=build/debian-base.tar
 work=$(mktemp -d "$PWD/build/debian.XXXXXX")
-trap 'umount "$work/root/proc" 2>/dev/null || true; rm -rf "$work"' EXIT
+trap 'umount "$work/root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
 debs() { find dist -maxdepth 1 -name '*.deb' ! -name '*-dbgsym_*'; }
 [[ -n $(debs) ]] || { echo "debian: no packages in dist/: make deb" >&2 && exit 1; }
 

@@ -15,7 +15,7 @@ from garrison.certifying.methods import by_bank, by_window, steady
 from garrison.certifying.plant import Plant
 from garrison.drivers import output_names
 from garrison.numeric import matched, numbers
-from garrison.varying import inputs_of
+from garrison.varying import Inputs, inputs_of
 from garrison.words import hinted, refusal, shown
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ def certify(
     moving: bool = False,
     start: ArrayLike | None = None,
     start_covariance: ArrayLike | None = None,
-    inputs: ArrayLike | Callable[[int], ArrayLike] | None = None,
+    inputs: Inputs = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Certified:
     """Certify the state from measurements alone: a region that holds whatever at most `attacked` sources say.
@@ -92,9 +92,7 @@ def certify(
     if np.isinf(y).any():
         raise refusal("measurements", "an infinite number", "finite numbers, nan = missing")
     s = arguments.whole("attacked", attacked, 0, len(plant.names))
-    failure = arguments.number("failure", failure)
-    if not 0.0 < failure < 1.0:
-        raise refusal("failure", f"{failure:g}", "a probability in (0, 1)")
+    failure = arguments.probability("failure", failure)
     moving = arguments.flag("moving", moving)
     length = arguments.whole("window", window, 1, _LONGEST_WINDOW)
     chosen = _method(method, moving, comb(len(plant.names), s))
