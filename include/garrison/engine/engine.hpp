@@ -92,8 +92,8 @@ class Engine final : public Runner {
     batch_.settle();
     const std::size_t N = states_.size();
     std::array<double, 32> signals{};
-    for (std::size_t k = 0; k < N; ++k) {
-      const auto i = static_cast<std::size_t>(places_[k].id);
+    for (std::size_t i = 0; i < N; ++i) {
+      const std::size_t k = position_[i];
       const Vec<n>& x = F::template estimate<n>(states_[k]);
       const Report r = F::template report<n>(local(k), *gains_, states_[k]);
       if (f.estimate != nullptr)
