@@ -207,10 +207,6 @@ class OwnPrepared final : public Prepared {
   void check_log(std::span<const double>) const override {}
   void require_varying() const override {}
   std::unique_ptr<garrison::Agent> agent(int) const override { refuse_alone("an agent on its own"); }
-  void require(const MessageAttack& attack) const override {
-    Family::Message<Dynamic> message{&layout_, std::vector<double>(layout_.total)};
-    attack.require(FieldList(message));
-  }
   std::unique_ptr<TrialsRunner> trials() const override { return nullptr; }
   std::unique_ptr<World> world(const WorldOptions&) const override { return nullptr; }
   std::vector<std::byte> gains_bytes() const override { refuse_alone("a design file"); }

@@ -180,7 +180,6 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
       refuse("attack", "numbers for another plant",
              "one per attacked agent and state (" + std::to_string(model.states()) + " states)",
              "see the attack's covariance or deltas");
-  for (const auto& attack : options.message_attacks) prepared.require(*attack);
   const Link rehearsal(network, options.link, options.message_attacks, options.seed, 0);
   prepared.check_start(starts(model, options.start));
   detail::Recorder recorder(prepared, steps, truth_known, options);

@@ -121,13 +121,32 @@ void CertifiedNetwork::start() {
   y_ = nullptr;
 }
 
+template <class Heard>
+void CertifiedNetwork::hear_all(Workers& workers, const Heard& heard) {
+  start();
+  say();
+  workers.split(agents(), [&](std::int64_t begin, std::int64_t end, int) {
+    for (std::int64_t k = begin; k < end; ++k) heard(k, [&](int agent, int sender) { hear(agent, sender); });
+  });
+  end_round(workers);
+}
+
+void CertifiedNetwork::round(Workers& workers, const Routes& routes) {
+  if (rounds_ == 0) return;
+  hear_all(workers, [&](std::int64_t k, const auto& hear) {
+    const auto place = static_cast<std::size_t>(k);
+    const Heard heard = routes.heard(place);
+    for (std::size_t j = 0; j < heard.slots.size(); ++j) hear(routes.id(place), heard.senders[j]);
+  });
+}
+
 void CertifiedNetwork::finish(Workers& workers) {
   if (y_ != nullptr && all_->alike) return at_once(workers);
   start();
   const bool lossless = round_ == 0;
   while (round_ < rounds_)
-    round(workers, [&](int i, const auto& hear) {
-      for (const int j : network_.neighbours(i)) hear(j);
+    hear_all(workers, [&](std::int64_t i, const auto& hear) {
+      for (const int j : network_.neighbours(static_cast<int>(i))) hear(static_cast<int>(i), j);
     });
   all_->alike = lossless && all_->reaches_all && all_->all_alike();
 }

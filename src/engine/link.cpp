@@ -30,6 +30,10 @@ Link::Link(const Network& network, LinkFaults faults,
   }
 }
 
+void Link::require(const FieldList& message) const {
+  for (const auto& attack : attacks_) attack->require(message);
+}
+
 void Link::decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const {
   std::fill(fates.begin(), fates.end(), Fate::delivered);
   if (seeded_.any()) seeded_.decide(sample, round, links, fates);

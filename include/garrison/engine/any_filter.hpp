@@ -38,8 +38,6 @@ class GARRISON_EXPORT Prepared {
   virtual void check_log(std::span<const double> measurements) const = 0;
   /// @throws InvalidInput when there is no such agent
   virtual std::unique_ptr<Agent> agent(int id) const = 0;
-  /// Refuses an attack on messages that the family's messages have no place for. @throws InvalidInput
-  virtual void require(const MessageAttack& attack) const = 0;
   /// Refuses a plant whose A or C changes in time, where the family is designed for a constant one.
   /// @throws InvalidInput
   virtual void require_varying() const = 0;

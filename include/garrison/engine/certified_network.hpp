@@ -8,6 +8,7 @@
 #include "garrison/certificate/online/certifier.hpp"
 #include "garrison/certificate/online/plan.hpp"
 #include "garrison/core/network.hpp"
+#include "garrison/engine/routes.hpp"
 #include "garrison/engine/workers.hpp"
 
 namespace garrison {
@@ -24,19 +25,9 @@ class GARRISON_EXPORT CertifiedNetwork {
   void reset(std::int64_t t);
   /// Sample t; y: all measurements, agent by agent, that stay there until `finish`.
   void begin(std::int64_t t, const double* y);
-  /// One round in which heard(i, hear) calls hear(j) for every message from j that reached i. Either all
-  /// rounds of a sample are told so, or none: then all messages arrive, and `finish` does them at once.
-  template <class Heard>
-  void round(Workers& workers, const Heard& heard) {
-    if (rounds_ == 0) return;
-    start();
-    say();
-    workers.split(agents(), [&](std::int64_t begin, std::int64_t end, int) {
-      for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i)
-        heard(i, [&](int sender) { hear(i, sender); });
-    });
-    end_round(workers);
-  }
+  /// One round in which everybody hears what `routes` deliver. Either all rounds of a sample are told so, or
+  /// none: then all messages arrive, and `finish` does them at once.
+  void round(Workers& workers, const Routes& routes);
   /// Ends the sample: the rounds that are left, in which all messages arrive.
   void finish(Workers& workers);
 
@@ -47,6 +38,9 @@ class GARRISON_EXPORT CertifiedNetwork {
  private:
   struct Agents;
   int agents() const { return network_.agents(); }
+  /// heard(k, hear) calls hear(agent, sender) for every message that reached the k-th agent.
+  template <class Heard>
+  void hear_all(Workers& workers, const Heard& heard);
   void say();
   void hear(int agent, int sender);
   void end_round(Workers& workers);

@@ -13,6 +13,7 @@
 #include "garrison/engine/batch/batch.hpp"
 #include "garrison/engine/certified_network.hpp"
 #include "garrison/engine/mailroom.hpp"
+#include "garrison/engine/places.hpp"
 #include "garrison/engine/plan/consensus.hpp"
 #include "garrison/engine/runner.hpp"
 #include "garrison/engine/workers.hpp"
@@ -37,33 +38,24 @@ class Engine final : public Runner {
   Engine(std::shared_ptr<const typename F::Gains> gains, const Model& model, const Network& network,
          int threads, std::unique_ptr<CertifiedNetwork> certified = nullptr)
       : gains_(std::move(gains)),
-        model_(model),
-        A_(model.A()),
         plan_(network.offsets(), network.lists(), model.states()),
+        places_(model, network, plan_.order()),
         mail_(network, plan_.order(), model.states(), F::rounds(*gains_)),
         workers_(std::min(threads, 1 + network.agents() / kAgentsPerThread)),
         states_(static_cast<std::size_t>(model.agents())),
         batch_(std::span<State>(states_), model.states()),
         certified_(std::move(certified)),
         accused_(model.agents()) {
-    position_.resize(states_.size());
     lost_.reserve(states_.size());
-    for (const int i : plan_.order()) {
-      position_[static_cast<std::size_t>(i)] = places_.size();
-      places_.push_back({i, model_.outputs(i), network.degree(i), rows_.size()});
-      first_output_.push_back(model_.offset(i));
-      rows_.resize(rows_.size() + static_cast<std::size_t>(model_.C(i).size()));
-    }
-    sight(model_.stacked());
     batch_.join(locals());
   }
 
   void reset(const Matrix& x0, Link* link) override {
     mail_.connect(link);
     batch_.release();
-    if (varying_) constant();
+    places_.constant();
     for (std::size_t k = 0; k < states_.size(); ++k) {
-      const Vec<n> start = x0.col(places_[k].id);
+      const Vec<n> start = x0.col(places_.id(k));
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
     }
     batch_.start(*gains_, locals());
@@ -75,11 +67,7 @@ class Engine final : public Runner {
     if (certified_) certified_->reset(first_sample<F>() - 1);
   }
 
-  void vary(const Matrix* A, const Matrix* C) override {
-    varying_ = true;
-    if (A != nullptr) A_ = *A;
-    if (C != nullptr) sight(*C);
-  }
+  void vary(const Matrix* A, const Matrix* C) override { places_.vary(A, C); }
 
   void step(std::int64_t t, const double* y) override {
     if (certified_) certified_->begin(t, y);
@@ -93,7 +81,7 @@ class Engine final : public Runner {
     const std::size_t N = states_.size();
     std::array<double, 32> signals{};
     for (std::size_t i = 0; i < N; ++i) {
-      const std::size_t k = position_[i];
+      const std::size_t k = places_.of(static_cast<int>(i));
       const Vec<n>& x = F::template estimate<n>(states_[k]);
       const Report r = F::template report<n>(local(k), *gains_, states_[k]);
       if (f.estimate != nullptr)
@@ -107,33 +95,38 @@ class Engine final : public Runner {
       F::template signals<n>(local(k), *gains_, states_[k], signals.data());
       for (std::size_t s = 0; s < F::signal_count; ++s) f.signals[s * N + i] = signals[s];
     }
-    if (varying_ && f.bound != nullptr) disclaim(f);
-    if (f.bound != nullptr && f.bound_kind != nullptr && !varying_) certify(f);
+    if (places_.varying()) return disclaim(f, N);
+    if (f.bound == nullptr || f.bound_kind == nullptr) return;
+    if (!certified_) return name_sources(f, N);
+    for (std::size_t i = 0; i < N; ++i) {
+      const Vec<n>& x = F::template estimate<n>(states_[places_.of(static_cast<int>(i))]);  // or a value
+      certify(f, i, certified_->of(static_cast<int>(i)), {x.data(), static_cast<std::size_t>(x.size())});
+    }
   }
 
   void expected(int agent, double* out) const override {
     batch_.settle();
-    const std::size_t k = position_[static_cast<std::size_t>(agent)];
+    const std::size_t k = places_.of(agent);
     F::template expected<n>(local(k), *gains_, states_[k], out);
   }
   double alarm_level(int agent) const override {
-    const std::size_t k = position_[static_cast<std::size_t>(agent)];
+    const std::size_t k = places_.of(agent);
     return F::template alarm_level<n>(local(k), *gains_, states_[k]);
   }
   void control(double* out) const override {
     batch_.settle();
     if constexpr (requires(const State& s) { F::template control<n>(s); })
       for (std::size_t k = 0; k < states_.size(); ++k)
-        out[static_cast<std::size_t>(places_[k].id)] = F::template control<n>(states_[k]);
+        out[static_cast<std::size_t>(places_.id(k))] = F::template control<n>(states_[k]);
   }
   void detail(int agent, std::size_t which, std::vector<double>& out) const override {
     batch_.settle();
-    const std::size_t k = position_[static_cast<std::size_t>(agent)];
+    const std::size_t k = places_.of(agent);
     if constexpr (requires(const State& s) { F::template detail<n>(local(k), *gains_, s, which, out); })
       F::template detail<n>(local(k), *gains_, states_[k], which, out);
   }
   const AgentSet& accused(int agent) const override {
-    const State& s = states_[position_[static_cast<std::size_t>(agent)]];
+    const State& s = states_[places_.of(agent)];
     if constexpr (requires { F::template accused_into<n>(s, accused_); }) {
       accused_.clear();
       F::template accused_into<n>(s, accused_);
@@ -156,44 +149,11 @@ class Engine final : public Runner {
   }
 
  private:
-  /// Where things of one agent are; a Local per agent would be twice as much to read at every step.
-  struct Place {
-    int id;
-    int outputs;
-    int degree;
-    std::size_t first;  // in rows_
-  };
-  Local local(std::size_t k) const {
-    const Place& p = places_[k];
-    return {p.id, model_.agents(), model_.states(), p.outputs, p.degree, A_.data(), rows_.data() + p.first};
-  }
-
-  /// Writes the rows of all C_i, given on top of each other in the order of public ids. In place: batches
-  /// keep pointers to them.
-  void sight(const Matrix& C) {
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      double* row = rows_.data() + places_[k].first;
-      for (int r = 0; r < places_[k].outputs; ++r)
-        for (Eigen::Index c = 0; c < C.cols(); ++c) *row++ = C(first_output_[k] + r, c);
-    }
-  }
-  void constant() {
-    varying_ = false;
-    A_ = model_.A();
-    sight(model_.stacked());
-  }
+  Local local(std::size_t k) const { return places_.local(k); }
 
   /// Who sees all measurements knows what no agent can: that too many are missing.
   void notice_missing(int most, const double* y) noexcept {
-    std::ptrdiff_t numbers = 0;
-    for (int r = 0; r < model_.total_outputs(); ++r) numbers += y[r] != y[r] ? 1 : 0;
-    if (numbers <= most) return;
-    const auto any = [&](const Place& p, const double* own) {
-      return std::any_of(own, own + p.outputs, [](double v) { return std::isnan(v); });
-    };
-    int sensors = 0;
-    for (std::size_t k = 0; k < places_.size(); ++k) sensors += any(places_[k], y + first_output_[k]) ? 1 : 0;
-    if (sensors <= most) return;
+    if (!places_.miss_more_than(most, y)) return;
     for (State& s : states_) garrison::uncover<F, n>(*gains_, s);
   }
 
@@ -201,13 +161,13 @@ class Engine final : public Runner {
     return [this](std::size_t k) { return local(k); };
   }
   auto measured(const double* y) const {
-    return [this, y](std::size_t k) { return y + first_output_[k]; };
+    return [this, y](std::size_t k) { return places_.measured(k, y); };
   }
 
   void filter(std::int64_t t, const double* y) {
-    if (mail_.perfect()) {
-      const BatchStep taken =
-          batch_.step(BatchSample{*gains_, plan_, mail_.wiring(), workers_, t, locals(), measured(y)});
+    if (mail_.routes().perfect()) {
+      const BatchStep taken = batch_.step(
+          BatchSample{*gains_, plan_, mail_.routes().wiring(), workers_, t, locals(), measured(y)});
       if (taken.done == BatchStep::everything) return;
       if (taken.done == BatchStep::sensed) {
         each([&](std::size_t k, Message* out) { batch_.send(k, out[k]); });
@@ -231,8 +191,7 @@ class Engine final : public Runner {
       mail_.collect(t, round, plain, [&](std::size_t k, int sender, Message& m) {
         shape<F, n>(local(k), *gains_, sender, t, m);
       });
-      if (certified_ && !(plain && mail_.perfect()))
-        certified_->round(workers_, [this](int i, const auto& hear) { each_heard(i, hear); });
+      if (certified_ && !(plain && mail_.routes().perfect())) certified_->round(workers_, mail_.routes());
       const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
       if (batch_.fuse(*gains_, locals(), inbox, workers_))
         mail_.post();
@@ -258,45 +217,11 @@ class Engine final : public Runner {
     }
     resets_ += static_cast<std::int64_t>(lost_.size());
   }
-  template <class Hear>
-  void each_heard(int agent, const Hear& hear) const {
-    const auto inbox = mail_.inbox(position_[static_cast<std::size_t>(agent)]);
-    for (std::size_t j = 0; j < inbox.size(); ++j) hear(inbox.sender(j));
-  }
   void count_bytes(int round) {
     if (!variable_) return;
     if (samples_ == 0) bytes_ = 0;
     bytes_ += mail_.bytes();
     samples_ += round == 0 ? 1 : 0;
-  }
-
-  /// No theorem of a family covers a plant that changes in time.
-  void disclaim(const Frame& f) const {
-    std::fill_n(f.bound, states_.size(), kNaN);
-    if (f.published != nullptr) std::fill_n(f.published, states_.size(), kNaN);
-    if (f.bound_kind != nullptr)
-      std::fill_n(f.bound_kind, states_.size(), static_cast<std::uint8_t>(CertificateKind::varying));
-  }
-
-  /// Says where the bounds of the family come from, or puts better ones in their place.
-  void certify(const Frame& f) const {
-    const std::size_t N = states_.size();
-    if (f.published != nullptr) std::copy_n(f.bound, N, f.published);
-    const auto settle = [&f](std::size_t i, const certificate::Certifier* certifier,
-                             std::span<const double> estimate) {
-      const auto kind = static_cast<CertificateKind>(f.bound_kind[i]);
-      const Bound bound = certificate::least(f.bound[i], kind, certifier, estimate);
-      f.bound[i] = bound.value;
-      f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
-    };
-    if (!certified_) {
-      for (std::size_t i = 0; i < N; ++i) settle(i, nullptr, {});
-      return;
-    }
-    for (std::size_t i = 0; i < N; ++i) {
-      const Vec<n>& x = F::template estimate<n>(states_[position_[i]]);  // of some families a value
-      settle(i, certified_->of(static_cast<int>(i)), {x.data(), static_cast<std::size_t>(x.size())});
-    }
   }
 
   /// Runs `action(k, outgoing)` for every agent k, then makes the outgoing messages the current ones.
@@ -316,19 +241,13 @@ class Engine final : public Runner {
   }
 
   std::shared_ptr<const typename F::Gains> gains_;
-  Model model_;
-  Matrix A_;  // in force: the model's, or what `vary` said
-  bool varying_ = false;
   ConsensusPlan plan_;
+  Places places_;
   Mailroom<Message> mail_;
   Workers workers_;
   Aligned<State> states_;
   [[no_unique_address]] mutable Batch<F, n> batch_;
   std::unique_ptr<CertifiedNetwork> certified_;  // null: no certificate was asked for
-  std::vector<Place> places_;
-  Aligned<double> rows_;           // of all C_i
-  std::vector<int> first_output_;  // of each agent in y
-  std::vector<std::size_t> position_;
   std::int64_t overflows_ = 0;
   std::vector<std::size_t> lost_;  // agents whose estimate is of no use at this sample
   std::int64_t resets_ = 0;

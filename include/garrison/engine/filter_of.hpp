@@ -73,23 +73,6 @@ class PreparedOf final : public Prepared {
              "at most " + std::to_string(kMostRounds) + " for agents on their own");
     return agent_of<F>(part(id));
   }
-  void require(const MessageAttack& attack) const override {
-    dispatched<F>(model_.states(), [&]<int n>() {
-      typename F::template State<n> state;
-      typename F::template Message<n> message;
-      const AgentPart who = part_of(0);
-      const Local local{0,
-                        who.agents,
-                        model_.states(),
-                        model_.outputs(0),
-                        network_.degree(0),
-                        who.A.data(),
-                        who.C_transposed.data()};
-      F::template init<n>(local, *gains_, Vec<n>::Zero(model_.states()), state, message);
-      attack.require(FieldList(message));
-      return 0;
-    });
-  }
   void require_varying() const override {
     std::string reason = "its gains are designed for one A and C";
     if constexpr (requires { F::needs_constant(*gains_); }) reason = F::needs_constant(*gains_);

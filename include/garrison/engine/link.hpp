@@ -46,6 +46,8 @@ class GARRISON_EXPORT Link {
   int memory() const { return memory_; }
   bool lies(int sender) const { return liar_[static_cast<std::size_t>(sender)] != 0; }
 
+  /// Refuses attacks that such messages have no place for. @throws InvalidInput
+  void require(const FieldList& message) const;
   /// What becomes of what each link carries in this round.
   void decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const;
   /// How many samples old what this sender sends is now; 0 = new.

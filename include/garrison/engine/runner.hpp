@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "garrison/certificate/online/certifier.hpp"
 #include "garrison/core/filter.hpp"
 #include "garrison/engine/link.hpp"
 
@@ -23,12 +25,21 @@ struct Frame {
   double* signals = nullptr;           ///< number of signals x N, signal by signal
 };
 
+/// No theorem of a family covers a plant that changes in time: there is no bound of any agent.
+GARRISON_EXPORT void disclaim(const Frame& frame, std::size_t agents);
+/// Says where the bounds of the family come from.
+GARRISON_EXPORT void name_sources(const Frame& frame, std::size_t agents);
+/// The same of agent i, or puts a better bound in its place.
+GARRISON_EXPORT void certify(const Frame& frame, std::size_t i, const certificate::Certifier* certifier,
+                             std::span<const double> estimate);
+
 /// All agents of one network, one filter, one trial.
 /// Threads: one at a time.
 class GARRISON_EXPORT Runner {
  public:
   virtual ~Runner() = default;
   /// Time 0: one initial estimate per agent, n x N. `link` (null = perfect) must outlive the run.
+  /// @throws InvalidInput when an attack of the link changes what messages of this family do not hold
   virtual void reset(const Matrix& x0, Link* link) = 0;
   /// Whether the network is told, before a sample, of an A or C (stacked) that differ from the model's: for
   /// families that can (Prepared::require_varying). Null = as before; `reset` goes back to the model's.

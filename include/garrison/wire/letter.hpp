@@ -29,6 +29,15 @@ struct FieldInfo {
     v.range("size", size, 0, 1 << 24);
   }
 };
+/// Adds what a message of `agents` agents is made of.
+inline void list_fields(const FieldList& of, int agents, std::vector<FieldInfo>& all) {
+  for (const FieldRef& field : of.all()) {
+    int size = field.size;
+    if (field.kind == FieldKind::set) size = static_cast<AgentSet*>(field.data)->empty() ? 0 : agents;
+    if (field.kind == FieldKind::labels) size = static_cast<LabelSet*>(field.data)->capacity();
+    all.push_back({std::string(field.name), field.kind, size});
+  }
+}
 /// Ids that are listed, or all but those.
 struct Labels {
   std::vector<int> ids;

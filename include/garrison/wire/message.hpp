@@ -252,6 +252,13 @@ std::size_t most_bytes(const Message& message, int agents) {
   const_cast<Message&>(message).visit(size);
   return size.most();
 }
+/// Whether the body may have other sizes than it has now.
+template <class Message>
+bool varies(const Message& message, int agents) {
+  Size size(agents);
+  const_cast<Message&>(message).visit(size);
+  return size.most() != size.now();
+}
 /// Writes the body; returns its size. `out` has room for most_bytes.
 template <class Message>
 std::size_t encode(const Message& message, int agents, std::byte* out) noexcept {
