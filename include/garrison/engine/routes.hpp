@@ -29,8 +29,8 @@ struct Heard {
 /// Places in one array of messages: a ring of buffers (one message per agent, in the engine's order) and
 /// behind them a place per lying edge. On perfect links every agent reads its neighbours' slots of the
 /// current buffer. Faults only rewrite slots: a lost or late message leaves its slot out, a forged one is
-/// written behind the honest ones and only the victim points to it. Knows nothing of what messages are made
-/// of. Threads: one at a time.
+/// written behind the honest ones and only the victim points to it. What a message is, is not known here.
+/// Threads: one at a time.
 class GARRISON_EXPORT Routes {
  public:
   /// `order`: engine position -> public id; `rounds` per sample.
