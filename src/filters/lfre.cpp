@@ -79,7 +79,7 @@ bool distinct(std::vector<double> poles) {
 std::vector<Eigen::Index> seeing(const Matrix& A, const Matrix& C) {
   std::vector<Eigen::Index> found;
   for (Eigen::Index r = 0; r < C.rows(); ++r)
-    if (C.rows() == 1 || observable(A, C.row(r))) found.push_back(r);
+    if (C.rows() == 1 || surely_observable(A, C.row(r))) found.push_back(r);
   return found;
 }
 
@@ -130,7 +130,7 @@ Lfre::Gains Lfre::design(const Params& params, const Model& model, const Network
   std::vector<int> queue;
   for (int i = 0; i < N; ++i) {
     Matrix& H = g.observer.emplace_back();
-    if (model.outputs(i) == 0 || !observable(model.A(), model.C(i))) continue;
+    if (model.outputs(i) == 0 || !surely_observable(model.A(), model.C(i))) continue;
     H = quietest(params, model.A(), model.C(i), noise_of(model, i));
     distance[static_cast<std::size_t>(i)] = 0;
     queue.push_back(i);

@@ -150,3 +150,17 @@ def test_rows_of_an_adjacency_table_are_matched_by_name() -> None:
     assert gr.Network(path.loc[["c", "a", "b"]]) == gr.Network(path)
     with pytest.raises(gr.InvalidInput, match="matched by name"):
         gr.Network(path.rename(index={"a": "x"}))
+
+
+def test_observability_of_which_one_cannot_tell_is_not_denied() -> None:
+    A, C = np.diag([1.0, 1.0 + 1e-12]), np.ones((1, 2))
+    for units in ([1.0, 1.0], [1e-6, 1e6], [1e6, 1e-6], [1.0, 1e5]):
+        scaled = np.diag(units)
+        B, D = np.linalg.inv(scaled) @ A @ scaled, C @ scaled
+        assert gr.structure.visibility(B, D)["sight"] == "unclear"
+        with pytest.raises(gr.InvalidInput, match="observable: got .*cannot tell: distance .*e-13 at the mode 1"):
+            gr.observable(B, D)
+        with pytest.raises(gr.InvalidInput, match="s_sparse_observable: got .*cannot tell"):
+            gr.s_sparse_observable(B, D, 0)
+    assert gr.observable(np.diag([1.0, 1.1]), C)
+    assert not gr.observable(np.eye(2), C)
