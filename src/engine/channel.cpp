@@ -96,6 +96,13 @@ std::unique_ptr<Channel> scheduled_faults(const Network& network, std::vector<Cu
   for (const Cut& cut : cuts) {
     require_agent("link.cuts", cut.sender, -1, network.agents());
     require_agent("link.cuts", cut.receiver, -1, network.agents());
+    if (cut.sender >= 0 && cut.receiver >= 0) {
+      const auto heard = network.neighbours(cut.receiver);
+      if (!std::binary_search(heard.begin(), heard.end(), cut.sender))
+        refuse("link.cuts",
+               "the link from " + std::to_string(cut.sender) + " to " + std::to_string(cut.receiver),
+               "a link of the network", "None cuts all links of an agent");
+    }
     if (cut.stop < cut.start)
       refuse("link.cuts",
              "a cut from sample " + std::to_string(cut.start) + " to " + std::to_string(cut.stop),
