@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from garrison import _core
+from garrison.files import contents
+from garrison.tables.cells import has_decimal_comma, number
 from garrison.words import count, refusal
 
 _SEPARATORS = (";", "\t", "|", ",")
@@ -45,7 +47,12 @@ def read_rows(path: str | Path) -> Rows:
     numbered = [(k, line) for k, line in numbered if not line.lstrip().startswith("#")]
     if not numbered:
         raise refusal(str(path), "an empty file", "rows of cells separated by commas, semicolons or tabs")
-    separator = _separator([line for _, line in numbered[:_LOOK]])
+    told = re.fullmatch(r'"?sep=(.)"?', numbered[0][1].strip())  # the first line that spreadsheets write
+    if told is not None and told[1] in _NAMES and len(numbered) > 1:
+        numbered.pop(0)
+        separator = told[1]
+    else:
+        separator = _separator([line for _, line in numbered[:_LOOK]])
     cells = _split([line for _, line in numbered], separator, path)
     lines = [k for k, _ in numbered]
     return Rows(path, _without_empty_end(cells), lines, separator, comment)
@@ -53,7 +60,7 @@ def read_rows(path: str | Path) -> Rows:
 
 def _text(path: Path) -> str:
     try:
-        data = path.read_bytes()
+        data = contents(path)
     except OSError as error:
         raise _core.IoError(f"{path}: got {error.strerror}, expected a readable CSV file") from error
     text = decoded(path, data, "a readable CSV file")
@@ -118,6 +125,21 @@ def _without_empty_end(cells: list[list[str]]) -> list[list[str]]:
         cells = [row[:-1] if len(row) == width else row for row in cells]
         body = cells[1:] or cells
     return cells
+
+
+def decimal_comma(rows: Rows, cells: list[str]) -> bool:
+    """Whether commas in these cells are decimal ones. In a file of commas the cells were quoted.
+
+    Raises InvalidInput where these may as well separate thousands.
+    """
+    if not has_decimal_comma(cells):
+        return False
+    if rows.separator == ",":
+        with_comma = [cell for cell in cells if "," in cell and number(cell, True) is not None]
+        if all(re.fullmatch(r"[+-]?[1-9]\d{0,2},\d{3}", cell) for cell in with_comma):
+            got = f"{with_comma[0]!r}, in which the comma is a decimal one or separates thousands"
+            raise refusal(str(rows.path), got, "numbers with a decimal point and nothing between thousands")
+    return True
 
 
 def require_widths(rows: Rows, first: int, width: int) -> None:
