@@ -47,11 +47,12 @@ def of_conditions(model: _core.Model, network: _core.Network, filter: _core.Filt
 
 
 def of_attacks(attacks: list[_core.Attack], samples: int) -> list[str]:
-    """One line per attack that starts after the last sample."""
-    return [
+    """One line per attack on nobody, or that starts after the last sample."""
+    nobody = [f"the attack {a.name} names no agent: nothing is attacked" for a in attacks if not a.agents]
+    return nobody + [
         f"the attack {attack.name} starts at sample {attack.start}, after the last one ({samples}): nothing is attacked"
         for attack in attacks
-        if attack.start > samples >= 0
+        if attack.agents and attack.start > samples >= 0
     ]
 
 

@@ -65,6 +65,8 @@ RUN = PREPARED.simulate(steps=3)
         (lambda: gr.simulate(*PARTS, steps=2, link={"delay_rounds": 2}), "link.delay_rounds: got a delay without its"),
         (lambda: gr.simulate(MODEL, gr.Network.path(3), FILTER, steps=2, link={"cuts": [(0, 2, 1, 2)]}),
          "link.cuts: got the link from 0 to 2, expected a link of the network"),
+        (lambda: gr.simulate(MODEL, gr.Network.path(3), FILTER, steps=2, link={"lost": [(1, 0, 2, 0)]}),
+         "link.lost: got the link from 2 to 0, expected a link of the network"),
         (lambda: gr.simulate(*PARTS, steps=2, attack="bias"), "attack: got 'bias', expected an attack"),
     ],
 )  # fmt: skip
@@ -117,6 +119,12 @@ def test_an_attack_after_the_end_is_said_aloud() -> None:
         )
         for run in runs:
             assert any("bias starts at sample 7, after the last one (6)" in w for w in run.warnings) == told
+
+
+def test_an_attack_on_nobody_is_said_aloud() -> None:
+    run = gr.simulate(*PARTS, steps=5, attack=[gr.attacks.Bias([], value=1.0), gr.attacks.Silence([])])
+    assert "the attack bias names no agent: nothing is attacked" in run.warnings
+    assert "the attack silence names no agent: nothing is attacked" in run.warnings
 
 
 def test_alarms_that_cannot_be_are_said_aloud() -> None:

@@ -15,7 +15,7 @@ class Parser(argparse.ArgumentParser):
         """Refuses here what this command does not know: its own options are the ones that were meant."""
         found, unknown = super().parse_known_args(args, namespace)
         if unknown:
-            options = [name for action in self._actions for name in action.option_strings]
+            options = [name for action in self._actions if action.dest != "help" for name in action.option_strings]
             self.error(f"unrecognized arguments: {' '.join(unknown)}{_meant(unknown[0].split('=')[0], options)}")
         return found, unknown
 
