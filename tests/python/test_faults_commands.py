@@ -279,3 +279,46 @@ def test_check_looks_at_the_whole_run(
         capsys.readouterr()
         assert main(command) == 2, command
         assert words in capsys.readouterr().err or command[0] == "run"
+
+
+RECORDED = """
+[model]
+A = [[0.9]]
+C = [[1.0], [1.0], [1.0]]
+names = ["a", "b", "c"]
+process_covariance = 0.1
+measurement_covariance = 0.2
+[network]
+kind = "ring"
+[filter]
+name = "dkf"
+[data]
+file = "d.csv"
+"""
+
+
+def test_columns_are_matched_by_name_or_not_at_all(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "s.toml").write_text(RECORDED)
+    body = "".join(f"{k},{k % 3},{k % 5},{k % 7}\n" for k in range(20))
+    other = "".join(f"{k},{k % 7},{k % 5},{k % 3}\n" for k in range(20))
+    found = []
+    for k, text in enumerate((f"t,a,b,c\n{body}", f"t,c,b,a\n{other}", f"t,x,y,z\n{body}")):
+        (tmp_path / "d.csv").write_text(text)
+        assert main(["run", str(tmp_path / "s.toml"), "-o", str(tmp_path / str(k))]) == 0
+        found.append((tmp_path / str(k) / "estimates.csv").read_text())
+    assert found[0] == found[1] == found[2]
+    (tmp_path / "d.csv").write_text(f"t,c,b,z\n{other}")
+    capsys.readouterr()
+    assert main(["check", str(tmp_path / "s.toml")]) == 2
+    assert "d.csv: got no column a, expected a, b, c; columns are matched by name" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("magic", "words"), [(b"\x1f\x8b\x08", "a gzip file"), (b"PK\x03\x04aa", "a spreadsheet")])
+def test_packed_files_are_called_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], magic: bytes, words: str
+) -> None:
+    (tmp_path / "x.csv").write_bytes(magic)
+    for command in ("fit", "structure", "check"):
+        capsys.readouterr()
+        assert main([command, str(tmp_path / "x.csv")]) == 2
+        assert words in capsys.readouterr().err

@@ -168,7 +168,7 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
             kinds, counts = np.unique(far, return_counts=True)
             worst = kinds[np.argmax(counts)]
             how = (
-                f"{np.abs(worst - middle) / spread:.0f} robust deviations off" if spread > 0 else "far from all others"
+                f"{np.abs(worst - middle) / spread:.4g} robust deviations off" if spread > 0 else "far from all others"
             )
             notes.append(
                 f"column {column.name}: {count(len(far), 'value')} such as {worst:g}, {how}; "

@@ -13,6 +13,12 @@ from garrison.words import count, refusal
 _SEPARATORS = (";", "\t", "|", ",")
 _NAMES = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas", " ": "blanks"}
 _BOMS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
+#: how packed files and spreadsheets begin
+_PACKED = (
+    (b"\x1f\x8b", "a gzip file (unpack it first)"),
+    (b"PK\x03\x04", "a zip file or a spreadsheet (save it as text)"),
+    (b"\xd0\xcf\x11\xe0", "a spreadsheet (save it as text)"),
+)
 #: lines that the separator is guessed from
 _LOOK = 50
 
@@ -71,6 +77,9 @@ def _text(path: Path) -> str:
 
 def decoded(path: Path, data: bytes, expected: str) -> str:
     """UTF-8, or what the mark at the beginning says. Raises IoError for other bytes."""
+    packed = next((name for magic, name in _PACKED if data.startswith(magic)), "")
+    if packed:
+        raise _core.IoError(f"{path}: got {packed}, expected {expected}")
     encoding = next((name for bom, name in _BOMS if data.startswith(bom)), "utf-8")
     try:
         return data.decode(encoding)
