@@ -20,16 +20,15 @@ using Bytes = std::vector<std::byte>;
 constexpr std::size_t kHead = 60;  // magic, version, name: what says that it is a design file
 constexpr int kSamples = 8;
 
-/// Other bytes, whole numbers or numbers at one to four places, with the hash that belongs to them.
-Bytes forged(test::Rng& rng, Bytes file) {
-  file.resize(file.size() - sizeof(wire::Digest));
+/// Other bytes, whole numbers or numbers at one to four places behind `first`.
+void change(test::Rng& rng, Bytes& file, std::size_t first) {
   const auto put = [&](std::size_t at, std::uint64_t value, std::size_t bytes) {
     for (std::size_t k = 0; k < bytes; ++k) file[at + k] = static_cast<std::byte>(value >> (8 * k));
   };
   const int changes = test::whole(rng, 0, 2) == 0 ? test::whole(rng, 2, 4) : 1;
   for (int k = 0; k < changes; ++k) {
     const auto at = static_cast<std::size_t>(
-        test::whole(rng, static_cast<int>(kHead), static_cast<int>(file.size()) - 9));
+        test::whole(rng, static_cast<int>(first), static_cast<int>(file.size()) - 9));
     constexpr std::int64_t wholes[] = {-1, 0, 1, 2, 3, 7, 1000, 1000000, INT32_MAX, INT32_MIN};
     constexpr double numbers[] = {kNaN, kInfinity, 1e308, -1.0, 0.0};
     const int kind = test::whole(rng, 0, 9);
@@ -40,6 +39,12 @@ Bytes forged(test::Rng& rng, Bytes file) {
     else
       put(at, std::bit_cast<std::uint64_t>(numbers[test::whole(rng, 0, 4)]), 8);
   }
+}
+
+/// A design file with the hash that belongs to it.
+Bytes forged(test::Rng& rng, Bytes file) {
+  file.resize(file.size() - sizeof(wire::Digest));
+  change(rng, file, kHead);
   const wire::Digest digest = wire::blake2b(file);
   file.insert(file.end(), digest.begin(), digest.end());
   return file;
@@ -48,11 +53,23 @@ Bytes forged(test::Rng& rng, Bytes file) {
 void drive(Agent& agent) {
   Bytes body(agent.most_bytes());
   const Vector y = Vector::Constant(agent.outputs(), 0.5);
-  for (std::int64_t t = agent.start() + 1; t <= agent.start() + kSamples; ++t) {
+  const std::int64_t begin = agent.sample();
+  for (std::int64_t t = begin + 1; t <= begin + kSamples; ++t) {
     agent.sense(t, {y.data(), static_cast<std::size_t>(y.size())}, body);
     while (agent.round() < agent.rounds()) agent.fuse(body);
     agent.report();
   }
+}
+
+/// A snapshot with the checksum that belongs to it.
+Bytes forged_snapshot(test::Rng& rng, Bytes snapshot) {
+  constexpr std::size_t kSnapshotHead = 32;
+  snapshot.resize(snapshot.size() - 8);
+  change(rng, snapshot, kSnapshotHead);
+  const std::uint64_t sum = wire::checksum(snapshot);
+  snapshot.resize(snapshot.size() + 8);
+  wire::store(snapshot.data() + snapshot.size() - 8, sum);
+  return snapshot;
 }
 
 /// True when the file was taken, and nothing went wrong with what was read.
@@ -134,6 +151,56 @@ TEST_CASE("forged design files of every family are refused or harmless") {
   }
   CHECK(taken > 100);
   CHECK(refused > 100);
+}
+
+TEST_CASE("forged snapshots of every family are refused or harmless") {
+  test::Rng rng(19);
+  int taken = 0;
+  int refused = 0;
+  for (const Design& d : designs()) {
+    CAPTURE(d.filter->name());
+    const auto prepared = d.filter->prepare(d.model, d.network);
+    const auto agent = prepared->agent(0);
+    drive(*agent);
+    Bytes snapshot(agent->snapshot_bytes());
+    REQUIRE(agent->save(snapshot) == snapshot.size());
+    for (int k = 0; k < 100; ++k) {
+      const auto other = prepared->agent(0);
+      (other->load(forged_snapshot(rng, snapshot)) == Refusal::none ? taken : refused) += 1;
+      other->report();
+      drive(*other);
+    }
+  }
+  CHECK(taken > 100);
+  CHECK(refused > 100);
+}
+
+TEST_CASE("a snapshot of a sample before the first is refused") {
+  const Network complete = Network::complete(5);
+  test::Rng rng(20);
+  const auto filter = make_filter("saturation", {{"threshold", 0.5},
+                                                 {"rounds", std::int64_t{4}},
+                                                 {"attacked", std::int64_t{1}},
+                                                 {"initial_error", 2.0},
+                                                 {"table", true}});
+  const auto prepared = filter->prepare(test::scalar_model(rng, 2, 5, 1.02, 0.02, 0.1), complete);
+  const auto agent = prepared->agent(0);
+  drive(*agent);
+  Bytes snapshot(agent->snapshot_bytes());
+  REQUIRE(agent->save(snapshot) == snapshot.size());
+  int refused = 0;
+  for (std::size_t at = 32; at + 16 <= snapshot.size(); ++at) {  // the state's own sample is one of these
+    Bytes other(snapshot.begin(), snapshot.end() - 8);
+    wire::store(other.data() + at, static_cast<std::uint64_t>(INT64_MIN / 2));
+    const std::uint64_t sum = wire::checksum(other);
+    other.resize(other.size() + 8);
+    wire::store(other.data() + other.size() - 8, sum);
+    const auto reader = prepared->agent(0);
+    refused += reader->load(other) == Refusal::none ? 0 : 1;
+    reader->report();  // looks into the table
+    drive(*reader);
+  }
+  CHECK(refused > 0);
 }
 
 TEST_CASE("the tables of informed agents: every place that leads out of them is refused") {

@@ -156,7 +156,7 @@ struct VehicleState {
     v("innovation", innovation);
     v("level", level);
     v("gap", gap);
-    v("t", t);
+    v.range("t", t, -1, INT64_MAX / 4);
     v.range("source", source, -1, 65535);
     v("trouble", trouble);
     v("has_y", has_y);

@@ -129,7 +129,7 @@ struct GARRISON_EXPORT Saturation {
       v("level", level);
       v("rho", rho);
       v("p", p);
-      v("t", t);
+      v.range("t", t, 0, INT64_MAX / 4);
       v.range("d", d, 0, INT32_MAX);
       v.range("full", full, -1, INT64_MAX / 4);
       v.range("which", which, -1, INT32_MAX);
