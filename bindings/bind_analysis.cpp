@@ -53,7 +53,12 @@ void bind_subsets(py::module_& m) {
       py::arg("A"), py::arg("s"), "Theorem 5: largest (1/N) ||[C_i'C_i A]|| over sets of N - s rows.");
   m.def("lambda0_orthogonal", &lambda0_orthogonal, py::arg("C"), py::arg("s"),
         "Closed form of lambda0 for rows that are parallel or orthogonal; None for others.");
-  m.def("observable", &observable, py::arg("A"), py::arg("C"), "(A, C) is observable, C (m, n).");
+  m.def("observable", &observable, py::arg("A"), py::arg("C"),
+        "(A, C) is observable, C (m, n). Raises InvalidInput where rounding of the numbers decides and one "
+        "cannot "
+        "tell;\nstructure.visibility says how far that is.");
+  m.def("surely_observable", &surely_observable, py::arg("A"), py::arg("C"),
+        "The same, False where one cannot tell.");
   m.def(
       "s_sparse_observable",
       [](const MatrixRef& A, const MatrixRef& C, int s, double seconds) {

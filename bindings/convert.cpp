@@ -2,6 +2,7 @@
 #include "convert.hpp"
 
 #include <limits>
+#include <optional>
 
 #include "garrison/core/error.hpp"
 
@@ -57,6 +58,18 @@ Array from_objects(const std::string& which, const py::array& given) {
   return Array(numbers.attr("reshape")(given.attr("shape")));
 }
 
+/// Place of the first True or False in nested lists, as "[0][1]"; nothing where there is none.
+std::optional<std::string> flag_in(py::handle value) {
+  if (PyBool_Check(value.ptr())) return "";
+  if (!PyList_Check(value.ptr()) && !PyTuple_Check(value.ptr())) return std::nullopt;
+  std::size_t k = 0;
+  for (const auto& one : py::reinterpret_borrow<py::sequence>(value)) {
+    if (const auto found = flag_in(one)) return "[" + std::to_string(k) + "]" + *found;
+    ++k;
+  }
+  return std::nullopt;
+}
+
 /// An ndarray of any dtype, with nan where entries are masked.
 py::array plain(const std::string& which, py::handle given, const std::string& expected) {
   py::object x = py::reinterpret_borrow<py::object>(given);
@@ -87,6 +100,12 @@ std::string shown(py::handle given) {
   const std::string type = Py_TYPE(given.ptr())->tp_name;
   const bool ours = type.starts_with("garrison.");
   if (ours) return "a " + type.substr(type.rfind('.') + 1);
+  const bool function = PyCFunction_Check(given.ptr()) || PyFunction_Check(given.ptr());
+  if (function || PyType_Check(given.ptr())) {
+    const py::object name = attempt([&] { return py::object(given.attr("__name__")); });
+    const std::string words = name ? py::str(name).cast<std::string>() : "without a name";
+    return function ? "the function " + words + ", not called yet" : "the class " + words + ", not made yet";
+  }
   if (py::isinstance<py::array>(given)) {
     const auto a = py::reinterpret_borrow<py::array>(given);
     if (a.ndim() > 0 && a.size() != 1)
@@ -204,6 +223,9 @@ Array array(const std::string& which, py::handle given, const std::string& expec
   if (given.is_none() || is_text(given) || PyDict_Check(given.ptr()) || PyAnySet_Check(given.ptr()))
     refuse(which, shown(given), expected);
   const py::array read = plain(which, given, expected);
+  // Where all entries are flags they may be meant, as in an adjacency matrix.
+  if (const auto at = read.dtype().kind() == 'b' ? std::nullopt : flag_in(given))
+    refuse(which + *at, "True or False among numbers", expected);
   switch (read.dtype().kind()) {
     case 'f':
     case 'i':
@@ -222,6 +244,7 @@ Array array(const std::string& which, py::handle given, const std::string& expec
 
 Array matrix(const std::string& which, py::handle given) {
   const std::string expected = "a matrix of numbers (rows x columns)";
+  if (const auto at = flag_in(given)) refuse(which + *at, "True or False", expected);
   const Array a = array(which, given, expected);
   if (a.ndim() > 2)
     refuse(which, "an array of shape " + py::str(a.attr("shape")).cast<std::string>(), expected);
@@ -230,6 +253,7 @@ Array matrix(const std::string& which, py::handle given) {
 
 Array vector(const std::string& which, py::handle given) {
   const std::string expected = "a list of numbers";
+  if (const auto at = flag_in(given)) refuse(which + *at, "True or False", expected);
   const Array a = array(which, given, expected);
   const bool line = a.ndim() < 2 || (a.ndim() == 2 && (a.shape(0) == 1 || a.shape(1) == 1));
   if (!line) refuse(which, "an array of shape " + py::str(a.attr("shape")).cast<std::string>(), expected);

@@ -19,7 +19,11 @@ std::unordered_map<PyObject*, Front>& fronts() {
 
 void raise(const char* type, const std::string& message) {
   const py::object error = py::module_::import("garrison._core").attr(type);
-  PyErr_SetString(error.ptr(), message.c_str());
+  const auto size = static_cast<Py_ssize_t>(message.size());
+  // Words of damaged files may be anything.
+  const auto words =
+      py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(message.data(), size, "backslashreplace"));
+  PyErr_SetObject(error.ptr(), words.ptr());
 }
 
 /// What pybind11 and the C++ library raise, in our words. Exceptions from Python code (a callback) have a
@@ -34,6 +38,8 @@ void translate(const Front& front, const std::vector<py::object>& values) {
   else if (is(PyExc_MemoryError) || (is(PyExc_ValueError) && words.find("vector") != std::string::npos))
     raise("InvalidInput",
           front.name + ": got sizes that take more memory than there is, expected smaller ones");
+  else if (is(PyExc_UnicodeDecodeError))
+    raise("InvalidInput", front.name + ": got words that are not UTF-8, expected text; the file is damaged");
   else if (is(PyExc_RuntimeError) || is(PyExc_IndexError) || is(PyExc_ValueError) || is(PyExc_TypeError))
     raise("Error", front.name + ": got an unexpected failure (" + words +
                        "), expected none; this is a bug of garrison");
@@ -86,6 +92,18 @@ int refuse_to_make(PyObject* self, PyObject*, PyObject*) {
   return -1;
 }
 
+/// Objects keep what they were made with; only subclasses written in Python have attributes of their own.
+int assign(PyObject* self, PyObject* name, PyObject* value) {
+  if (PyObject_GenericSetAttr(self, name, value) == 0) return 0;
+  if (PyErr_ExceptionMatches(PyExc_AttributeError) == 0) return -1;
+  PyErr_Clear();
+  const std::string type = Py_TYPE(self)->tp_name;
+  raise("InvalidInput", type.substr(type.rfind('.') + 1) + "." + py::str(name).cast<std::string>() +
+                            ": got an assignment, expected none; objects of this class are not changed: make "
+                            "another one");
+  return -1;
+}
+
 PyCFunctionObject* function_of(py::handle object) {
   if (PyInstanceMethod_Check(object.ptr())) object = PyInstanceMethod_GET_FUNCTION(object.ptr());
   if (!PyCFunction_Check(object.ptr())) return nullptr;
@@ -116,6 +134,7 @@ void guard_function(py::handle object, const std::string& name, const Classes& c
 void guard_class(py::handle type, const Classes& classes) {
   const auto name = type.attr("__name__").cast<std::string>();
   const py::dict entries(type.attr("__dict__"));
+  reinterpret_cast<PyTypeObject*>(type.ptr())->tp_setattro = assign;
   // Python fills in a wrapper of its own where there is no constructor.
   if (!entries.contains("__init__") ||
       Py_TYPE(entries["__init__"].cast<py::object>().ptr()) == &PyWrapperDescr_Type)

@@ -80,7 +80,7 @@ MEANINGS = {
     "link": {
         "drop": "probability that a message is lost",
         "delay": "probability that it is late",
-        "delay_rounds": "how many rounds a late message is late",
+        "delay_rounds": "how many rounds a late message is late, >= 1; needs delay",
     },
     "certificate": {
         "spread": '"none"; "local": from the measurements of an agent and its neighbours; '

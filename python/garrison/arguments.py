@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from garrison import _core
+from garrison.files import contents
 from garrison.numeric import Array, numbers, real
 from garrison.words import near, only, refusal, shown
 
 T = TypeVar("T")
 _MOST = 2**31 - 1
+_HUGE = 1e150
 
 
 def whole(which: str, value: Any, least: int, most: int = _MOST) -> int:
@@ -51,6 +53,14 @@ def number(which: str, value: Any) -> float:
     found = real(value)
     if found is None:
         raise refusal(which, shown(value), "a number")
+    return found
+
+
+def moderate(which: str, value: Any) -> float:
+    """A number >= 0 whose square is a number, too."""
+    found = number(which, value)
+    if not 0.0 <= found <= _HUGE:
+        raise refusal(which, f"{found:g}", f"a number >= 0 and <= {_HUGE:g}")
     return found
 
 
@@ -102,7 +112,7 @@ def path(which: str, value: Any) -> Path:
 def read(which: str, where: Any, expected: str) -> bytes:
     """All bytes of a file. Raises IoError when it cannot be read."""
     try:
-        return path(which, where).read_bytes()
+        return contents(path(which, where))
     except (OSError, ValueError) as error:
         raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected {expected}") from error
 
@@ -197,7 +207,9 @@ def link(value: Mapping[str, Any] | None) -> dict[str, Any]:
     only("link", (key if isinstance(key, str) else repr(key) for key in value), known)
     out = {key: number(f"link.{key}", one) for key, one in value.items() if key not in lists}
     if "delay_rounds" in out:
-        out["delay_rounds"] = whole("link.delay_rounds", value["delay_rounds"], 0)
+        out["delay_rounds"] = whole("link.delay_rounds", value["delay_rounds"], 1)
+        if "delay" not in out:
+            raise refusal("link.delay_rounds", "a delay without its probability", "delay beside it")
     return out | {key: _rows(f"link.{key}", value[key], width) for key, width in lists.items() if key in value}
 
 

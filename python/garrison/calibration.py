@@ -12,7 +12,7 @@ from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.objects import described_model, model_of
 from garrison.record import Run
-from garrison.words import count, hinted, refusal, require_order
+from garrison.words import count, hinted, hinted_methods, refusal, require_order
 
 Array = NDArray[np.float64]
 
@@ -26,6 +26,7 @@ _PARTS, _MARGIN = 5, 1.0
 _ENOUGH = 5.0
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class Calibration:
     """A filter whose false alarms on clean records are as frequent as asked.

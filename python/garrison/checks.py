@@ -8,9 +8,10 @@ from garrison import _core, arguments
 from garrison.arguments import number
 from garrison.expected import expected_certificate
 from garrison.notebook import of_check
-from garrison.words import hinted, require_order
+from garrison.words import hinted, hinted_methods, require_order
 
 
+@hinted_methods
 @dataclass(frozen=True, eq=False)
 class Check:
     """What `check` found. A condition that fails is data, not an error.

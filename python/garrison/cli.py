@@ -28,6 +28,7 @@ from garrison._commands import (
     verify,
 )
 from garrison._commands import list as list_
+from garrison._commands.parser import Parser
 from garrison._commands.terminal import BUG, INTERRUPTED, OK, REFUSED
 
 COMMANDS = (
@@ -52,7 +53,7 @@ _DEBUG = "GARRISON_DEBUG"
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="garrison",
         description="A network that keeps its estimate while some of its own sensors lie.",
         epilog="Exit codes: 0 fine, 1 a check failed, 2 input refused, 70 a bug in garrison, 130 interrupted. "

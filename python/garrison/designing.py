@@ -15,7 +15,7 @@ from garrison.checks import Check, check
 from garrison.drawing import drawn
 from garrison.drivers import simulate
 from garrison.filters import make_filter
-from garrison.words import hinted, near, refusal, require_plant
+from garrison.words import hinted, hinted_methods, near, refusal, require_plant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,6 +27,7 @@ _FAMILIES = ("saturation",)
 _CURVE = 16
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class Choice:
     """A number of rounds with its best threshold: the bound it certifies, and the bytes of all messages per sample."""
@@ -37,6 +38,7 @@ class Choice:
     bytes_per_sample: int
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class Designed:
     """filter: as designed. error: the asymptotic bound that it certifies (theorem 1 item 3), unit of the state.

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.checks import check
+from garrison.words import count
 
 Array = NDArray[np.float64]
 #: growth of the error over half a run, beyond that of the plant, from which on it is called divergence
@@ -20,6 +21,12 @@ _STATES, _SUBSETS = 400, 20_000
 def _cheap(model: _core.Model, filter: _core.Filter) -> bool:
     attacked = int(filter.params.get("attacked", 0))
     return model.agents * model.states <= _STATES and math.comb(model.agents, min(attacked, model.agents)) <= _SUBSETS
+
+
+def require_conditions(model: _core.Model, network: _core.Network, filter: _core.Filter) -> None:
+    """Refuse what `check` refuses, where it takes little time."""
+    if not filter.own and _cheap(model, filter):
+        check(model, network, filter)
 
 
 def of_conditions(model: _core.Model, network: _core.Network, filter: _core.Filter) -> list[str]:
@@ -40,12 +47,21 @@ def of_conditions(model: _core.Model, network: _core.Network, filter: _core.Filt
 
 
 def of_attacks(attacks: list[_core.Attack], samples: int) -> list[str]:
-    """One line per attack that starts after the last sample."""
-    return [
+    """One line per attack on nobody, or that starts after the last sample."""
+    nobody = [f"the attack {a.name} names no agent: nothing is attacked" for a in attacks if not a.agents]
+    return nobody + [
         f"the attack {attack.name} starts at sample {attack.start}, after the last one ({samples}): nothing is attacked"
         for attack in attacks
-        if attack.start > samples >= 0
+        if attack.agents and attack.start > samples >= 0
     ]
+
+
+def of_alarms(filter: _core.Filter, samples: int) -> list[str]:
+    """A line where the run is over before the filter could raise an alarm."""
+    needed = filter.params.get("alarm_after", 1)
+    if not needed > samples >= 0:
+        return []
+    return [f"alarm_after = {needed} tests in a row, but the run has {count(samples, 'sample')}: no alarm is possible"]
 
 
 def of_divergence(model: _core.Model, estimate: Array | None, error: Array | None, quiet_from: int) -> list[str]:

@@ -70,6 +70,7 @@ def _run(
     if "A" in series or "C" in series:
         run.warnings.append("the plant changes in time: no theorem and no condition of a filter covers it")
     run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
+    run.warnings += doubts.of_alarms(filter, run.shape[1] - 1)
     quiet = max((a.start for a in attacks), default=0)
     if "C" not in series:
         constant = not series and not model.inputs
@@ -197,7 +198,7 @@ def simulate(
         _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked, levels)),
         steps=steps,
         x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
-        start_error=arguments.number("start_error", start_error),
+        start_error=arguments.moderate("start_error", start_error),
         noise=noise if isinstance(noise, str) else "auto",
         disturbances=np.zeros((0, 0)) if isinstance(noise, str) else arguments.table("noise", noise),
         trials=trials,

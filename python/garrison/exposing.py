@@ -9,9 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core
 from garrison.arguments import flag, pair_of_levels, probability, table, whole
-from garrison.words import refusal, shown
+from garrison.words import hinted, hinted_methods, refusal, shown
 
 
+@hinted_methods
 @dataclass
 class Exposed:
     """What the measurements prove.
@@ -32,6 +33,7 @@ class Exposed:
         return {s: int(rows[0]) for s, rows in found.items() if len(rows)}
 
 
+@hinted
 def expose(
     model: _core.Model,
     measurements: ArrayLike,

@@ -15,7 +15,7 @@ from garrison.notebook import of_model, titled
 from garrison.numeric import real
 from garrison.sizes import require_memory
 from garrison.tables import Records
-from garrison.words import only, refusal, shown
+from garrison.words import hinted_methods, only, refusal, shown
 
 Array = NDArray[np.float64]
 #: p-value below which residuals are called not white
@@ -24,6 +24,7 @@ _LEVEL = 0.01
 INFLATION = 1.1
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class Whiteness:
     """Ljung-Box test of a model's residuals, station by station.
@@ -50,6 +51,7 @@ class Whiteness:
         return f"{about}: not white, so false-alarm rates on records differ from what is asked; calibrate the filter"
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class Fit:
     """A model identified from clean records.

@@ -10,7 +10,7 @@ from garrison import _core
 from garrison.arguments import number, texts, whole
 from garrison.fitting import Fit, Whiteness, _by_name, _options
 from garrison.tables import Records
-from garrison.words import only, refusal
+from garrison.words import hinted_methods, only, refusal
 
 Array = NDArray[np.float64]
 _ORDER = ("order", "most", "held_out", "noise", "inputs")
@@ -19,6 +19,7 @@ _SEASON = ("harmonics", "period", "root", "factor")
 _NOISE = 0.01
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class FullFit(Fit):
     """A vector autoregression: every station's deviation from its season is a state, with `order` samples of the past.

@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from garrison import _core
+from garrison import _core, doubts
 from garrison.bound_kind import counts
 from garrison.drivers import KEEP, replay, require_room, simulate
 from garrison.families import family_of
 from garrison.kalman import central_kalman, local_kalman
 from garrison.record import Run
 from garrison.scenario import Scenario
+from garrison.varying import links_of
+from garrison.words import count, refusal
 
 Array = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
@@ -90,6 +92,8 @@ def run_scenario(scenario: Scenario, progress: Progress | None = None, condition
     progress(label, done, total) is called at most once per percent of a run. conditions: as in `simulate`.
     """
     rows: list[Row] = []
+    if conditions:
+        require_conditions(scenario)
     for attacked in [True, False] if scenario.attacks else [False]:
         log: Run | None = None  # of the main filter
         for label, filter in scenario.filters:
@@ -103,8 +107,17 @@ def run_scenario(scenario: Scenario, progress: Progress | None = None, condition
     return rows
 
 
+def require_conditions(scenario: Scenario) -> None:
+    """Refuse what `garrison check` refuses of any filter: what runs can be checked."""
+    for _, filter in scenario.filters:
+        if filter is not None:
+            doubts.require_conditions(scenario.model, scenario.network, filter)
+
+
 def rehearse(scenario: Scenario) -> None:
     """Let every filter run for a single sample, so that everything a run would refuse is refused now."""
+    require_conditions(scenario)
+    _require_length(scenario)
     for label, filter in scenario.filters:
         if filter is not None:
             keep = _options(scenario, filter, True)["keep"]
@@ -114,6 +127,20 @@ def rehearse(scenario: Scenario) -> None:
             y = scenario.measurements
             y = np.zeros((1, scenario.model.outputs)) if y is None else y[:1]
             _kalman(scenario, label, y)
+
+
+def _require_length(scenario: Scenario) -> None:
+    """What is known over time is known for the whole run, which a rehearsal of one sample does not see."""
+    steps, inputs = scenario.steps, scenario.inputs
+    links_of(scenario.ground, {}, steps)
+    if inputs is not None and scenario.measurements is None and len(inputs) != steps:
+        raise refusal("[run].inputs", f"{count(len(inputs), 'row')}", f"{steps}, one per step of the run")
+    if inputs is not None and not np.isfinite(inputs).all():
+        at = tuple(int(k) for k in np.argwhere(~np.isfinite(inputs))[0])
+        raise refusal(f"inputs[{at[0]}][{at[1]}]", f"{inputs[at]:g}", "a finite number: inputs are known")
+    if scenario.varying is not None and scenario.varying.steps < steps:
+        got = f"a model over {count(scenario.varying.steps, 'step')}"
+        raise refusal("[model]", got, f"at least {steps}, one per step of the run")
 
 
 def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], None] | None:

@@ -13,7 +13,7 @@ from garrison.arguments import entries, whole
 from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.record import Run
-from garrison.words import hinted, refusal
+from garrison.words import hinted, hinted_methods, refusal
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,7 @@ class Switch:
     after: int | None
 
 
+@hinted_methods
 @dataclass
 class Mitigated:
     """What came out: estimates (time, agent, n) and errors (time, agent) over all segments, time 0 first.

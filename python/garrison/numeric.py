@@ -10,11 +10,14 @@ from garrison.words import refusal, shown
 Array = NDArray[np.float64]
 
 
-def numbers(which: str, value: Any) -> Array:
+def numbers(which: str, value: Any, *, flags: bool = False) -> Array:
     """`value` as an array of doubles; masked, NA and None entries are nan.
 
-    Raises InvalidInput for text, complex numbers and rows of different lengths.
+    flags: True and False in lists stand for 1 and 0. Raises InvalidInput for text, complex numbers, rows of different
+    lengths and, without `flags`, for True and False in lists.
     """
+    if not flags and (at := _flag_in(value)) is not None:
+        raise refusal(f"{which}{at[0]}", shown(at[1]), "a number")
     try:
         found = np.asarray(_plain(value))
     except (ValueError, TypeError) as error:
@@ -53,6 +56,17 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_plain(v) for v in value]
     return value
+
+
+def _flag_in(value: Any) -> tuple[str, bool] | None:
+    """Place and value of the first true or false in nested lists."""
+    if isinstance(value, bool):
+        return "", value
+    if isinstance(value, (list, tuple)):
+        for k, one in enumerate(value):
+            if (found := _flag_in(one)) is not None:
+                return f"[{k}]{found[0]}", found[1]
+    return None
 
 
 def _of_objects(which: str, found: NDArray[Any]) -> Array:

@@ -7,9 +7,10 @@ from garrison import _core, arguments, drivers
 from garrison.arguments import read, whole, write
 from garrison.checks import Check, check
 from garrison.record import Run
-from garrison.words import hinted, refusal, require_order
+from garrison.words import hinted, hinted_methods, refusal, require_order
 
 
+@hinted_methods
 class Prepared:
     """A filter designed for one model and network: `prepare` makes it, `save` and `load` carry it elsewhere.
 
@@ -48,11 +49,11 @@ class Prepared:
 
     def simulate(self, **arguments: Any) -> Run:
         """`garrison.simulate` with this design: the same keyword arguments."""
-        return drivers.simulate(self.model, self.network, self.filter, **arguments, design=self._design)
+        return drivers.simulate(self.model, self.network, self.filter, **self._with_design(arguments))
 
     def replay(self, **arguments: Any) -> Run:
         """`garrison.replay` with this design: the same keyword arguments."""
-        return drivers.replay(self.model, self.network, self.filter, **arguments, design=self._design)
+        return drivers.replay(self.model, self.network, self.filter, **self._with_design(arguments))
 
     def agent(self, id: int) -> _core.Agent:
         """Agent `id` on its own. It holds what it needs of the gains, nothing of the others'."""
@@ -84,6 +85,11 @@ class Prepared:
     def outline(self) -> list[str]:
         """What the gains consist of, a line each."""
         return list(self._design.outline)
+
+    def _with_design(self, arguments: dict[str, Any]) -> dict[str, Any]:
+        if "design" in arguments:
+            raise refusal("design", "one to a filter that is prepared", "none", "it runs with its own")
+        return arguments | {"design": self._design}
 
     def _agent(self, id: int) -> int:
         last = self.network.agents - 1

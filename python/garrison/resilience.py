@@ -10,9 +10,10 @@ from garrison import _core
 from garrison._core import partial_sharing as theory
 from garrison.arguments import number, whole_numbers
 from garrison.filters import PartialSharing
-from garrison.words import hinted, refusal
+from garrison.words import hinted, hinted_methods, refusal
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class Resilience:
     """One number of shared entries. Errors are exact, means over the cycle of the periodic steady state.

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core
 from garrison.arguments import entries, whole
 from garrison.numeric import matched, numbers
-from garrison.words import hinted, refusal, shown
+from garrison.words import hinted, hinted_methods, refusal, shown
 
 Array = NDArray[np.float64]
 #: matrices over time, or a function of the time
@@ -21,6 +21,7 @@ Inputs = OverTime | None
 _PARTS = ("A", "B", "C", "process_covariance")
 
 
+@hinted_methods
 class VaryingModel:
     """A plant that changes in time: x(t+1) = A(t) x(t) + B(t) u(t) + w(t), y(t) = C(t) x(t) + v(t).
 
@@ -206,6 +207,7 @@ def _over_time(
     return value.copy()
 
 
+@hinted_methods
 class VaryingNetwork:
     """A network whose links come and go: at every sample a message arrives over those that are present.
 
@@ -285,7 +287,7 @@ class VaryingNetwork:
 
 
 def _presence(network: _core.Network, present: ArrayLike) -> NDArray[np.bool_]:
-    found = numbers("present", present)
+    found = numbers("present", present, flags=True)
     links = len(network.edges)
     if found.ndim != 2 or found.shape[1] != links or len(found) == 0:
         raise refusal("present", f"{found.shape}", f"(steps, {links}), a column for each of network.edges")

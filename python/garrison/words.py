@@ -3,6 +3,7 @@
 import functools
 import inspect
 from collections.abc import Callable, Iterable
+from types import BuiltinFunctionType, FunctionType
 from typing import Any, NoReturn, ParamSpec, TypeVar
 
 from garrison import _core
@@ -20,6 +21,8 @@ def shown(value: Any, most: int = 60) -> str:
     """A value as it may stand in a message: its kind where that matters, one line, not too long."""
     if value is None:
         return "no value"
+    if isinstance(value, (type, BuiltinFunctionType, FunctionType)):
+        return _kind(value)
     text = repr(value) if isinstance(value, str) else str(value)
     text = " ".join(text.split())
     text = text if len(text) <= most else f"{text[: most - 3]}..."
@@ -53,24 +56,57 @@ def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:
 
 def hinted(function: Callable[P, T]) -> Callable[P, T]:
     """`function`, but arguments that it does not have, or that are missing, are refused in our words."""
-    parameters = inspect.signature(function).parameters.values()
+    return _guarded(function, function.__name__, 0)
+
+
+def hinted_methods(cls: type[T]) -> type[T]:
+    """`cls` with its public methods, its constructor and assignments to its attributes guarded like that."""
+    for key, value in list(vars(cls).items()):
+        if key.startswith("_") and key != "__init__":
+            continue
+        name = cls.__name__ if key == "__init__" else f"{cls.__name__}.{key}"
+        guarded: Any = None
+        if isinstance(value, (classmethod, staticmethod)):
+            bound = 1 if isinstance(value, classmethod) else 0
+            guarded = type(value)(_guarded(value.__func__, name, bound))
+        elif isinstance(value, FunctionType) and not hasattr(value, "__wrapped__"):
+            guarded = _guarded(value, name, 1)
+        if guarded is not None:
+            setattr(cls, key, guarded)
+    plain = cls.__setattr__
+
+    def assign(self: Any, key: str, value: Any) -> None:
+        try:
+            plain(self, key, value)
+        except AttributeError:
+            advice = "objects of this class are not changed: make another one"
+            raise refusal(f"{cls.__name__}.{key}", "an assignment", "none", advice) from None
+
+    cls.__setattr__ = assign  # type: ignore[method-assign]
+    return cls
+
+
+def _guarded(function: Callable[P, T], name: str, bound: int) -> Callable[P, T]:
+    """bound: arguments in front that Python fills in, self or the class."""
+    parameters = list(inspect.signature(function).parameters.values())[bound:]
     own = [p for p in parameters if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
     known = [p.name for p in own]
     ordered = [p.name for p in own if p.kind is not p.KEYWORD_ONLY]
     needed = [p.name for p in own if p.default is p.empty]
     open_ended = any(p.kind is p.VAR_KEYWORD for p in parameters)
-    name = function.__name__
+    any_number = any(p.kind is p.VAR_POSITIONAL for p in parameters)
+    allowed = f"{len(ordered)} at most; {', '.join(known) or ('all by name' if open_ended else 'there are none')}"
 
     @functools.wraps(function)
     def guarded(*args: P.args, **keywords: P.kwargs) -> T:
-        if len(args) > len(ordered):
-            expected = f"{len(ordered)} at most; {', '.join(known)}"
-            raise refusal(name, f"{len(args)} arguments without a name", expected)
-        given = [*ordered[: len(args)], *keywords]
+        places = args[bound:]
+        if len(places) > len(ordered) and not any_number:
+            raise refusal(name, f"{count(len(places), 'argument')} without a name", allowed)
+        given = [*ordered[: len(places)], *keywords]
         for one in keywords:
             if one not in known and not open_ended:
                 got = f"the unknown argument {one!r}"
-                raise refusal(name, got, f"one of {', '.join(known)}", near(one, known))
+                raise refusal(name, got, f"one of {', '.join(known)}" if known else "none", near(one, known))
         if len(set(given)) < len(given):
             twice = next(one for one in given if given.count(one) > 1)
             raise refusal(f"{name}.{twice}", "two values", "one")
@@ -94,6 +130,8 @@ def require_plant(function: str, model: object, network: object) -> None:
 
 def _kind(value: object) -> str:
     """What was given in place of an object of garrison."""
+    if isinstance(value, (BuiltinFunctionType, FunctionType)):
+        return f"the function {value.__name__}, not called yet"
     return f"the class {value.__name__}, not made yet" if isinstance(value, type) else f"a {type(value).__name__}"
 
 

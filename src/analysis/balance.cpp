@@ -41,8 +41,8 @@ std::vector<Index> from_outputs(const Matrix& A, const Matrix& C) {
 
 class Balancing {
  public:
-  Balancing(const Matrix& A, const Matrix& C, double rate)
-      : A_(A.cwiseAbs2()), C_(C.cwiseAbs2()), target_(C.rows() > 0 ? rate * rate : 0.0) {
+  Balancing(const Matrix& A, const Matrix& C, double rate, double pull)
+      : A_(A.cwiseAbs2()), C_(C.cwiseAbs2()), target_(C.rows() > 0 ? square(rate * pull) : 0.0) {
     A_.diagonal().setZero();
     d_ = Vector::Ones(A.rows());
     s_ = Vector::Ones(C.rows());
@@ -109,8 +109,8 @@ class Balancing {
 
 }  // namespace
 
-Pair balanced(const Matrix& A, const Matrix& C, double rate) {
-  Balancing balancing(A, C, rate);
+Pair balanced(const Matrix& A, const Matrix& C, double rate, double pull) {
+  Balancing balancing(A, C, rate, pull);
   balancing.run();
   const Vector d = balancing.d().unaryExpr(&power_of_2);
   const Vector s = balancing.s().unaryExpr(&power_of_2);

@@ -18,7 +18,9 @@ struct Pair {
 /// like for s: a convex problem with one solution, whatever units the pair came in. Every state is then
 /// driven, or shown, with strength `rate` by what follows it on its way to the outputs. Every state needs
 /// such a way (reach_outputs), except with C without rows, where A alone is balanced.
-Pair balanced(const Matrix& A, const Matrix& C, double rate);
+/// pull: how much the outputs count, 0..1; less leaves
+/// more to the balance of A.
+Pair balanced(const Matrix& A, const Matrix& C, double rate, double pull = 1.0);
 
 /// S C only, every row of length `rate`: states stay as they are. In networks where every state is far from
 /// the outputs, balancing grows exponentially with that distance, and what is seen well looks hardly seen.

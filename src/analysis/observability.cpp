@@ -29,6 +29,17 @@ struct Group {
   int size;
 };
 
+[[noreturn]] void refuse_unclear(const std::string& which, const std::string& words) {
+  refuse(which, words, "a pair that is surely observable, or surely not",
+         "structure.visibility says how far the nearest pair with an unseen mode is");
+}
+
+Visibility look(const MatrixRef& A, const MatrixRef& C) {
+  if (A.cols() != A.rows() || C.cols() != A.rows())
+    refuse("C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()), "as many columns as A has rows");
+  return detail::clearly_observable(A, C) ? Visibility{} : visibility(A, C, 0.0);
+}
+
 /// At one mode z: does [A - z I; C] keep its rank when groups of together at most s rows go? With R'R = P'P,
 /// removing the rows V does no harm if the sum of their leverages |R'^-1 c|^2 is below 1.
 template <class S>
@@ -47,7 +58,11 @@ class Removals {
     require_time("the search for sensors whose loss ends observability");
     const MatrixOf<S> R = detail::triangle<S>(pair_A_, rows(pair_C_, kept), z);
     detail::VectorOf<S> v;
-    if (detail::least_singular<S>(R, v) <= kWeak * size_ && !observable(A_, rows(C_, kept))) return false;
+    if (detail::least_singular<S>(R, v) <= kWeak * size_) {
+      const Visibility seen = look(A_, rows(C_, kept));
+      if (seen.sight == Sight::unseen) return false;
+      if (seen.sight == Sight::unclear && unclear_.empty()) unclear_ = seen.text();
+    }
     std::vector<double> leverage(free.size());
     for (std::size_t k = 0; k < free.size(); ++k)
       leverage[k] = R.adjoint()
@@ -79,6 +94,8 @@ class Removals {
     }
     return true;
   }
+  /// What was said of a pair of which one cannot tell; empty where there was none.
+  const std::string& unclear() const { return unclear_; }
 
  private:
   template <class M>
@@ -93,29 +110,34 @@ class Removals {
   MatrixOf<S> pair_A_, pair_C_;
   double size_;
   double tried_ = 0.0;
+  std::string unclear_;
 };
 
 template <class S>
 bool all_survive(const Matrix& A, const Matrix& C, const detail::Pair& pair,
                  const std::vector<Complex>& modes, const std::vector<Group>& groups, int s) {
   Removals<S> removals(A, C, pair);
-  return std::all_of(modes.begin(), modes.end(), [&](Complex z) {
+  const bool all = std::all_of(modes.begin(), modes.end(), [&](Complex z) {
     return removals.survives(detail::scalar_of<S>(z), groups, groups, s);
   });
+  if (all && !removals.unclear().empty())
+    refuse_unclear("s_sparse_observable", "rows whose loss leaves a pair of which one " + removals.unclear());
+  return all;
 }
 
 }  // namespace
 
 bool observable(const MatrixRef& A, const MatrixRef& C) {
-  if (A.cols() != A.rows() || C.cols() != A.rows())
-    refuse("C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()), "as many columns as A has rows");
-  if (detail::clearly_observable(A, C)) return true;
-  return visibility(A, C, 0.0).all_seen();
+  const Visibility seen = look(A, C);
+  if (seen.sight == Sight::unclear) refuse_unclear("observable", "(A, C) of which one " + seen.text());
+  return seen.all_seen();
 }
+
+bool surely_observable(const MatrixRef& A, const MatrixRef& C) { return look(A, C).all_seen(); }
 
 bool s_sparse_observable(const MatrixRef& A, const MatrixRef& C, int s) {
   detail::require_subset_input("s_sparse_observable", C, s);
-  if (!observable(A, C)) return false;
+  if (look(A, C).sight == Sight::unseen) return false;
   std::vector<Group> groups;
   for (const auto& members : detail::group_rows(C).members)
     groups.push_back({members.front(), static_cast<int>(members.size())});

@@ -21,18 +21,23 @@ Visibility split(Pair pair, const std::vector<Complex>& candidates, double least
               : Splitting<Complex>(pair, least).run(candidates);
 }
 
-/// A pair that is far from unseen modes in some units has none: rounding is small in all of them. Where
-/// neither units say so, it is enough that one of them finds an unseen mode.
+/// Rounding is small in all units, so a pair that is far from unseen modes in some is far from them. Units
+/// are tried that do not depend on those given: those in which every state drives its outputs as strongly as
+/// others do, and, because these grow with the distance from the outputs, those that balance A and keep
+/// little of that. The units given answer only where their answer is plain.
 Visibility in_good_units(const Matrix& A, const Matrix& C, double least) {
   const double rate = natural_rate(A);
   const Pair own = balanced(A, C, rate);
   const auto candidates = candidate_modes(A, own.A, rate, least);
   const Visibility given = split(rows_scaled(A, C, rate), candidates, least);
-  constexpr double kClearly = 1e-4;  // the units given are good enough
+  constexpr double kClearly = 1e-4;
   if (given.sight == Sight::seen && given.distance > kClearly) return given;
-  Visibility v = split(own, candidates, least);
-  if (given.sight == Sight::seen) return v.sight == Sight::seen && v.distance > given.distance ? v : given;
-  return v.sight == Sight::unclear && given.sight == Sight::unseen ? given : v;
+  const Visibility v = split(own, candidates, least);
+  if (C.rows() == 0 || (v.sight == Sight::seen && v.distance > kClearly)) return v;
+  constexpr double kLoose = 1e-2;
+  const Pair loose = balanced(A, C, rate, kLoose);
+  const Visibility w = split(rows_scaled(loose.A, loose.C, rate), candidates, least);
+  return w.distance > v.distance ? w : v;
 }
 
 /// Rows and columns `kept` of A, columns of C.

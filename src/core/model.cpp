@@ -18,6 +18,9 @@ void require_finite(const std::string& which, const Matrix& m) {
       if (!std::isfinite(m(i, j)))
         refuse(which + "[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(m(i, j)),
                "a finite number", "replace or remove it");
+      else if (std::abs(m(i, j)) > kHuge)
+        refuse(which + "[" + std::to_string(i) + ", " + std::to_string(j) + "]", text(m(i, j)),
+               "a number of size at most " + text(kHuge));
 }
 
 void require_covariance(const std::string& which, const Matrix& m, Eigen::Index size) {
@@ -36,6 +39,7 @@ void require_covariance(const std::string& which, const Matrix& m, Eigen::Index 
 void require_bound(const std::string& which, double value) {
   if (!(value >= 0.0) || !std::isfinite(value))
     refuse(which, text(value), "a finite number >= 0", "leave it out when it is not known");
+  if (value > kHuge) refuse(which, text(value), "a number of size at most " + text(kHuge));
 }
 
 void require_labels(const Labels& labels, const Model& model) {

@@ -7,6 +7,9 @@
 namespace garrison {
 namespace {
 
+/// Parameters that are whole numbers are kept as int.
+constexpr double kMostWhole = 2147483647.0;
+
 std::string join(std::span<const std::string> names) {
   std::string all;
   for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
@@ -91,20 +94,37 @@ void check_param(const std::string& owner, const ParamInfo& info, const ParamVal
                             : static_cast<double>(std::get<std::int64_t>(value));
   if (std::isnan(number)) {
     const bool may_be_absent = std::isnan(std::get<double>(info.initial)) && !info.required;
-    if (!may_be_absent) refuse(which, info.required ? "no value" : "nan", range(info), info.doc);
+    if (!may_be_absent) refuse(which, info.required ? "no value, or nan" : "nan", range(info), info.doc);
     return;
   }
   const bool low = info.open ? number <= info.least : number < info.least;
   if (low || number > info.most) refuse(which, shown(value), range(info), info.doc);
 }
 
+void require_no_huge(const std::string& owner, const ParamMap& params) {
+  const auto look = [&](const std::string& name, double number) {
+    if (std::isfinite(number) && std::abs(number) > kHuge)
+      refuse(owner + "." + name, text(number), "a number of size at most " + text(kHuge));
+  };
+  for (const auto& [name, value] : params) {
+    if (const auto* number = std::get_if<double>(&value)) look(name, *number);
+    if (const auto* list = std::get_if<std::vector<double>>(&value))
+      for (const double number : *list) look(name, number);
+  }
+}
+
 ParamValue convert_param(const std::string& owner, const ParamInfo& info, const ParamValue& value) {
+  const auto* const whole = std::get_if<std::int64_t>(&value);
+  if (whole != nullptr && std::holds_alternative<std::int64_t>(info.initial) &&
+      std::abs(static_cast<double>(*whole)) > kMostWhole)
+    refuse(owner + "." + info.name, shown(value), "a whole number of at most 2147483647", info.doc);
   if (value.index() == info.initial.index()) return value;
   if (std::holds_alternative<double>(info.initial) && std::holds_alternative<std::int64_t>(value))
     return static_cast<double>(std::get<std::int64_t>(value));
   if (std::holds_alternative<std::int64_t>(info.initial) && std::holds_alternative<double>(value)) {
     const double number = std::get<double>(value);
-    if (std::abs(number) < 1e15 && number == std::floor(number)) return static_cast<std::int64_t>(number);
+    if (std::abs(number) <= kMostWhole && number == std::floor(number))
+      return static_cast<std::int64_t>(number);
   }
   // A text without choices holds a number as text (the attack "constant").
   if (std::holds_alternative<std::string>(info.initial) && info.choices.empty()) {

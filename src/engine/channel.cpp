@@ -19,6 +19,13 @@ void require_agent(const std::string& which, int id, int least, int agents) {
     refuse(which, "agent " + std::to_string(id), "an agent in 0.." + std::to_string(agents - 1));
 }
 
+void require_link(const char* which, const Network& network, int sender, int receiver) {
+  const auto heard = network.neighbours(receiver);
+  if (!std::binary_search(heard.begin(), heard.end(), sender))
+    refuse(which, "the link from " + std::to_string(sender) + " to " + std::to_string(receiver),
+           "a link of the network");
+}
+
 class Scheduled final : public Channel {
  public:
   explicit Scheduled(std::vector<Cut> cuts) : cuts_(std::move(cuts)) {}
@@ -96,6 +103,7 @@ std::unique_ptr<Channel> scheduled_faults(const Network& network, std::vector<Cu
   for (const Cut& cut : cuts) {
     require_agent("link.cuts", cut.sender, -1, network.agents());
     require_agent("link.cuts", cut.receiver, -1, network.agents());
+    if (cut.sender >= 0 && cut.receiver >= 0) require_link("link.cuts", network, cut.sender, cut.receiver);
     if (cut.stop < cut.start)
       refuse("link.cuts",
              "a cut from sample " + std::to_string(cut.start) + " to " + std::to_string(cut.stop),
@@ -108,6 +116,7 @@ std::unique_ptr<Channel> recorded_faults(const Network& network, std::vector<Los
   for (const Lost& one : lost) {
     require_agent("link.lost", one.message.sender, 0, network.agents());
     require_agent("link.lost", one.receiver, 0, network.agents());
+    require_link("link.lost", network, one.message.sender, one.receiver);
   }
   return std::make_unique<Recorded>(std::move(lost));
 }

@@ -22,6 +22,10 @@ constexpr double kWidth = 0.1;
 void require_poles(const std::vector<double>& given, int n) {
   if (!given.empty() && static_cast<int>(given.size()) != n)
     refuse("lfre.poles", std::to_string(given.size()) + " numbers", std::to_string(n) + ", one per state");
+  for (const double pole : given)
+    if (!(std::abs(pole) < 1.0))
+      refuse("lfre.poles", text(pole), "numbers between -1 and 1, these excluded",
+             "an observer with such a pole never forgets its start");
 }
 
 std::vector<double> spaced_poles(double first, int n) {
@@ -79,7 +83,7 @@ bool distinct(std::vector<double> poles) {
 std::vector<Eigen::Index> seeing(const Matrix& A, const Matrix& C) {
   std::vector<Eigen::Index> found;
   for (Eigen::Index r = 0; r < C.rows(); ++r)
-    if (C.rows() == 1 || observable(A, C.row(r))) found.push_back(r);
+    if (C.rows() == 1 || surely_observable(A, C.row(r))) found.push_back(r);
   return found;
 }
 
@@ -130,7 +134,7 @@ Lfre::Gains Lfre::design(const Params& params, const Model& model, const Network
   std::vector<int> queue;
   for (int i = 0; i < N; ++i) {
     Matrix& H = g.observer.emplace_back();
-    if (model.outputs(i) == 0 || !observable(model.A(), model.C(i))) continue;
+    if (model.outputs(i) == 0 || !surely_observable(model.A(), model.C(i))) continue;
     H = quietest(params, model.A(), model.C(i), noise_of(model, i));
     distance[static_cast<std::size_t>(i)] = 0;
     queue.push_back(i);

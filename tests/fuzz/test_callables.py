@@ -9,6 +9,8 @@ from __future__ import annotations
 import argparse
 import sys
 
+import garrison as gr
+import pytest
 from fuzz_calls import fuzz, report
 from fuzz_samples import samples
 from fuzz_targets import EXCLUDED, public
@@ -33,6 +35,16 @@ def test_every_callable_survives_bad_values(figures: list[str], seed: int) -> No
     line, failures = fuzz(SECONDS, seed)
     figures.append(line)
     assert not failures, line + "\n" + report(failures)
+
+
+def test_every_callable_refuses_what_it_does_not_take() -> None:
+    """Names that it does not have, and more arguments than it has."""
+    for name, _, function in public():
+        if name in EXCLUDED or name.endswith("__"):
+            continue
+        for positional, named in ((), {"no_such_name": 1}), (range(40), {}):
+            with pytest.raises(gr.Error, match=": got "):
+                function(*positional, **named)
 
 
 def test_every_class_has_a_sample() -> None:

@@ -11,7 +11,7 @@ PACKAGE = ROOT / "python" / "garrison"
 #: bottom first; a module imports modules of its own layer or below. Packages stand for all that is in them.
 LAYERS = (
     ("_core",),
-    ("words", "verdict", "bound_kind", "drawing"),
+    ("words", "verdict", "bound_kind", "drawing", "files"),
     ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms", "circuits"),
     ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform", "labelled"),
     ("attacks", "record", "doubts", "refuted", "varying"),

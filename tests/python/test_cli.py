@@ -129,7 +129,7 @@ def test_missing_and_unreadable_files(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "2001-01-06 after 2001-01-03" in refused(capsys, "fit", str(tmp_path / "gap.csv"))
     (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00")
     assert "readable CSV" in refused(capsys, "fit", str(tmp_path / "binary.csv"))
-    assert "no such folder" in refused(capsys, "verify", str(tmp_path / "nowhere"))
+    assert "no such folder or file" in refused(capsys, "verify", str(tmp_path / "nowhere"))
 
 
 def test_check_exit_code_says_whether_conditions_hold(scenario: Path, capsys: pytest.CaptureFixture[str]) -> None:

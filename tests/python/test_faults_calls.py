@@ -16,6 +16,8 @@ MODEL = gr.Model([[0.8]], [[1.0]] * 3, process_covariance=0.2, measurement_covar
 NET = gr.Network.ring(3)
 FILTER = gr.filters.Structural()
 PARTS = (MODEL, NET, FILTER)
+PREPARED = gr.prepare(*PARTS)
+RUN = PREPARED.simulate(steps=3)
 
 
 @pytest.mark.parametrize(
@@ -33,6 +35,38 @@ PARTS = (MODEL, NET, FILTER)
         (lambda: gr.fit(3), "fit.records: got 3, expected Records"),
         (lambda: gr.simulate(*PARTS, steps=2, seed=2**64), f"seed: got {2**64}, expected a whole number in 0.."),
         (lambda: gr.simulate(*PARTS, steps=2, trials=2**31), f"trials: got {2**31}, expected a whole number in 1.."),
+        (lambda: PREPARED.simulate(10), "Prepared.simulate: got 1 argument without a name, expected 0 at most; all"),
+        (lambda: PREPARED.replay(np.zeros((2, 3))), "Prepared.replay: got 1 argument without a name"),
+        (lambda: PREPARED.simulate(step=10), "the unknown argument 'step', expected"),
+        (lambda: PREPARED.simulate(steps=2, design=PREPARED), "design: got one to a filter that is prepared"),
+        (lambda: PREPARED.agent(), "Prepared.agent: got no id, expected id"),
+        (lambda: PREPARED.agent(0, 1), "Prepared.agent: got 2 arguments without a name, expected 1 at most; id"),
+        (lambda: gr.Prepared.load(), "Prepared.load: got no path"),
+        (lambda: RUN.alarms(trail=0), "Run.alarms: got the unknown argument 'trail', expected one of trial; did you"),
+        (lambda: RUN.to_pandas(1), "Run.to_pandas: got 1 argument without a name, expected 0 at most; there are none"),
+        (lambda: gr.Run.load(), "Run.load: got no path"),
+        (lambda: gr.expose(MODEL), "expose: got no measurements, attacked"),
+        (lambda: setattr(FILTER, "window", 5), "Structural.window: got an assignment, expected none"),
+        (lambda: setattr(MODEL, "A", 5), "Model.A: got an assignment, expected none"),
+        (lambda: setattr(NET, "new", 5), "Network.new: got an assignment"),
+        (lambda: setattr(PREPARED, "filter", FILTER), "Prepared.filter: got an assignment"),
+        (lambda: setattr(gr.check(*PARTS), "conditions", []), "Check.conditions: got an assignment"),
+        (lambda: gr.simulate(*PARTS, steps=2, attack=gr.attacks.Bias), "attack: got the function Bias, not called yet"),
+        (lambda: gr.simulate(*PARTS, steps=2, attack=[gr.attacks.Bias]), "attack: got the function Bias, not called"),
+        (lambda: gr.filters.make_filter(gr.filters.Dkf, {}), "make_filter.name: got the class Dkf, not made yet"),
+        (lambda: gr.filters.make_filter("saturation", {"attacked": 2**31}), "got 2147483648, expected a whole number"),
+        (lambda: gr.filters.make_filter("saturation", {"attacked": 2**40}), f"got {2**40}, expected a whole number"),
+        (lambda: gr.attacks.Bias([0], value=float("nan")), "attack.value: got no value, or nan, expected a number"),
+        (lambda: gr.filters.Saturation(threshold=1e308), "saturation.threshold: got 1e+308, expected a number of size"),
+        (lambda: gr.filters.PartialSharing(gain=0.1, start_covariance=[1.0, 1e300]), "start_covariance: got 1e+300"),
+        (lambda: gr.Model([[True, 0], [0, 1]], [[1, 0]]), "A[0][0]: got True or False"),
+        (lambda: gr.Model([[1, 0], [0, 1]], [[[1, False]]]), "[0][1]: got True or False"),
+        (lambda: gr.replay(*PARTS, measurements=[[1, True, 2]]), "measurements[0][1]: got true, expected a number"),
+        (lambda: gr.simulate(*PARTS, steps=2, link={"delay_rounds": 2}), "link.delay_rounds: got a delay without its"),
+        (lambda: gr.simulate(MODEL, gr.Network.path(3), FILTER, steps=2, link={"cuts": [(0, 2, 1, 2)]}),
+         "link.cuts: got the link from 0 to 2, expected a link of the network"),
+        (lambda: gr.simulate(MODEL, gr.Network.path(3), FILTER, steps=2, link={"lost": [(1, 0, 2, 0)]}),
+         "link.lost: got the link from 2 to 0, expected a link of the network"),
         (lambda: gr.simulate(*PARTS, steps=2, attack="bias"), "attack: got 'bias', expected an attack"),
     ],
 )  # fmt: skip
@@ -85,6 +119,30 @@ def test_an_attack_after_the_end_is_said_aloud() -> None:
         )
         for run in runs:
             assert any("bias starts at sample 7, after the last one (6)" in w for w in run.warnings) == told
+
+
+def test_an_attack_on_nobody_is_said_aloud() -> None:
+    run = gr.simulate(*PARTS, steps=5, attack=[gr.attacks.Bias([], value=1.0), gr.attacks.Silence([])])
+    assert "the attack bias names no agent: nothing is attacked" in run.warnings
+    assert "the attack silence names no agent: nothing is attacked" in run.warnings
+
+
+def test_alarms_that_cannot_be_are_said_aloud() -> None:
+    filter = gr.filters.Structural(alarm_after=6)
+    words = "alarm_after = 6 tests in a row, but the run has 5 samples: no alarm is possible"
+    assert words in gr.simulate(MODEL, NET, filter, steps=5).warnings
+    assert not any("alarm_after" in w for w in gr.simulate(MODEL, NET, filter, steps=6).warnings)
+
+
+def test_subclasses_keep_attributes_of_their_own() -> None:
+    class Own(gr.Filter):
+        def __init__(self) -> None:
+            super().__init__()
+            self.size = 3
+
+    own = Own()
+    own.size = 4
+    assert own.size == 4
 
 
 def test_damaged_runs_are_refused(tmp_path: Path) -> None:
@@ -150,3 +208,17 @@ def test_rows_of_an_adjacency_table_are_matched_by_name() -> None:
     assert gr.Network(path.loc[["c", "a", "b"]]) == gr.Network(path)
     with pytest.raises(gr.InvalidInput, match="matched by name"):
         gr.Network(path.rename(index={"a": "x"}))
+
+
+def test_observability_of_which_one_cannot_tell_is_not_denied() -> None:
+    A, C = np.diag([1.0, 1.0 + 1e-12]), np.ones((1, 2))
+    for units in ([1.0, 1.0], [1e-6, 1e6], [1e6, 1e-6], [1.0, 1e5]):
+        scaled = np.diag(units)
+        B, D = np.linalg.inv(scaled) @ A @ scaled, C @ scaled
+        assert gr.structure.visibility(B, D)["sight"] == "unclear"
+        with pytest.raises(gr.InvalidInput, match=r"observable: got .*cannot tell: distance .*e-13 at the mode 1"):
+            gr.observable(B, D)
+        with pytest.raises(gr.InvalidInput, match=r"s_sparse_observable: got .*cannot tell"):
+            gr.s_sparse_observable(B, D, 0)
+    assert gr.observable(np.diag([1.0, 1.1]), C)
+    assert not gr.observable(np.eye(2), C)

@@ -1,5 +1,6 @@
 """Slips on the command line: encodings, numbers of options, and what a design file shows."""
 
+import os
 from pathlib import Path
 
 import garrison as gr
@@ -78,3 +79,246 @@ def test_a_design_file_shows_model_and_network(tmp_path: Path, capsys: pytest.Ca
         "false_alarm = 0.01",
     ):
         assert words in shown, shown
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"),
+    [
+        (["runn"], 'did you mean "run"?'),
+        (["verfy", "."], 'did you mean "verify"?'),
+        (["fit", "r.csv", "--factor", "2"], 'unrecognized arguments: --factor 2; did you mean "--factors"?'),
+        (["fit", "r.csv", "--factor=2"], 'unrecognized arguments: --factor=2; did you mean "--factors"?'),
+        (["run", "s.toml", "-o", "x", "--forse"], 'did you mean "--force"?'),
+        (["import", "openac", "x"], 'did you mean "openacc"?'),
+    ],
+)
+def test_misspelt_commands_and_options(capsys: pytest.CaptureFixture[str], words: list[str], meant: str) -> None:
+    assert main(words) == 2
+    assert meant in capsys.readouterr().err
+
+
+def test_files_without_end_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    scenario = tmp_path / "s.toml"
+    model = SCENARIO.replace("[run]\nsteps = 5\n", "[data]\nfile = 'FILE'\n")
+    for file in ("/dev/zero", str(pipe)):
+        scenario.write_text(model.replace("FILE", file))
+        for command in (
+            ["check", str(scenario)],
+            ["check", file],
+            ["fit", file],
+            ["structure", f"{file}"],
+            ["design-file", file],
+            ["verify", file],
+            ["replay", file],
+        ):
+            capsys.readouterr()
+            assert main(command) in (1, 2), command
+            said = capsys.readouterr()
+            assert "a device or a pipe" in said.err + said.out or command[0] == "replay", (command, said)
+
+
+def test_a_single_case_is_verified(cases: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case = sorted(cases.rglob("*.json"))[0]
+    assert main(["verify", str(case)]) == 0
+    assert "verify: 1 file" in capsys.readouterr().out
+
+
+def test_advice_on_output_folders_works(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "s.toml"
+    path.write_text(SCENARIO)
+    assert main(["run", str(path), "-o", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert "--force" not in said and "choose a new or an empty one" in said
+    assert main(["run", str(path), "-o", str(tmp_path / "o")]) == 0
+    assert main(["run", str(path), "-o", str(tmp_path / "o")]) == 2
+    assert "replace it with --force" in capsys.readouterr().err
+    assert main(["run", str(path), "-o", str(tmp_path / "o"), "--force"]) == 0
+    (tmp_path / "o" / "summary.json").write_text("mine")
+    assert main(["run", str(path), "-o", str(tmp_path / "o")]) == 2
+    assert "--force" not in capsys.readouterr().err
+
+
+def test_a_matrix_with_a_gap_is_refused_with_its_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "A.csv"
+    path.write_text("0.9,0.1\n0.0,nan\n")
+    assert main(["structure", str(path)]) == 2
+    assert f"{path}, line 2, column 2: got 'nan', expected a finite number" in capsys.readouterr().err
+
+
+UNIT = """
+[model]
+A = [[1.0, 0.1], [0.0, 1.0]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0]]
+process_bound = 0.02
+measurement_bound = 0.01
+[network]
+kind = "ring"
+[filter]
+name = "saturation"
+threshold = 2.0
+initial_error = 1.0
+[run]
+steps = 20
+"""
+SOURCES = UNIT.replace(
+    'name = "saturation"\nthreshold = 2.0\ninitial_error = 1.0', 'name = "lfre"\nfaulty = 0'
+).replace("C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0]]", "C = [[1, 0], [1, 0], [1, 0], [1, 0], [1, 0]]")
+
+
+@pytest.mark.parametrize(
+    ("scenario", "old", "new", "words"),
+    [
+        (
+            UNIT,
+            "threshold = 2.0",
+            "threshold = 1e308",
+            "saturation.threshold: got 1e+308, expected a number of size at",
+        ),
+        (UNIT, "initial_error = 1.0", "initial_error = 1e200", "saturation.initial_error: got 1e+200"),
+        (UNIT, "initial_error = 1.0", "step = 1.0", "saturation.step: got 1, expected a number in (0, 0.55"),
+        (UNIT, "initial_error = 1.0", "step = 1e-300", "saturation.step: got 1e-300"),
+        (
+            UNIT,
+            "initial_error = 1.0",
+            "table = true",
+            "saturation.table: got true, expected false without initial_error",
+        ),
+        (UNIT, "threshold = 2.0", "threshold = nan", "saturation.threshold: got no value, or nan"),
+        (UNIT, "threshold = 2.0", "threshold = 2.0\nattacked = 2147483648", "got 2147483648, expected a whole number"),
+        (UNIT, "A = [[1.0, 0.1]", "A = [[true, 0.1]", "[model].A[0][0]: got true, expected a number"),
+        (UNIT, "C = [[1, 0]", "C = [[1, false]", "[model].C[0][1]: got false, expected a number"),
+        (UNIT, "steps = 20", "steps = 20\nx0 = [true, 1]", "[run].x0[0]: got true, expected a number"),
+        (UNIT, "steps = 20", "steps = 20\n[link]\ndelay_rounds = 2", "[link].delay_rounds: got a delay without its"),
+        (UNIT, "steps = 20", "steps = 20\n[link]\ndelay = 0.1\ndelay_rounds = 0", "[link].delay_rounds: got 0"),
+        (UNIT, "steps = 20", "steps = 20\nstart_error = 1e300", "[run].start_error: got 1e+300"),
+        (UNIT, "A = [[1.0", "A = [[1e200", "[model] A[0, 0]: got 1e+200, expected a number of size at most 1e+150"),
+        (
+            UNIT,
+            'kind = "ring"',
+            "edges = [[0, 1], [1, 2], [2, 3], [3, 4]]\npresent = [[1, 1, 0, 1]]",
+            "a network over 1 sa",
+        ),
+        (UNIT, "steps = 20", "steps = 20\n[link]\ncuts = [[0, 3, 1, 2]]", "[link]: got the unknown key 'cuts'"),
+        (
+            UNIT,
+            "[run]",
+            "[[attack]]\nkind = 'bias'\nvalue = 1.0\nagents = []\n[run]",
+            "[[attack]] 1.agents: got no agents",
+        ),
+        (UNIT, "[run]", "[[attack]]\nkind = 'silence'\nagents = []\n[run]", "[[attack]] 1.agents: got no agents"),
+        (
+            UNIT,
+            "[run]",
+            "[[attack]]\nkind = 'bias'\nvalue = 1.0\nschedule = []\n[run]",
+            "[[attack]] 1: schedule: got no phase",
+        ),
+        (UNIT, "[run]", "[[attack]]\nkind = 'bias'\nvalue = 1.0\nschedule = [[3, []]]\n[run]", "1.schedule: got no"),
+        (
+            SOURCES,
+            "faulty = 0",
+            "faulty = 0\npoles = [0.5, 1.0]",
+            "lfre.poles: got 1, expected numbers between -1 and 1",
+        ),
+        (
+            SOURCES,
+            "faulty = 0",
+            "faulty = 0\npoles = [-1, 0.2]",
+            "lfre.poles: got -1, expected numbers between -1 and 1",
+        ),
+        (
+            SCENARIO,
+            'name = "structural"',
+            'name = "structural"\nalarm_after = 6',
+            "structural.alarm_after: got 6, expected at",
+        ),
+    ],
+)
+def test_check_and_run_refuse_the_same(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], scenario: str, old: str, new: str, words: str
+) -> None:
+    path = tmp_path / "s.toml"
+    assert old in scenario
+    path.write_text(scenario)
+    assert main(["check", str(path)]) in (0, 1), capsys.readouterr().err
+    path.write_text(scenario.replace(old, new, 1))
+    for command in (["check", str(path)], ["run", str(path), "-o", str(tmp_path / "o")]):
+        capsys.readouterr()
+        assert main(command) == 2, command
+        said = capsys.readouterr().err
+        assert said.count("\n") == 1 and words in said
+    assert not (tmp_path / "o").exists()
+
+
+DRIVEN = UNIT.replace("process_bound", "B = [[0], [1]]\nprocess_bound").replace(
+    "steps = 20", "steps = 20\ninputs = [" + "[1.0]," * 20 + "]"
+)
+CHANGING = UNIT.replace("threshold = 2.0\ninitial_error = 1.0", "threshold = 2.0").replace(
+    "process_bound", "A_over_time = [" + "[[1, 0.1], [0, 1]]," * 20 + "]\nprocess_bound"
+)
+
+
+@pytest.mark.parametrize(
+    ("scenario", "old", "new", "words"),
+    [
+        (DRIVEN, "[1.0],]", "]", "[run].inputs: got 19 rows, expected 20, one per step of the run"),
+        (DRIVEN, "[1.0],]", "[nan],]", "inputs[19][0]: got nan, expected a finite number"),
+        (CHANGING, "[[1, 0.1], [0, 1]],]", "]", "[model]: got a model over 19 steps, expected at least 20"),
+    ],
+)
+def test_check_looks_at_the_whole_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], scenario: str, old: str, new: str, words: str
+) -> None:
+    path = tmp_path / "s.toml"
+    path.write_text(scenario)
+    assert main(["check", str(path)]) in (0, 1), capsys.readouterr().err
+    assert main(["run", str(path), "-o", str(tmp_path / "o")]) == 0, capsys.readouterr().err
+    path.write_text(scenario.replace(old, new, 1))
+    for command in (["check", str(path)], ["run", str(path), "-o", str(tmp_path / "p")]):
+        capsys.readouterr()
+        assert main(command) == 2, command
+        assert words in capsys.readouterr().err or command[0] == "run"
+
+
+RECORDED = """
+[model]
+A = [[0.9]]
+C = [[1.0], [1.0], [1.0]]
+names = ["a", "b", "c"]
+process_covariance = 0.1
+measurement_covariance = 0.2
+[network]
+kind = "ring"
+[filter]
+name = "dkf"
+[data]
+file = "d.csv"
+"""
+
+
+def test_columns_are_matched_by_name_or_not_at_all(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "s.toml").write_text(RECORDED)
+    body = "".join(f"{k},{k % 3},{k % 5},{k % 7}\n" for k in range(20))
+    other = "".join(f"{k},{k % 7},{k % 5},{k % 3}\n" for k in range(20))
+    found = []
+    for k, text in enumerate((f"t,a,b,c\n{body}", f"t,c,b,a\n{other}", f"t,x,y,z\n{body}")):
+        (tmp_path / "d.csv").write_text(text)
+        assert main(["run", str(tmp_path / "s.toml"), "-o", str(tmp_path / str(k))]) == 0
+        found.append((tmp_path / str(k) / "estimates.csv").read_text())
+    assert found[0] == found[1] == found[2]
+    (tmp_path / "d.csv").write_text(f"t,c,b,z\n{other}")
+    capsys.readouterr()
+    assert main(["check", str(tmp_path / "s.toml")]) == 2
+    assert "d.csv: got no column a, expected a, b, c; columns are matched by name" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("magic", "words"), [(b"\x1f\x8b\x08", "a gzip file"), (b"PK\x03\x04aa", "a spreadsheet")])
+def test_packed_files_are_called_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], magic: bytes, words: str
+) -> None:
+    (tmp_path / "x.csv").write_bytes(magic)
+    for command in ("fit", "structure", "check"):
+        capsys.readouterr()
+        assert main([command, str(tmp_path / "x.csv")]) == 2
+        assert words in capsys.readouterr().err

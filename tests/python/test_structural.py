@@ -62,7 +62,7 @@ def test_structure_command_refuses(tmp_path: Path, capsys: pytest.CaptureFixture
     file = tmp_path / "A.csv"
     for text, words in (
         ("1,2\n3", "line 2: got 1 column, expected 2"),
-        ("1,x\n2,3", "line 1, column 2: got 'x', expected a number"),
+        ("1,x\n2,3", "line 1, column 2: got 'x', expected a finite number"),
         ("1,2", "expected a square matrix"),
         ("", "an empty file"),
     ):

@@ -38,6 +38,7 @@ SAME = {
     "slashes, day first": "date,A,B\n1/1/2024,1.5,2\n2/1/2024,2.5,3\n13/1/2024,,4\n",
     "points": "Datum;A;B\n01.01.2024;1,5;2\n02.01.2024;2,5;3\n03.01.2024;;4\n",
     "year first": "date,A,B\n2024/01/01,1.5,2\n2024/01/02,2.5,3\n2024/01/03,,4\n",
+    "separator told first": "sep=;\ndate;A;B\n2024-01-01;1,5;2\n2024-01-02;2,5;3\n2024-01-03;;4\n",
     "midnight": "date,A,B\n2024-01-01 00:00,1.5,2\n2024-01-02 00:00,2.5,3\n2024-01-03 00:00,,4\n",
     "exponents": "date,A,B\n2024-01-01,15e-1,2E0\n2024-01-02,+2.5,3.\n2024-01-03,-,.4e1\n",
 }
@@ -67,6 +68,17 @@ CLOCKS = {
     "points and time": ("01.01.2024 00:00", "01.01.2024 01:00", "01.01.2024 02:00", HOURS, 3600),
     "seconds": ("0", "0.5", "1.0", [0.0, 0.5, 1.0], 0.5),
     "rounded seconds": ("0.00", "0.33", "0.67", [0.0, 0.33, 0.67], 0.335),
+    "milliseconds since 1970": ("1704067200000", "1704070800000", "1704074400000", HOURS, 3600),
+    "microseconds since 1970": ("1704067200000000", "1704070800000000", "1704074400000000", HOURS, 3600),
+    "nanoseconds since 1970": ("1704067200000000000", "1704070800000000000", "1704074400000000000", HOURS, 3600),
+    "milliseconds since 1970, days": ("1704067200000", "1.704153600e12", "1704240000000", DAYS, 86400),
+    "tenths of a second": (
+        "2024-01-01 00:00:00.000",
+        "2024-01-01 00:00:00.100",
+        "2024-01-01 00:00:00.200",
+        [dt.datetime(2024, 1, 1, 0, 0, 0, k * 100000) for k in range(3)],
+        0.1,
+    ),
     "ends of months": (
         "2024-01-31",
         "2024-02-29",
@@ -86,8 +98,13 @@ def test_any_regular_period(tmp_path: Path, kind: str) -> None:
     rows = "".join(f"{cell},{k}\n" for k, cell in enumerate(cells))
     found = read_records(write(tmp_path, f"time,A\n{rows}"))
     assert found.dates == dates
-    assert found.step == pytest.approx(step)
+    assert found.step == pytest.approx(step, rel=1e-12)
     assert found.values.ravel().tolist() == [0, 1, 2]
+
+
+def test_days_are_no_seconds(tmp_path: Path) -> None:
+    assert read_records(write(tmp_path, "day,A\n0,1\n1,2\n2,2\n")).step == 86400
+    assert read_records(write(tmp_path, "day [h],A\n0,1\n1,2\n2,2\n")).step == 3600
 
 
 def test_gaps_become_missing_records(tmp_path: Path) -> None:
@@ -103,7 +120,43 @@ def test_units_are_kept_and_are_no_part_of_the_name(tmp_path: Path) -> None:
     assert found.units == ["/min", "degC", ""]
 
 
+@pytest.mark.parametrize(
+    ("unit", "seconds"), [("ms", 1e-3), ("us", 1e-6), ("\u00b5s", 1e-6), ("min", 60), ("h", 3600), ("s", 1), ("k", 1)]
+)
+def test_units_of_the_time_count(tmp_path: Path, unit: str, seconds: float) -> None:
+    found = read_records(write(tmp_path, f"t [{unit}],A\n0,1\n2,1\n4,2\n"))
+    assert found.step == pytest.approx(2 * seconds)
+
+
+QUOTED = {
+    "between commas": 'date,A,B\n2024-01-01,"1,5","2,0"\n2024-01-02,"2,5",3\n2024-01-03,,4\n',
+    "between semicolons": 'date;A;B\n2024-01-01;"1,5";"2,0"\n2024-01-02;"2,5";"3"\n2024-01-03;;"4"\n',
+    "three places, but not alone": 'date,A,B\n2024-01-01,"1,500","2,0"\n2024-01-02,"2,500",3\n2024-01-03,,4\n',
+    "below one": 'date,A,B\n2024-01-01,"0,1500e1","2"\n2024-01-02,"0,25e1",3\n2024-01-03,,4\n',
+}
+
+
+@pytest.mark.parametrize("kind", QUOTED)
+def test_quoted_decimal_commas(tmp_path: Path, kind: str) -> None:
+    found = read_records(write(tmp_path, QUOTED[kind]))
+    np.testing.assert_array_equal(found.values, [[1.5, 2], [2.5, 3], [nan, 4]])
+
+
+def test_a_matrix_with_quoted_decimal_commas(tmp_path: Path) -> None:
+    np.testing.assert_array_equal(read_matrix(write(tmp_path, '"0,9","0,1"\n"0","0,5"\n')), [[0.9, 0.1], [0, 0.5]])
+
+
+def test_a_square_matrix_has_no_gaps(tmp_path: Path) -> None:
+    for cell in ("nan", "", "inf", "NA"):
+        with pytest.raises(gr.InvalidInput, match=r"x\.csv, line 2, column 1: got .*, expected a finite number"):
+            read_matrix(write(tmp_path, f"1,2\n{cell},4\n"), square=True)
+
+
 REFUSED = {
+    "years of two digits": ("date,A\n13/01/24,1\n14/01/24,2\n", ["line 2", "'13/01/24'", "YYYY-MM-DD"]),
+    "days of a spreadsheet": ("date,A\n45292,1\n45293,2\n", ["line 2", "the date '45292'", "YYYY-MM-DD"]),
+    "beyond all doubles": ("date,A\n2024-01-01,1e400\n2024-01-02,2\n", ["line 2, column A", "'1e400'"]),
+    "thousands in quotes": ('date,A\n2024-01-01,"1,234"\n2024-01-02,"2,345"\n', ["'1,234'", "thousands"]),
     "twice": ("date,A,A\n2024-01-01,1,2\n2024-01-02,1,2\n", ["line 1", "'A' twice (columns 1 and 2)"]),
     "empty name": ("date,A,\n2024-01-01,1,2\n2024-01-02,1,2\n", ["line 1", "no name for column 2"]),
     "duplicate": ("date,A\n2024-01-01,1\n2024-01-01,2\n", ["line 3", "the same time", "remove the duplicate"]),

@@ -18,8 +18,8 @@ enum class Sight { seen, unseen, unclear };
 struct GARRISON_EXPORT Visibility {
   Sight sight = Sight::seen;
   /// How far the nearest pair with an unseen mode is: least singular value of [A - z I; C] over |z| >= least,
-  /// relative to the size of the pair, in the units given or, where
-  /// that is below 1e-4 and less, in units of the pair's own (states and outputs balanced). The
+  /// relative to the size of the pair, in the units given where it is above 1e-4 there, otherwise in units of
+  /// the pair's own (states and outputs balanced), which are the same whatever units are given. The
   /// search starts at all eigenvalues and means of their clusters; a nearer pair elsewhere is not excluded.
   /// 0..1.
   double distance = 0.0;

@@ -49,6 +49,8 @@ Field<P, T> field(T P::* member, ParamInfo info) {
 
 /// Checks one value against its description; `owner` names the filter or attack in the message.
 GARRISON_EXPORT void check_param(const std::string& owner, const ParamInfo& info, const ParamValue& value);
+/// Refuses numbers of a filter that are finite and beyond kHuge: nothing that is made of them is a number.
+GARRISON_EXPORT void require_no_huge(const std::string& owner, const ParamMap& params);
 /// The known name closest to `unknown` (edit distance); empty when nothing is near.
 GARRISON_EXPORT std::string nearest_name(const std::string& unknown, std::span<const std::string> known);
 /// Refuses a parameter that `owner` does not have, with the nearest name and all names.

@@ -139,6 +139,7 @@ class FilterOf final : public AnyFilter {
  public:
   explicit FilterOf(typename F::Params params) : params_(std::move(params)) {
     check_params(std::string(F::name), params_);
+    require_no_huge(std::string(F::name), values(params_));
   }
   std::string name() const override { return std::string(F::name); }
   ParamMap params() const override { return values(params_); }
@@ -149,15 +150,23 @@ class FilterOf final : public AnyFilter {
   std::shared_ptr<const Prepared> restore(const Model& model, const Network& network,
                                           std::span<const std::byte> gains) const override {
     require_same_size(model, network);
-    typename F::Gains restored;
+    typename Runs::Gains restored;
     require_read(wire::from_bytes(gains, model.agents(), restored));
     require_runs(restored);
+    for (int id = 0; id < model.agents(); ++id) {
+      const auto heard = network.neighbours(id);
+      const Local local{
+          id,      model.agents(), model.states(), model.outputs(id), static_cast<int>(heard.size()),
+          nullptr, nullptr};
+      require_fit(fits<Runs>(restored, local, heard));
+    }
     return prepared(std::move(restored), model, network);
   }
   std::unique_ptr<Agent> agent(std::span<const std::byte> bytes) const override {
     Part<Runs> part;
     require_read(wire::from_bytes(bytes, INT32_MAX, part));
     require_runs(part.gains);
+    require_fit(whole(part));
     return agent_of<Runs>(std::move(part));
   }
   Check check(const Model& model, const Network& network) const override {
@@ -202,6 +211,11 @@ class FilterOf final : public AnyFilter {
     if (refusal != Refusal::none)
       refuse("design", "gains with a wrong " + std::string(word(refusal)),
              "gains of " + std::string(F::name) + " that this version of garrison wrote");
+  }
+  static void require_fit(bool fit) {
+    if (!fit)
+      refuse("design", "gains of " + std::string(F::name) + " for another model or network",
+             "those of the model and the network beside them", "the file is forged or damaged");
   }
   static void require_runs(const typename F::Gains& gains) {
     if (!runs<Runs>(gains))

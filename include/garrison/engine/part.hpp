@@ -2,6 +2,8 @@
 // One agent's part of a design, and the agent that a node makes of it: no design, no registry, no exception.
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
@@ -53,6 +55,36 @@ bool runs(const typename F::Gains& gains) noexcept {
     return true;
 }
 
+/// Whether gains from a file have what an agent reads: forged ones would lead out of them.
+template <class F>
+bool fits(const typename F::Gains& gains, const Local& local, std::span<const int> neighbours) noexcept {
+  if constexpr (requires { F::fits(gains, local, neighbours); })
+    return F::fits(gains, local, neighbours);
+  else
+    return true;
+}
+/// Whether plant, sensor, neighbours and gains of a part belong together.
+template <class F>
+bool whole(const Part<F>& part) noexcept {
+  const AgentPart& who = part.who;
+  const auto n = who.A.rows();
+  const auto stranger = [&](int j) { return j < 0 || j >= who.agents || j == who.id; };
+  if (who.id < 0 || who.id >= who.agents || n < 1 || who.A.cols() != n || who.C_transposed.rows() != n)
+    return false;
+  if (std::any_of(who.neighbours.begin(), who.neighbours.end(), stranger) ||
+      std::adjacent_find(who.neighbours.begin(), who.neighbours.end(), std::greater_equal<>()) !=
+          who.neighbours.end())
+    return false;
+  const Local local{who.id,
+                    who.agents,
+                    static_cast<int>(n),
+                    static_cast<int>(who.C_transposed.cols()),
+                    static_cast<int>(who.neighbours.size()),
+                    nullptr,
+                    nullptr};
+  return fits<F>(part.gains, local, who.neighbours);
+}
+
 /// The agent of a file that `write_part` (engine/design_file.hpp) wrote, or null. `why`: size, damaged,
 /// foreign (of another version, family or number of states, a whole design, a certificate, which needs the
 /// whole library, or gains that need what this build has not). Allocates; where memory runs out the process
@@ -71,7 +103,7 @@ std::unique_ptr<AgentOf<RunsOf<F>, n>> agent_of_part(std::span<const std::byte> 
   if (reader.end() != Refusal::none) return nullptr;
   if (wire::from_bytes(std::as_bytes(std::span(content)), INT32_MAX, part) != Refusal::none) return nullptr;
   if (!part.certificate.empty()) return nullptr;
-  if (part.who.A.rows() != head.states || part.who.C_transposed.rows() != head.states) return nullptr;
+  if (part.who.A.rows() != head.states || !whole(part)) return nullptr;
   if (!runs<RunsOf<F>>(part.gains)) return nullptr;
   why = Refusal::none;
   return std::make_unique<AgentOf<RunsOf<F>, n>>(

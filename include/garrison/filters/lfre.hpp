@@ -113,6 +113,11 @@ struct GARRISON_EXPORT Lfre {
   /// @throws InvalidInput when poles do not match the state, or when no agent is a source
   static Gains design(const Params& params, const Model& model, const Network& network);
   static Check check(const Params& params, const Model& model, const Network& network);
+  /// Of a design file: the gains have what this agent reads.
+  static bool fits(const Gains& g, const Local& l, std::span<const int>) noexcept {
+    const auto agents = static_cast<std::size_t>(l.agents);
+    return g.observer.size() == agents && g.parents.size() == agents;
+  }
   static int rounds(const Gains&) { return 1; }
 
   template <int n>

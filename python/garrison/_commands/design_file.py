@@ -8,6 +8,7 @@ import numpy as np
 
 from garrison import _core
 from garrison._commands.terminal import OK, Commands, print_json
+from garrison.files import contents
 from garrison.prepared import Prepared
 from garrison.words import count
 
@@ -25,7 +26,7 @@ def add(commands: Commands) -> None:
 
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
-    data = Path(args.file).read_bytes()
+    data = contents(Path(args.file))
     summary = _core.design_summary(data)
     whole = summary["agent"] is None
     gains = Prepared.from_bytes(data).outline if args.show and whole else []

@@ -91,12 +91,15 @@ def _ours(path: Path, force: bool) -> list[str]:
         raise _core.IoError(f"{path}: got a file, expected a folder to write to")
     if not path.exists() or all(p.name.startswith(_TEMPORARY) for p in path.iterdir()):
         return []
-    if not force:
-        raise _core.IoError(f"{path}: got a folder that is not empty; choose another one, or replace it with --force")
     hashes = _manifest(path / MANIFEST)
     for name, known in hashes.items():
         if (path / name).exists() and _hash(path / name) != known:
             raise _core.IoError(f"{path / name}: got a file that was changed after the run; move it away to run again")
+    if not force:
+        raise _core.IoError(
+            f"{path}: got a folder that is not empty, the output of an earlier run; "
+            "choose another one, or replace it with --force"
+        )
     return [*hashes, MANIFEST]
 
 
@@ -108,7 +111,8 @@ def _manifest(file: Path) -> dict[str, str]:
             raise ValueError
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         raise _core.IoError(
-            f"{file.parent}: got a folder that no run of garrison has written, and will not replace it"
+            f"{file.parent}: got a folder that is not empty and that no run of garrison has written, and will not "
+            "replace it; choose a new or an empty one"
         ) from None
     return hashes
 

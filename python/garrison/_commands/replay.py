@@ -5,6 +5,7 @@ from pathlib import Path
 
 from garrison import _core
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
+from garrison.files import contents
 
 
 def add(commands: Commands) -> None:
@@ -45,6 +46,6 @@ def do(args: argparse.Namespace) -> int:
 
 def _replayed(path: Path) -> dict[str, object]:
     try:
-        return dict(_core.replay_log(path.read_bytes()))
+        return dict(_core.replay_log(contents(path)))
     except _core.InvalidInput as error:
         raise _core.InvalidInput(f"{path}: {error}") from None

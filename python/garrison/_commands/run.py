@@ -7,6 +7,7 @@ import csv
 import json
 import re
 import sys
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -157,5 +158,7 @@ def _write_pictures(folder: Path, scenario: Scenario, rows: list[Row]) -> None:
     from garrison.figures import overview_figure
     from garrison.report.page import write_report
 
-    write_report(folder / "report.html", scenario, rows)
-    overview_figure(scenario, rows, signal_size(scenario)).savefig(folder / "overview.png", dpi=110)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the drawing library, on numbers and labels that do not fit its axes
+        write_report(folder / "report.html", scenario, rows)
+        overview_figure(scenario, rows, signal_size(scenario)).savefig(folder / "overview.png", dpi=110)

@@ -12,7 +12,7 @@ from garrison.words import count
 def add(commands: Commands) -> None:
     """Declare the command."""
     command = commands.add_parser("verify", help="replay reference cases; exit 1 on any miss", allow_abbrev=False)
-    command.add_argument("folder", help="folder with case files (*.json), subfolders included")
+    command.add_argument("folder", help="folder with case files (*.json), subfolders included; or one such file")
     command.add_argument("--family", help="only the cases of this family, e.g. saturation")
     command.add_argument("--fields", action="store_true", help="print every field, not only the misses")
     command.add_argument("--json", action="store_true", help="print JSON")

@@ -73,6 +73,7 @@ __all__: list[str] = [
     "split_outputs",
     "structural",
     "structure",
+    "surely_observable",
     "tau0",
     "varpi",
 ]
@@ -1178,7 +1179,8 @@ def observable(
     C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
 ) -> bool:
     """
-    (A, C) is observable, C (m, n).
+    (A, C) is observable, C (m, n). Raises InvalidInput where rounding of the numbers decides and one cannot tell;
+    structure.visibility says how far that is.
     """
 
 def one_step_sparse_observable(
@@ -1254,6 +1256,14 @@ def simulate(
 def split_outputs(model: Model, network: Network) -> tuple[Model, Network, list[int]]:
     """
     (model, network, owner) with an agent per output: m agents that hear each other for one with m outputs.
+    """
+
+def surely_observable(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+) -> bool:
+    """
+    The same, False where one cannot tell.
     """
 
 def tau0(

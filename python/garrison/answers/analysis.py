@@ -17,12 +17,13 @@ from garrison.answers.removals import Removal
 from garrison.answers.sensors import sensors_of
 from garrison.answers.watch import Progress, Watch
 from garrison.drawing import drawn
-from garrison.words import count, hinted, refusal, require_plant, shown
+from garrison.words import count, hinted, hinted_methods, refusal, require_plant, shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@hinted_methods
 @dataclass
 class Analysis:
     """Answers about a model on a network. Sensors are single measured numbers; `sensors` has their names.

@@ -157,7 +157,7 @@ class Questions:
         finished = False
         with self.watch.question(words, 0.4):
             for k in range(len(self.sensors.rows)):
-                if not _core.observable(self.A, np.delete(self.sensors.rows, k, axis=0)):
+                if not _core.surely_observable(self.A, np.delete(self.sensors.rows, k, axis=0)):
                     names.append(self.sensors.names[k])
             finished = True
         if not finished:

@@ -101,7 +101,7 @@ def unseen(A: Array, rows: Array) -> int:
 def _seen(A: Array, rows: Array) -> bool:
     if len(rows) == 0:
         return False
-    return bool(_core.observable(A, rows))
+    return bool(_core.surely_observable(A, rows))
 
 
 def _is_identity(A: Array) -> bool:

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison.numeric import numbers
-from garrison.words import count, refusal
+from garrison.words import count, hinted_methods, refusal
 
 Array = NDArray[np.float64]
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class Certified:
     """What is sure of the state at every sample: |x_i - center_i| <= box_i for all i, and ||x - center|| <= radius.

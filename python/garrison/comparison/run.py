@@ -20,7 +20,7 @@ from garrison.kalman import central_kalman, local_kalman
 from garrison.prepared import prepare
 from garrison.record import Run
 from garrison.varying import undriven
-from garrison.words import hinted, refusal, require_plant
+from garrison.words import hinted, hinted_methods, refusal, require_plant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,6 +46,7 @@ COLUMNS = (
 )  # fmt: skip
 
 
+@hinted_methods
 @dataclass
 class Comparison:
     """rows: a dict per filter and attack ("none" first), None where something does not exist for it.

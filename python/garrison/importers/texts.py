@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.files import contents
 from garrison.tables.cells import number
 from garrison.tables.text import read_rows
 from garrison.words import near, refusal
@@ -61,7 +62,7 @@ def _plain(cell: str) -> str:
 def bytes_of(path: Path, expected: str) -> bytes:
     """The bytes of a file, unpacked where they are gzip. Raises IoError."""
     try:
-        data = path.read_bytes()
+        data = contents(path)
         return gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data
     except OSError as error:
         what = error.strerror or "a damaged gzip file"

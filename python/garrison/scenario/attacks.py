@@ -37,6 +37,7 @@ def read_attack(section: Section, names: list[str], records: Records | None, sam
         attack = attacks.make(kind, **arguments)
     except _core.Error as error:
         raise renamed(error, f"{section.where}:") from None
+    _require_somebody(section, attack)
     for agent in attack.agents:
         if not 0 <= agent < len(names):
             raise refusal(section.place("agents"), str(agent), f"numbers in 0..{len(names) - 1}")
@@ -45,6 +46,14 @@ def read_attack(section: Section, names: list[str], records: Records | None, sam
             section.place("start"), shown(section.table.get("start")), f"a start within the run of {samples} samples"
         )
     return attack
+
+
+def _require_somebody(section: Section, attack: _core.Attack) -> None:
+    if attack.agents:
+        return
+    key = next((k for k in ("schedule", "agents") if k in section), "agents")
+    advice = "leave out the whole table where nobody is attacked"
+    raise refusal(section.place(key), "no agents", "one agent at least", advice)
 
 
 def _agents(where: str, wanted: Any, names: list[str]) -> list[int]:

@@ -57,10 +57,8 @@ def read_data(section: Section, model: _core.Model, fitted: Fit | None, names: l
         known = columns_of(path.name, names_of, values, wanted)
         rest = [k for k, name in enumerate(names_of) if name not in wanted]
         names_of, values = [names_of[k] for k in rest], values[:, rest]
-    if model.outputs == model.agents and sorted(names_of) == sorted(names):
-        values = values[:, [names_of.index(name) for name in names]]
-    elif model.output_names and sorted(names_of) == sorted(model.output_names):
-        values = values[:, [names_of.index(name) for name in model.output_names]]
+    columns = _by_name(path.name, names_of, names if model.outputs == model.agents else [], list(model.output_names))
+    values = values[:, columns]
     if table.clock is None:
         if "from" in section or "to" in section:
             raise refusal(section.where, "from or to", "none, because the file has no column of times")
@@ -78,6 +76,22 @@ def read_data(section: Section, model: _core.Model, fitted: Fit | None, names: l
         records = records.of(names_of)
     found = Recording(records.values, records=records, notes=records.notes, inputs=known)
     return _require_width(found, path.name, model)
+
+
+def _by_name(file: str, have: list[str], agents: list[str], outputs: list[str]) -> list[int]:
+    """The columns in the order of the agents, or of the outputs, where they have these names; else as they come.
+
+    Raises InvalidInput where only some have them: then it is not the order that is meant.
+    """
+    for wanted in filter(None, (agents, outputs)):
+        if sorted(have) == sorted(wanted):
+            return [have.index(name) for name in wanted]
+    for wanted in filter(None, (agents, outputs)):
+        missing = [name for name in wanted if name not in have]
+        if len(have) == len(wanted) > len(missing):
+            advice = "columns are matched by name"
+            raise refusal(f"[data].file {file}", f"no column {', '.join(missing)}", ", ".join(wanted), advice)
+    return list(range(len(have)))
 
 
 def _input_columns(section: Section, model: _core.Model) -> list[str]:

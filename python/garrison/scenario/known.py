@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.numeric import numbers
 from garrison.scenario.section import Section, renamed
 from garrison.tables import read_matrix, read_table
 from garrison.tables.cells import number
@@ -50,7 +51,9 @@ def read_present(section: Section, network: _core.Network) -> VaryingNetwork | N
     if "present" not in section:
         return None
     try:
-        return VaryingNetwork(network, np.atleast_2d(section.numbers("present")))
+        return VaryingNetwork(
+            network, np.atleast_2d(numbers(section.place("present"), section.array("present"), flags=True))
+        )
     except _core.Error as error:
         raise renamed(error, section.where) from None
 

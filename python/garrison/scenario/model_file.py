@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.files import contents
 from garrison.numeric import numbers
 from garrison.scenario.section import whole
 from garrison.sizes import require_memory
@@ -24,7 +25,7 @@ _EXPECTED = "a model file of garrison fit or garrison import (JSON)"
 def read_model_file(path: Path) -> tuple[_core.Model, list[str] | None]:
     """The model of a file, and the names of its agents where they are known. Raises IoError or InvalidInput."""
     try:
-        plain = json.loads(path.read_text(encoding="utf-8-sig"))
+        plain = json.loads(contents(path).decode("utf-8-sig"))
     except OSError as error:
         raise _core.IoError(f"{path}: got {error.strerror}, expected {_EXPECTED}") from None
     except (ValueError, RecursionError) as error:

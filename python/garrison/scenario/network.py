@@ -172,8 +172,8 @@ def _stations(section: Section, wanted: list[str] | None) -> tuple[list[str], li
             raise refusal(place, "no code", "the code of a station in every row")
         if code in found:
             raise refusal(place, f"the code {code!r} twice", "a different code for every station")
-        latitude = _degrees(place, "latitude", row[at["latitude"]], 90.0, rows.separator)
-        longitude = _degrees(place, "longitude", row[at["longitude"]], 360.0, rows.separator)
+        latitude = _degrees(place, "latitude", row[at["latitude"]], 90.0)
+        longitude = _degrees(place, "longitude", row[at["longitude"]], 360.0)
         found[code] = row[at["name"]] or code, latitude, longitude
     codes = list(found) if wanted is None else wanted
     missing = [code for code in codes if code not in found]
@@ -198,8 +198,8 @@ def _columns(where: str, head: list[str]) -> dict[str, int]:
     return at
 
 
-def _degrees(place: str, name: str, cell: str, most: float, separator: str) -> float:
-    value = number(cell, separator != "," and has_decimal_comma([cell]))
+def _degrees(place: str, name: str, cell: str, most: float) -> float:
+    value = number(cell, has_decimal_comma([cell]))
     if value is None or not math.isfinite(value) or abs(value) > most:
         raise refusal(f"{place}, column {name}", repr(cell), f"degrees in {-most:g}..{most:g}, with a point")
     return value

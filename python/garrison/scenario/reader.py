@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.arguments import ONE_SPREAD, SPREADS, pair_of_levels
+from garrison.arguments import ONE_SPREAD, SPREADS, moderate, pair_of_levels
+from garrison.files import contents
 from garrison.fitting import Fit
 from garrison.numeric import numbers
 from garrison.objects import named
@@ -154,6 +155,7 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
     )
     _levels(scenario.certificate, fitted, "[certificate] levels")
     _put(scenario, recording)
+    _require_long_enough(scenario)
     for entry in tables_of("attack", document.get("attack", []), folder):
         scenario.attacks.append(read_attack(entry, names, scenario.records, scenario.steps))
     return scenario
@@ -162,7 +164,7 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
 def read_document(path: Path) -> dict[str, Any]:
     """The tables of a scenario file, unchecked. Raises IoError or InvalidInput."""
     try:
-        return tomllib.loads(decoded(path, path.read_bytes(), "a TOML document"))
+        return tomllib.loads(decoded(path, contents(path), "a TOML document"))
     except _core.IoError:
         raise
     except OSError as error:
@@ -189,8 +191,7 @@ def _run(section: Section, model: _core.Model, recorded: bool) -> dict[str, Any]
         out["seed"] = section.whole("seed", 0, 0, 2**63 - 1)
     if "start_error" in section:
         out["start_error"] = section.number("start_error", 0.0)
-        if not 0 <= out["start_error"] < np.inf:
-            raise refusal(section.place("start_error"), shown(out["start_error"]), "a number >= 0")
+        moderate(section.place("start_error"), out["start_error"])
     for key in ("x0", "start"):
         if key in section:
             out[key] = numbers(section.place(key), section.array(key))
@@ -213,7 +214,9 @@ def _link(section: Section) -> dict[str, float]:
             if not 0 <= out[key] <= 1:
                 raise refusal(section.place(key), shown(section.table[key]), "a probability in 0..1")
     if "delay_rounds" in section:
-        out["delay_rounds"] = whole(section.place("delay_rounds"), section.table["delay_rounds"])
+        out["delay_rounds"] = whole(section.place("delay_rounds"), section.table["delay_rounds"], 1)
+        if "delay" not in out:
+            raise refusal(section.place("delay_rounds"), "a delay without its probability", "the key delay beside it")
     return out
 
 
@@ -259,6 +262,15 @@ def _noise(section: Section, recording: Recording | None) -> str:
     if recording is not None and section.table:
         raise refusal(section.where, "a law together with [data]", "none", "records carry their own noise")
     return section.text("law", "auto")  # the laws are the plant's; a rehearsal of the run refuses others
+
+
+def _require_long_enough(scenario: Scenario) -> None:
+    """Refuse filters that cannot raise an alarm before the run is over."""
+    for label, filter in scenario.filters:
+        needed = filter.params.get("alarm_after", 1) if filter is not None else 1
+        if needed > scenario.steps:
+            words = f"at most {scenario.steps}, the samples of the run"
+            raise refusal(f"{label}.alarm_after", str(needed), words, "no alarm could be raised before it is over")
 
 
 def _put(scenario: Scenario, recording: Recording | None) -> None:

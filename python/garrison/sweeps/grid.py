@@ -1,6 +1,7 @@
 """The points of a sweep: all combinations of values, or the rows of a file."""
 
 import csv
+import io
 import itertools
 import math
 from collections.abc import Iterable, Mapping
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from garrison.arguments import entries
+from garrison.files import contents
 from garrison.words import refusal
 
 Point = dict[str, Any]
@@ -76,8 +78,8 @@ def _value(word: str) -> Any:
 def read_points(path: str | Path) -> list[Point]:
     """One point per row of a CSV file whose header names keys of the scenario."""
     try:
-        with Path(path).open(encoding="utf-8-sig", newline="") as file:
-            head, *rows = [row for row in csv.reader(file) if row]
+        text = contents(Path(path)).decode("utf-8-sig")
+        head, *rows = [row for row in csv.reader(io.StringIO(text, newline="")) if row]
     except OSError as error:
         raise refusal("--points", f"{path}: {error.strerror}", "a CSV file that can be read") from None
     except (ValueError, UnicodeDecodeError):

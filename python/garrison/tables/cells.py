@@ -19,7 +19,8 @@ def number(cell: str, decimal_comma: bool = False) -> float | None:
     if decimal_comma:
         text = text.replace(",", ".")
     if _NUMBER.fullmatch(text):
-        return float(text)
+        found = float(text)
+        return found if abs(found) < float("inf") else None  # 1e400: no double holds it
     if is_missing(text):
         return float("nan")
     return _INFINITE.get(text.lower())

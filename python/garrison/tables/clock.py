@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 #: a date for daily (or slower) records, a date with a time (UTC where a zone was given), or seconds
 Moment: TypeAlias = dt.date | float
 _DAY = 86400.0
+_EPOCH = dt.datetime(1970, 1, 1)
 _MONTH = 365.25 / 12 * _DAY
 #: part of a period by which times with a clock may be off a regular grid
 _JITTER = 0.05
@@ -25,6 +26,20 @@ _JITTER = 0.05
 _MOST_FILLED = 50
 _SLASHED = re.compile(r"(\d{1,4})[./-](\d{1,2})[./-](\d{1,4})(?:[T ]+(\d{1,2}):(\d{2})(?::(\d{2})(?:[.,]\d*)?)?)?")
 _ISO = re.compile(r"\d{4}-\d{2}-\d{2}([T ]\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?\s*(Z|[+-]\d{2}:?\d{2})?)?")
+#: seconds of the units that a header may name, for plain numbers
+_UNITS = {
+    **dict.fromkeys(("ns", "nanoseconds"), 1e-9),
+    **dict.fromkeys(("us", "\N{MICRO SIGN}s", "\N{GREEK SMALL LETTER MU}s", "microseconds"), 1e-6),
+    **dict.fromkeys(("ms", "msec", "milliseconds"), 1e-3),
+    **dict.fromkeys(("min", "minutes"), 60.0),
+    **dict.fromkeys(("h", "hr", "hours"), 3600.0),
+    **dict.fromkeys(("d", "days"), _DAY),
+}
+#: units that a name implies, and names of columns that hold more than a number
+_IMPLIED = {"day": "d"}
+_DATES = ("date", "datum")
+#: plain numbers from which on they count parts of a second since 1970 (from 1973 to the year 5138), and these parts
+_EPOCHS = ((1e17, 1e20, 1e-9), (1e14, 1e17, 1e-6), (1e11, 1e14, 1e-3))
 #: YYYYMMDD, as plain digits
 _COMPACT = re.compile(r"((?:18|19|20)\d{2})(0[1-9]|1[0-2])(0[1-9]|[12]\d|3[01])")
 
@@ -49,30 +64,41 @@ def looks_like_time(cell: str) -> bool:
     return bool(_ISO.fullmatch(cell.strip()) or _SLASHED.fullmatch(cell.strip()))
 
 
-def read_clock(rows: Rows, cells: list[str]) -> Clock:
-    """The regular clock that the first column tells, gaps filled in. Raises InvalidInput with the line."""
+def read_clock(rows: Rows, cells: list[str], name: str = "", unit: str = "") -> Clock:
+    """The regular clock that the first column tells, gaps filled in. Raises InvalidInput with the line.
+
+    name, unit: of the column, for plain numbers: days in a column `day`, no numbers at all in a column `date`, seconds
+    where no unit of time is said. Numbers of the size of milliseconds (or micro-, nanoseconds) since 1970 are dates
+    with a time.
+    """
     places = [f"{rows.path}, line {line}" for line in rows.lines[1:]]
     for place, cell in zip(places, cells, strict=True):
         if is_missing(cell):
             raise refusal(place, "no time", "a date or a number of seconds in the first column")
     if all(_COMPACT.fullmatch(c.strip()) for c in cells):
         cells = [_COMPACT.sub(r"\1-\2-\3", c.strip()) for c in cells]
-    plain = [number(c, rows.separator != ",") for c in cells]
+    plain = [number(c, True) for c in cells]
     moments: list[Moment]
     if plain[0] is not None and not looks_like_time(cells[0]):
-        moments = _seconds(places, cells, plain)
+        moments = _seconds(places, cells, plain, unit or _IMPLIED.get(name.lower(), ""))
+        if name.lower() in _DATES and not isinstance(moments[0], dt.date):
+            raise refusal(places[0], f"the date {cells[0]!r}", "YYYY-MM-DD in the first column")
     else:
         moments = _dates(places, cells)
     return _regular(places, moments)
 
 
-def _seconds(places: list[str], cells: list[str], plain: list[float | None]) -> list[Moment]:
-    out: list[Moment] = []
+def _seconds(places: list[str], cells: list[str], plain: list[float | None], unit: str) -> list[Moment]:
+    out: list[float] = []
     for place, cell, value in zip(places, cells, plain, strict=True):
         if value is None or not np.isfinite(value):
             raise refusal(place, f"the time {cell!r}", "a number of seconds, as in the rows before")
         out.append(value)
-    return out
+    for least, most, part in _EPOCHS:
+        if all(least <= value < most for value in out):
+            return _plain_dates([_EPOCH + dt.timedelta(microseconds=round(value * part * 1e6)) for value in out])
+    factor = _UNITS.get(unit.strip().lower(), 1.0)
+    return [value * factor for value in out]
 
 
 def _dates(places: list[str], cells: list[str]) -> list[Moment]:
@@ -82,9 +108,12 @@ def _dates(places: list[str], cells: list[str]) -> list[Moment]:
     if any(zoned) and not all(zoned):
         raise refusal(places[zoned.index(False)], "a time without a time zone", "one with a zone, as other rows have")
     utc = [m.astimezone(dt.UTC).replace(tzinfo=None) if m.tzinfo else m for m in found]
-    if all(m.time() == dt.time() for m in utc):
-        return [m.date() for m in utc]
-    return list(utc)
+    return _plain_dates(utc)
+
+
+def _plain_dates(moments: list[dt.datetime]) -> list[Moment]:
+    """As dates where all of them are at midnight."""
+    return [m.date() for m in moments] if all(m.time() == dt.time() for m in moments) else list(moments)
 
 
 def _order(places: list[str], cells: list[str]) -> str:
@@ -107,9 +136,11 @@ def _moment(place: str, cell: str, order: str) -> dt.datetime:
         found = _SLASHED.fullmatch(text)
         if found is None:
             raise ValueError
-        named = dict(zip(order, (int(v) for v in found.groups()[:3]), strict=True))
+        named = dict(zip(order, found.groups()[:3], strict=True))
+        if len(named["y"]) != 4:  # of which century?
+            raise ValueError
         hour, minute, second = (int(v or 0) for v in found.groups()[3:])
-        return dt.datetime(named["y"], named["m"], named["d"], hour, minute, second)
+        return dt.datetime(int(named["y"]), int(named["m"]), int(named["d"]), hour, minute, second)
     except ValueError:
         raise _core.InvalidInput(
             f"{place}: got the date {cell!r}, expected YYYY-MM-DD in the first column, with HH:MM:SS if there is a time"
@@ -123,8 +154,15 @@ def seconds_of(moment: Moment) -> float:
     return moment.toordinal() * _DAY if isinstance(moment, dt.date) else float(moment)
 
 
+def _since(first: Moment, moment: Moment) -> float:
+    """Seconds; without the rounding of a difference of two large numbers."""
+    if isinstance(moment, dt.datetime) and isinstance(first, dt.datetime):
+        return (moment - first).total_seconds()
+    return seconds_of(moment) - seconds_of(first)
+
+
 def _regular(places: list[str], moments: list[Moment]) -> Clock:
-    times = np.array([seconds_of(m) for m in moments])
+    times = np.array([_since(moments[0], m) for m in moments])
     steps = np.diff(times)
     for k, step in enumerate(steps):
         if step <= 0:

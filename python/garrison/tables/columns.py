@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.tables.cells import has_decimal_comma, is_missing, number
+from garrison.tables.cells import is_missing, number
 from garrison.tables.clock import Clock, looks_like_time, read_clock
-from garrison.tables.text import Rows, read_rows, require_widths
+from garrison.tables.text import Rows, decimal_comma, read_rows, require_widths
 from garrison.words import count, refusal
 
 Array = NDArray[np.float64]
@@ -79,7 +79,7 @@ def read_table(path: str | Path) -> Table:
     columns = [_column(text) for text in head]
     body = rows.cells[1:]
     timed = _is_timed(columns[0].name, [row[0] for row in body])
-    clock = read_clock(rows, [row[0] for row in body]) if timed else None
+    clock = read_clock(rows, [row[0] for row in body], columns[0].name, columns[0].unit) if timed else None
     named = columns[1:] if timed else columns
     _require_names(rows, named)
     values = _numbers(rows, 1, int(timed), [c.name for c in named])
@@ -136,7 +136,7 @@ def _require_names(rows: Rows, columns: list[Column]) -> None:
 def _numbers(rows: Rows, first: int, skip: int, names: list[str]) -> Array:
     """Numbers of all cells; everything that is none is refused at once, the first of each column by name."""
     cells = [row[skip:] for row in rows.cells[first:]]
-    comma = rows.separator != "," and has_decimal_comma([c for row in cells for c in row])
+    comma = decimal_comma(rows, [c for row in cells for c in row])
     values = np.empty((len(cells), len(names)))
     wrong: dict[str, str] = {}
     for r, row in enumerate(cells):
@@ -168,7 +168,7 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
             kinds, counts = np.unique(far, return_counts=True)
             worst = kinds[np.argmax(counts)]
             how = (
-                f"{np.abs(worst - middle) / spread:.0f} robust deviations off" if spread > 0 else "far from all others"
+                f"{np.abs(worst - middle) / spread:.4g} robust deviations off" if spread > 0 else "far from all others"
             )
             notes.append(
                 f"column {column.name}: {count(len(far), 'value')} such as {worst:g}, {how}; "

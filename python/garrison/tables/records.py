@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from garrison.tables.clock import Moment, seconds_of
 from garrison.tables.columns import read_table
-from garrison.words import refusal
+from garrison.words import hinted_methods, refusal
 
 Array = NDArray[np.float64]
 _DAY = 86400.0
 _DAYS_OF_A_YEAR = 365.25
 
 
+@hinted_methods
 @dataclass(frozen=True)
 class Records:
     """Regular records: times, and one column of numbers per station; nan = missing.

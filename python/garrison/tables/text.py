@@ -6,11 +6,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from garrison import _core
+from garrison.files import contents
+from garrison.tables.cells import has_decimal_comma, number
 from garrison.words import count, refusal
 
 _SEPARATORS = (";", "\t", "|", ",")
 _NAMES = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas", " ": "blanks"}
 _BOMS = ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"))
+#: how packed files and spreadsheets begin
+_PACKED = (
+    (b"\x1f\x8b", "a gzip file (unpack it first)"),
+    (b"PK\x03\x04", "a zip file or a spreadsheet (save it as text)"),
+    (b"\xd0\xcf\x11\xe0", "a spreadsheet (save it as text)"),
+)
 #: lines that the separator is guessed from
 _LOOK = 50
 
@@ -45,7 +53,12 @@ def read_rows(path: str | Path) -> Rows:
     numbered = [(k, line) for k, line in numbered if not line.lstrip().startswith("#")]
     if not numbered:
         raise refusal(str(path), "an empty file", "rows of cells separated by commas, semicolons or tabs")
-    separator = _separator([line for _, line in numbered[:_LOOK]])
+    told = re.fullmatch(r'"?sep=(.)"?', numbered[0][1].strip())  # the first line that spreadsheets write
+    if told is not None and told[1] in _NAMES and len(numbered) > 1:
+        numbered.pop(0)
+        separator = told[1]
+    else:
+        separator = _separator([line for _, line in numbered[:_LOOK]])
     cells = _split([line for _, line in numbered], separator, path)
     lines = [k for k, _ in numbered]
     return Rows(path, _without_empty_end(cells), lines, separator, comment)
@@ -53,7 +66,7 @@ def read_rows(path: str | Path) -> Rows:
 
 def _text(path: Path) -> str:
     try:
-        data = path.read_bytes()
+        data = contents(path)
     except OSError as error:
         raise _core.IoError(f"{path}: got {error.strerror}, expected a readable CSV file") from error
     text = decoded(path, data, "a readable CSV file")
@@ -64,6 +77,9 @@ def _text(path: Path) -> str:
 
 def decoded(path: Path, data: bytes, expected: str) -> str:
     """UTF-8, or what the mark at the beginning says. Raises IoError for other bytes."""
+    packed = next((name for magic, name in _PACKED if data.startswith(magic)), "")
+    if packed:
+        raise _core.IoError(f"{path}: got {packed}, expected {expected}")
     encoding = next((name for bom, name in _BOMS if data.startswith(bom)), "utf-8")
     try:
         return data.decode(encoding)
@@ -118,6 +134,21 @@ def _without_empty_end(cells: list[list[str]]) -> list[list[str]]:
         cells = [row[:-1] if len(row) == width else row for row in cells]
         body = cells[1:] or cells
     return cells
+
+
+def decimal_comma(rows: Rows, cells: list[str]) -> bool:
+    """Whether commas in these cells are decimal ones. In a file of commas the cells were quoted.
+
+    Raises InvalidInput where these may as well separate thousands.
+    """
+    if not has_decimal_comma(cells):
+        return False
+    if rows.separator == ",":
+        with_comma = [cell for cell in cells if "," in cell and number(cell, True) is not None]
+        if all(re.fullmatch(r"[+-]?[1-9]\d{0,2},\d{3}", cell) for cell in with_comma):
+            got = f"{with_comma[0]!r}, in which the comma is a decimal one or separates thousands"
+            raise refusal(str(rows.path), got, "numbers with a decimal point and nothing between thousands")
+    return True
 
 
 def require_widths(rows: Rows, first: int, width: int) -> None:

@@ -11,6 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from garrison._core import Error, IoError
+from garrison.files import contents
 from garrison.verify import certificates, partial_sharing, platoon, rdkf, saturation, structural
 from garrison.verify.bad import judge
 from garrison.verify.compare import FieldResult, compare
@@ -72,7 +73,7 @@ def _template(case: dict[str, Any], family: str, path: Path) -> dict[str, Any]:
 def verify_file(path: Path, family: str | None = None) -> FileResult | None:
     """Recompute one file; None when it belongs to another family than the one asked for."""
     try:
-        case = json.loads(path.read_text(encoding="utf-8-sig"))
+        case = json.loads(contents(path).decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError) as error:
         return FileResult(path.name, "unknown", [FieldResult.failure("file", f"cannot be read: {error}")])
     paper = _family(case, path) if isinstance(case, dict) else "unknown"
@@ -102,9 +103,10 @@ def verify_file(path: Path, family: str | None = None) -> FileResult | None:
 
 
 def verify(folder: str | Path, family: str | None = None) -> list[FileResult]:
-    """Recompute every case file (*.json) in `folder` and its subfolders, or only those of one family."""
+    """Recompute every case file (*.json) in `folder` and its subfolders, or one file; or only those of one family."""
     root = Path(folder)
-    if not root.is_dir():
-        raise IoError(f"{root}: got no such folder, expected a folder with case files (*.json)")
-    results = [verify_file(path, family) for path in sorted(root.rglob("*.json"))]
+    if not root.exists():
+        raise IoError(f"{root}: got no such folder or file, expected case files (JSON)")
+    paths = sorted(root.rglob("*.json")) if root.is_dir() else [root]
+    results = [verify_file(path, family) for path in paths]
     return [result for result in results if result is not None]

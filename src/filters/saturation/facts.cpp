@@ -14,7 +14,7 @@ constexpr double kCleanGamma = 1e-14;  // complete graphs: rounding leaves 1e-17
 
 void require_parameters(const Saturation::Params& p, const Model& model) {
   if (std::isnan(p.threshold) && !p.adaptive)
-    refuse("saturation.threshold", "no value", "a number > 0 (inf = never saturate)",
+    refuse("saturation.threshold", "no value, or nan", "a number > 0 (inf = never saturate)",
            "or set adaptive = true");
   if (!std::isnan(p.threshold) && p.adaptive)
     refuse("saturation.threshold", text(p.threshold), "nothing together with adaptive = true",
@@ -26,8 +26,19 @@ void require_parameters(const Saturation::Params& p, const Model& model) {
     refuse("saturation.attacked", std::to_string(p.attacked),
            "at most the number of agents, " + std::to_string(model.agents()));
   if ((p.detector || p.adaptive) && std::isnan(p.initial_error))
-    refuse("saturation.initial_error", "no value", "a number > 0",
+    refuse("saturation.initial_error", "no value, or nan", "a number > 0",
            std::string(p.detector ? "the detector" : "the adaptive threshold") + " needs error bounds");
+  const bool bounded = !std::isnan(p.initial_error) && (p.adaptive || std::isfinite(p.threshold));
+  if (p.table && !bounded)
+    refuse("saturation.table", "true", "false without initial_error and a finite threshold",
+           "the table starts from a bound on the initial error");
+  if (p.detector && !bounded)
+    refuse("saturation.threshold", text(p.threshold), "a finite number with the detector",
+           "thresholds build on it");
+}
+
+bool surely_contracts(const Network& network, double step) {
+  return step > 1e-9 && step * network.max_degree() < 1.0;  // twice the degree is above all eigenvalues
 }
 
 Rates rates(const Network& network, double step, int rounds, bool chebyshev) {
@@ -42,7 +53,7 @@ Rates rates(const Network& network, double step, int rounds, bool chebyshev) {
     r.gamma = std::isnan(step) ? (lambda_max - lambda2) / (lambda_max + lambda2)
                                : std::max(std::abs(1.0 - step * lambda2), std::abs(1.0 - step * lambda_max));
     if (r.gamma < kCleanGamma) r.gamma = 0.0;
-    if (rounds > 0 && r.gamma >= 1.0)
+    if ((rounds > 0 || !std::isnan(step)) && r.gamma >= 1.0)
       refuse("saturation.step", text(r.alpha), "a number in (0, " + text(2.0 / lambda_max) + ")",
              "other steps make the consensus rounds diverge; leave it out for the best one");
   }

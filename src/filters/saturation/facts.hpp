@@ -15,6 +15,9 @@ namespace garrison::saturation::detail {
 /// Refuses parameters that contradict each other or the model.
 void require_parameters(const Saturation::Params& p, const Model& model);
 
+/// Rounds with this step contract on every connected network of such degrees: no spectrum is needed to know.
+bool surely_contracts(const Network& network, double step);
+
 /// Consensus: step, weights and contraction.
 struct Rates {
   double alpha = 0.0;

@@ -46,17 +46,12 @@ Saturation::Gains Saturation::design(const Params& p, const Model& model, const 
   g.accuse_missing = p.accuse_missing;
   g.beta = p.adaptive ? kInfinity : p.threshold;
   g.bounded = !std::isnan(p.initial_error) && (p.adaptive || std::isfinite(p.threshold));
-  const bool spectrum_needed = std::isnan(p.step) || p.chebyshev || g.bounded;
+  const bool spectrum_needed = std::isnan(p.step) || p.chebyshev || g.bounded ||
+                               !saturation::detail::surely_contracts(network, p.step);
   const auto rates = spectrum_needed ? saturation::detail::rates(network, p.step, p.rounds, p.chebyshev)
                                      : saturation::detail::Rates{.alpha = p.step, .omega = {}};
   g.alpha = rates.alpha;
   g.omega = rates.omega;
-  if (p.table && !g.bounded)
-    refuse("saturation.table", "true", "false without initial_error and a finite threshold",
-           "the table starts from a bound on the initial error");
-  if (g.detector && !g.bounded)
-    refuse("saturation.threshold", text(p.threshold), "a finite number with the detector",
-           "thresholds build on it");
   if (!g.bounded) return g;
   require_bound_assumptions(model);
   const Facts facts = saturation::detail::facts(model, p.attacked, p.adaptive);

@@ -168,6 +168,53 @@ TEST_CASE("within rounding of a hidden mode the answer is that one cannot tell")
   CHECK(noise.sight == Sight::unclear);
 }
 
+TEST_CASE("one cannot tell: in all units of states and outputs, and of every question") {
+  test::Rng rng(8);
+  // Eigenvalues that differ by d: the distance is about d/5, far from both limits (1e-14 and 1e-11).
+  for (const double d : {5e-13, 1e-12, 5e-12}) {
+    const Case close{Matrix{{1.0, 0.0}, {0.0, 1.0 + d}}, Matrix{{1.0, 1.0}}};
+    for (int k = 0; k < 200; ++k) {
+      const Case c = k == 0 ? close : close.scaled(units(rng, 2), units(rng, 1));
+      CAPTURE(k);
+      const Visibility v = visibility(c.A, c.C, 0.0);
+      CHECK(v.sight == Sight::unclear);
+      CHECK(v.distance > 0.05 * d);
+      CHECK(v.distance < d);
+      CHECK_THROWS_AS(observable(c.A, c.C), InvalidInput);
+      CHECK_THROWS_AS(s_sparse_observable(c.A, c.C, 0), InvalidInput);
+      CHECK_FALSE(surely_observable(c.A, c.C));
+    }
+  }
+  // Random pairs, moved by 1e-12 from one with a hidden mode, all entries full.
+  for (int k = 0; k < 100; ++k) {
+    const int n = test::whole(rng, 2, 5);
+    Case c = with_hidden(rng, n, 1, 2, false);
+    c.C += 1e-12 * test::normal_matrix(rng, 2, n);
+    c = c.in(rotation(rng, n));
+    const Visibility v = visibility(c.A, c.C, 0.0);
+    const bool far_from_limits = v.distance > 1e-13 && v.distance < 2e-12;
+    if (!far_from_limits) continue;
+    for (int trial = 0; trial < 20; ++trial) {
+      const Case other = c.scaled(units(rng, n), units(rng, 2));
+      const Visibility w = visibility(other.A, other.C, 0.0);
+      CAPTURE(w.text());
+      CHECK(w.sight == Sight::unclear);
+    }
+  }
+}
+
+TEST_CASE(
+    "a removal of which one cannot tell is not called harmless, nor is it hidden behind one that harms") {
+  const Matrix A{{1.0, 0.0}, {0.0, 1.0 + 1e-12}};
+  const Matrix C{{1.0, 1.0}, {1.0, -1.0}, {1.0, 2.0}, {2.0, 1.0}};  // any two see all
+  CHECK(s_sparse_observable(A, C, 2));
+  CHECK_THROWS_AS(s_sparse_observable(A, C, 3), InvalidInput);
+  CHECK_FALSE(s_sparse_observable(A, C, 4));
+  const Matrix hiding{
+      {1.0, 1.0}, {1.0, -1.0}, {1.0, 0.0}};  // the last one alone does not see the second state
+  CHECK_FALSE(s_sparse_observable(A, hiding, 2));
+}
+
 TEST_CASE("necessary agents of random systems: one decomposition says what one per agent says") {
   test::Rng rng(6);
   for (int k = 0; k < 150; ++k) {
@@ -242,7 +289,7 @@ TEST_CASE("the quick yes of observable() is the answer of visibility() at every 
     if (test::whole(rng, 0, 1) == 1) c = c.in(rotation(rng, n));
     if (test::whole(rng, 0, 3) == 0) c = c.scaled(units(rng, n), units(rng, static_cast<int>(c.C.rows())));
     const bool seen = visibility(c.A, c.C, 0.0).all_seen();
-    CHECK_MESSAGE(observable(c.A, c.C) == seen, "trial ", trial, ", moved by ", away);
+    CHECK_MESSAGE(surely_observable(c.A, c.C) == seen, "trial ", trial, ", moved by ", away);
     (seen ? yes : no) += 1;
   }
   CHECK(yes > 500);

@@ -108,7 +108,8 @@ TEST_CASE("certificates of the engine are those of agents driven by bytes, bit f
           CAPTURE(w);
           CAPTURE(faults);
           RunOptions o = options(x0);
-          if (faults) o.link = {0.3, 0.1, 2, {{2, -1, 5, 9}}, {{{3, 12, 0}, 1}}};
+          if (faults)
+            o.link = {0.3, 0.1, 2, {{2, -1, 5, 9}}, {{{3, 12, 0}, s.network.neighbours(3).front()}}};
           const Record record = replayed(*prepared, s, o);
           const Link link(s.network, o.link, {}, o.seed, 0);
           test::AgentsByHand agents(*prepared, s.network, faults ? &link : nullptr);

@@ -93,7 +93,7 @@ TEST_CASE("agents driven by bytes lose and hear just what the engine says, bit f
       CAPTURE(n);
       CAPTURE(filter->name());
       RunOptions o = options_with(x0);
-      o.link = {0.2, 0.1, 2, {{2, -1, 5, 9}}, {{{3, 12, 0}, 1}}};
+      o.link = {0.2, 0.1, 2, {{2, -1, 5, 9}}, {{{3, 12, 0}, s.network.neighbours(3).front()}}};
       const Record record = replay(s.model, s.network, *filter, s.y, Matrix(), o);
       const Link link(s.network, o.link, {}, o.seed, 0);
       CHECK(same(record.estimate, by_hand(s, *filter, x0, &link)));

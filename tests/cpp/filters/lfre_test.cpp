@@ -67,7 +67,7 @@ TEST_CASE("check prints the noise gain") {
   };
   CHECK(quantity(0.5, "noise gain") == doctest::Approx(0.4 / std::sqrt(0.75)).epsilon(1e-12));
   CHECK(quantity(0.5, "slowest pole") == doctest::Approx(0.5));
-  CHECK(std::isnan(quantity(1.0, "noise gain")));
+  for (const double pole : {1.0, -1.0}) CHECK_THROWS_AS(quantity(pole, "noise gain"), InvalidInput);
 }
 
 TEST_CASE("a source uses all of its outputs, and is never worse than with one of them") {

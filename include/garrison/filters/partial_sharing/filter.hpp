@@ -147,6 +147,21 @@ struct GARRISON_EXPORT PartialSharing {
   /// @throws InvalidInput when covariances are missing or R_i is singular, selections do not fit, or steady
   /// gains are asked for where (11) diverges
   static Gains design(const Params& params, const Model& model, const Network& network);
+  /// Of a design file: the gains have what this agent reads.
+  static bool fits(const Gains& g, const Local& l, std::span<const int>) noexcept {
+    const auto agents = static_cast<std::size_t>(l.agents);
+    const auto n = static_cast<std::size_t>(l.states);
+    const auto q = static_cast<std::size_t>(l.outputs);
+    const auto id = static_cast<std::size_t>(l.id);
+    const auto square = [&](const Matrix& m) { return m.rows() == l.states && m.cols() == l.states; };
+    if (!g.selection.fits(l.agents, l.states) || g.W.size() != agents || g.W[id].size() != q * q ||
+        !square(g.Q))
+      return false;
+    if (g.steady.empty()) return square(g.P0);
+    if (g.steady.size() != agents) return false;
+    const Steady& own = g.steady[id];
+    return own.P.size() == n * n && own.G.size() == n * n && own.K.size() == q * n;
+  }
   static int rounds(const Gains&) { return 1; }
 
   /// A state that has been given its lane of a group stays there.

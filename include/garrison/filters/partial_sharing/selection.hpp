@@ -2,7 +2,10 @@
 // Which entries of its estimate every agent shares, and when.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -54,6 +57,21 @@ class GARRISON_EXPORT Selection {
   /// E{s s'} when every agent draws its own uniform subset, N m x N m: the exact second moment over random
   /// starts.
   Matrix moments_uniform() const;
+
+  /// Of a design file: it is one of so many agents and states.
+  bool fits(int agents, int states) const noexcept {
+    if (states_ != states || first_.size() != static_cast<std::size_t>(agents) + 1) return false;
+    if (shift_ >= states || period_ != states / std::gcd(states, shift_)) return false;
+    if (first_.front() != 0 || first_.back() != entries_.size() ||
+        !std::is_sorted(first_.begin(), first_.end()))
+      return false;
+    for (int i = 0; i < agents; ++i) {
+      const auto own = entries(i);
+      if (std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) != own.end()) return false;
+      if (!own.empty() && (own.front() < 0 || own.back() >= states)) return false;
+    }
+    return true;
+  }
 
   template <class V>
   void visit(V& v) {

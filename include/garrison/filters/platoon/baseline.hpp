@@ -133,6 +133,10 @@ struct GARRISON_EXPORT PlatoonBaseline {
   }
   static std::unique_ptr<World> world(const Gains& gains, const WorldOptions& options);
   static int rounds(const Gains&) { return 1; }
+  /// Of a design file: the gains have what this vehicle reads.
+  static bool fits(const Gains& g, const Local& l, std::span<const int> neighbours) noexcept {
+    return platoon::fits(g.shared, l, neighbours);
+  }
 
   template <int n>
   static void init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {

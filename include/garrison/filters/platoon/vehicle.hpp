@@ -2,6 +2,7 @@
 // What one vehicle remembers, what it sends (6), and the settings that all share.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -97,6 +98,25 @@ struct Sets {
   }
 };
 
+/// Of a design file: vehicle l.id of such a string hears `neighbours`, and the settings lead nowhere else.
+inline bool fits(const Shared& g, const Local& l, std::span<const int> neighbours) noexcept {
+  const int N = l.agents;
+  const int L = g.setting.range;
+  const bool string = l.states == 2 && l.outputs >= (l.id > 0 ? 4 : 2) && g.setting.vehicles == N &&
+                      g.setting.attacked <= L && N >= 2 * L + 1 &&
+                      std::all_of(neighbours.begin(), neighbours.end(),
+                                  [&](int j) { return std::max(j, l.id) - std::min(j, l.id) <= L; });
+  if (!string || (g.formation.steers() && g.formation.reference.empty())) return false;
+  if (g.priors.empty()) return true;
+  if (g.priors.size() != static_cast<std::size_t>(N)) return false;
+  const Prior& prior = g.priors[static_cast<std::size_t>(l.id)];
+  const auto known = [N](const std::vector<int>& ids, int room) {
+    return ids.size() <= static_cast<std::size_t>(room) &&
+           std::all_of(ids.begin(), ids.end(), [N](int id) { return id >= 0 && id < N; });
+  };
+  return known(prior.attacked, g.room) && known(prior.suspected, g.room) && known(prior.free, g.room_free);
+}
+
 struct VehicleState {
   Vec<2> x = Vec<2>::Zero();           ///< xhat_i(t)
   Vec<2> prediction = Vec<2>::Zero();  ///< xbar_i(t)
@@ -136,7 +156,7 @@ struct VehicleState {
     v("innovation", innovation);
     v("level", level);
     v("gap", gap);
-    v("t", t);
+    v.range("t", t, -1, INT64_MAX / 4);
     v.range("source", source, -1, 65535);
     v("trouble", trouble);
     v("has_y", has_y);

@@ -15,6 +15,7 @@
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
 #include "garrison/filters/rdkf/agent_step.hpp"
+#include "garrison/filters/rdkf/fits.hpp"
 
 namespace garrison {
 
@@ -149,6 +150,10 @@ struct GARRISON_EXPORT Rdkf {
   /// What a user should know of a run: most agents saturated for long although the plant is unstable.
   static std::vector<std::string> warnings(const Model& model, const VerdictLog& log);
   static int rounds(const Gains&) { return 1; }
+  /// Of a design file: the gains have what this agent reads.
+  static bool fits(const Gains& g, const Local& l, std::span<const int> neighbours) noexcept {
+    return rdkf::fits(g, l, neighbours);
+  }
   static bool runs(const Gains& g) noexcept { return rdkf::runs(g); }
   /// What agent `id` needs of the gains: its own, and J of those it hears (to stand in for what they miss to
   /// send).

@@ -33,6 +33,14 @@ struct DataFree {
   /// What one agent needs of it.
   GARRISON_EXPORT DataFree of(int agent) const;
 
+  /// Of a design file: it has what agent `agent` of `agents` reads.
+  bool fits(int agent, int agents) const noexcept {
+    if (empty()) return true;
+    const Eigen::Index columns = only < 0 ? agents : 1;
+    return (only < 0 || only == agent) && d.cols() == columns && H.cols() == columns &&
+           H.rows() == d.rows() && worst.size() == d.rows() && proved.fits(agents, columns);
+  }
+
   template <class V>
   void visit(V& v) {
     v("d", d);

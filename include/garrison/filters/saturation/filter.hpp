@@ -129,7 +129,7 @@ struct GARRISON_EXPORT Saturation {
       v("level", level);
       v("rho", rho);
       v("p", p);
-      v("t", t);
+      v.range("t", t, 0, INT64_MAX / 4);
       v.range("d", d, 0, INT32_MAX);
       v.range("full", full, -1, INT64_MAX / 4);
       v.range("which", which, -1, INT32_MAX);
@@ -175,6 +175,11 @@ struct GARRISON_EXPORT Saturation {
   /// Eight trials at once; null when the detector makes trials take different branches.
   static std::unique_ptr<TrialsRunner> trials(std::shared_ptr<const Gains> gains, const Model& model,
                                               const Network& network);
+  /// Of a design file: the gains have what this agent reads.
+  static bool fits(const Gains& g, const Local& l, std::span<const int>) noexcept {
+    return (g.omega.empty() || g.omega.size() == static_cast<std::size_t>(g.rounds)) &&
+           g.table.fits(l.id, l.agents);
+  }
   static int rounds(const Gains& g) { return g.rounds; }
   /// A missing measurement is an update that fails to come, as that of an attacked sensor may.
   static int most_missing(const Gains& g) { return g.setting.attacked; }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "garrison/core/agent_set.hpp"
@@ -56,6 +57,21 @@ struct ProvedSets {
       part.noise = noise.col(column);
     }
     return part;
+  }
+
+  /// Of a design file: nothing of it leads out of its own tables, for `columns` agents of `agents`.
+  bool fits(int agents, Eigen::Index columns) const noexcept {
+    if (sets() == 0) return true;
+    const auto count = static_cast<std::size_t>(sets());
+    const auto rows = [&](const Matrix& table) {
+      return table.rows() == first.back() && table.cols() == columns;
+    };
+    return first.front() == 0 &&
+           std::adjacent_find(first.begin(), first.end(), std::greater_equal<>()) == first.end() &&
+           rows(fade) && rows(noise) && later.rows() == 3 && later.cols() == sets() && s >= 1 &&
+           ids.size() / static_cast<std::size_t>(s) == count &&
+           ids.size() % static_cast<std::size_t>(s) == 0 &&
+           std::all_of(ids.begin(), ids.end(), [&](int id) { return id >= 0 && id < agents; });
   }
 
   template <class V>

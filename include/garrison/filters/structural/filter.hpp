@@ -14,6 +14,7 @@
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/filters/structural/fits.hpp"
 #include "garrison/filters/structural/parts.hpp"
 #include "garrison/filters/structural/setting.hpp"
 #include "garrison/filters/structural/spread.hpp"
@@ -88,6 +89,10 @@ struct GARRISON_EXPORT Structural {
   /// Sensors that were hardly tested, or accused more often than can be right.
   static std::vector<std::string> warnings(const Params& params, const Model& model, const VerdictLog& log);
   static int rounds(const Gains&) { return 1; }
+  /// Of a design file: the gains have what this agent reads.
+  static bool fits(const Gains& g, const Local& l, std::span<const int> neighbours) noexcept {
+    return structural::fits(g, l, neighbours);
+  }
   /// What agent `id` needs of the gains: its own row, and the sensors of those it hears.
   static Gains part(const Gains& all, int id, std::span<const int> neighbours);
 
