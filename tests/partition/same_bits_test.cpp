@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// A network on two and three ranks has the bits of one engine.
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "garrison/attacks/registry.hpp"
+#include "parts.hpp"
+
+using namespace garrison;
+
+namespace {
+
+struct Case {
+  std::string family;
+  ParamMap params;
+};
+const ParamMap kBounded{
+    {"rounds", std::int64_t{12}}, {"attacked", std::int64_t{2}}, {"initial_error", 2.0}, {"threshold", 0.5}};
+
+std::vector<Case> cases() {
+  ParamMap detector = kBounded;
+  detector.insert({"detector", true});
+  return {{"saturation", {{"threshold", 0.3}, {"rounds", std::int64_t{3}}, {"step", 0.1}}},
+          {"saturation", {{"threshold", 0.3}, {"rounds", std::int64_t{4}}, {"chebyshev", true}}},
+          {"saturation", detector},
+          {"scalar_gain", {{"rounds", std::int64_t{2}}, {"step", 0.1}}},
+          {"scalar_gain", {{"rounds", std::int64_t{0}}, {"step", 0.1}}},
+          {"dkf", {}},
+          {"rdkf", {{"weight", 0.5}, {"penalty", std::string("huber")}, {"initial_error", 2.0}}},
+          {"rdkf", {{"weight", 0.5}, {"penalty", std::string("group")}}},
+          {"partial_sharing", {{"gain", 0.1}, {"shared", std::int64_t{1}}}},
+          {"partial_sharing",
+           {{"gain", 0.1}, {"gains", std::string("steady")}, {"starts", std::string("coordinated")}}},
+          {"structural", {}},
+          {"structural", {{"window", std::int64_t{3}}, {"isolate", true}, {"settle", std::int64_t{0}}}}};
+}
+
+PlantOptions plant(int steps, const std::string& law) {
+  PlantOptions p;
+  p.steps = steps;
+  p.start_error = 0.1;
+  p.noise = law;
+  return p;
+}
+RunOptions options(Matrix start) {
+  RunOptions o;
+  o.seed = 7;
+  o.start = std::move(start);
+  return o;
+}
+/// `trouble`: what is put on the run, by name.
+RunOptions troubled(const std::string& trouble, const Vector& start) {
+  RunOptions o = options(start);
+  const Schedule some(2, {1, 4, 8});
+  if (trouble == "drop") o.link.drop = 0.2;
+  if (trouble == "delay") o.link = {.drop = 0.1, .delay = 0.2};
+  if (trouble == "cut") o.link.cuts = {{.sender = 3, .receiver = -1, .start = 2, .stop = 5}};
+  if (trouble == "forge") o.message_attacks = {forge(some, 0.7, false)};
+  if (trouble == "equivocate") o.message_attacks = {equivocate(some, 0.4)}, o.link.drop = 0.1;
+  if (trouble == "outdated") o.message_attacks = {outdated(some, 2)};
+  if (trouble == "not a number") o.message_attacks = {forge(some, kNaN, true)};
+  if (trouble == "bias") o.attacks = {bias(some, 5.0), random_noise(Schedule(3, {2}), "laplace", 1.0, false)};
+  if (trouble == "denial") o.attacks = {denial(Schedule(3, {0, 2, 3, 5, 7}, 6))};
+  if (trouble == "replay") o.attacks = {replayed(some, 2), autoregressive(some, 0.9, 0.3)};
+  if (trouble == "story") o.attacks = {false_trajectory(some, start, {})};
+  if (trouble == "huge") o.attacks = {constant(some, 1e149), scale(some, 1e2)};
+  return o;
+}
+
+void check_same(const partition::Whole& whole, const Case& c, const PlantOptions& plant_options,
+                const RunOptions& o, std::uint64_t seed) {
+  const Record one = simulate(whole.model, whole.network, *make_filter(c.family, c.params), plant_options, o);
+  const auto start = static_cast<std::size_t>(whole.model.agents() * whole.model.states());
+  for (const int ranks : {1, 2, 3}) {
+    CAPTURE(ranks);
+    test::Rng rng(seed + static_cast<std::uint64_t>(ranks));
+    const auto owner = test::random_owners(rng, whole.model.agents(), ranks);
+    const auto parts = test::run_parts(whole, c.family, c.params, plant_options, o, owner, ranks);
+    REQUIRE(one.estimate.size() == start + parts.values.size());
+    CHECK(std::memcmp(one.estimate.data() + start, parts.values.data(), parts.values.size() * 8) == 0);
+    CHECK(one.link.sent == parts.link.sent);
+    CHECK(one.link.lost == parts.link.lost);
+    CHECK(one.link.late == parts.link.late);
+    CHECK(one.link.forged == parts.link.forged);
+    CHECK(one.link.refused == parts.link.refused);
+    CHECK(one.overflows == parts.overflows);
+    CHECK(one.resets == parts.resets);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("estimates, counters and restarts of every family are those of one engine, whatever happens") {
+  for (const std::string trouble : {"none", "drop", "delay", "cut", "forge", "equivocate", "outdated",
+                                    "not a number", "bias", "denial", "replay", "story", "huge"})
+    for (const int n : {2, 4, 9}) {
+      test::Rng rng(static_cast<std::uint64_t>(100 + n));
+      const partition::Whole whole{test::scalar_model(rng, n, 11, 0.98, 0.02, 0.01),
+                                   test::connected_network(rng, 11, 0.15)};
+      const Vector start = Vector::Constant(n, 0.3);
+      for (const Case& c : cases()) {
+        CAPTURE(trouble);
+        CAPTURE(n);
+        CAPTURE(c.family);
+        check_same(whole, c, plant(8, "auto"), troubled(trouble, start), 5);
+      }
+    }
+}
+
+TEST_CASE("noise is drawn under public ids for every law") {
+  test::Rng rng(3);
+  const partition::Whole whole{test::scalar_model(rng, 2, 9, 0.98, 0.02, 0.01),
+                               test::connected_network(rng, 9)};
+  for (const std::string law : {"uniform", "extreme", "normal", "none"}) {
+    CAPTURE(law);
+    check_same(whole, cases()[3], plant(5, law), options({}), 9);
+  }
+}
