@@ -24,7 +24,7 @@ class Exchange {
   virtual ~Exchange() = default;
   virtual int rank() const = 0;
   virtual int ranks() const = 0;
-  /// Before the first `begin`.
+  /// Before the first `begin`; again with the same routes changes nothing.
   virtual void connect(const Routes& routes) = 0;
   /// Starts to send `out` and to receive `in`: a record of `bytes` per agent of the routes. Neither may be
   /// touched before `finish`.

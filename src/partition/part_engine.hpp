@@ -49,7 +49,6 @@ class PartEngine final : public PartRunner {
         average_(region, exchange, model.states()),
         states_(static_cast<std::size_t>(region.own)),
         places_(states_.size()) {
-    exchange.connect(region.routes);
     for (int k = 0; k < region.own; ++k) {
       Place& place = places_[static_cast<std::size_t>(region.sorted[static_cast<std::size_t>(k)])];
       place = {model.outputs(k), model.offset(k), rows_.size()};
@@ -67,6 +66,7 @@ class PartEngine final : public PartRunner {
   }
 
   void reset(const Vector& x0, Link* link) override {
+    exchange_.connect(region_.routes);
     average_.forget();
     post_.connect(link);
     const Vec<n> start = x0;

@@ -80,8 +80,12 @@ PartRun::PartRun(PartRunner& runner, const Model& model, std::vector<int> ids, i
     refuse("start", std::to_string(options_.start.size()) + " numbers",
            std::to_string(model.states()) + ", one initial estimate for all agents");
   parts_ = std::make_unique<Parts>(model, std::move(ids), agents, plant_, options_);
-  runner.reset(parts_->source->start(options_.start).col(0),
-               parts_->link.perfect() ? nullptr : &parts_->link);
+}
+
+void PartRun::start() {
+  t_ = 0;
+  runner_.reset(parts_->source->start(options_.start).col(0),
+                parts_->link.perfect() ? nullptr : &parts_->link);
 }
 
 PartRun::~PartRun() = default;

@@ -24,6 +24,8 @@ class PartRun {
           RunOptions options);
   ~PartRun();
 
+  /// Time 0: every agent starts. All ranks together, as everything below.
+  void start();
   /// Moves on to the next sample.
   void advance();
   /// Goes to the end of sample `t`, whose states the runner is then given: truth and attacks are worked out

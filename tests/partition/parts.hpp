@@ -80,6 +80,7 @@ inline Estimates run_parts(const partition::Whole& whole, const std::string& fam
     const auto runner =
         partition::part_runner(family, params, needs ? &whole : nullptr, part.model, part.region, exchange);
     partition::PartRun run(*runner, part.model, part.ids, whole.model.agents(), plant, options);
+    run.start();
     std::vector<double> here(part.ids.size() * n);
     for (std::size_t t = 0; t < static_cast<std::size_t>(plant.steps); ++t) {
       run.advance();

@@ -117,3 +117,52 @@ TEST_CASE("noise is drawn under public ids for every law") {
     check_same(whole, cases()[3], plant(5, law), options({}), 9);
   }
 }
+
+TEST_CASE("states saved on two ranks go on on three with the same bits") {
+  test::Rng rng(12);
+  const partition::Whole whole{test::scalar_model(rng, 4, 11, 0.98, 0.02, 0.01),
+                               test::connected_network(rng, 11, 0.2)};
+  const Vector start = Vector::Constant(4, 0.3);
+  for (const std::string trouble : {"none", "drop", "forge", "replay"})
+    for (const Case& c : cases()) {
+      CAPTURE(trouble);
+      CAPTURE(c.family);
+      const RunOptions o = troubled(trouble, start);
+      const Record one =
+          simulate(whole.model, whole.network, *make_filter(c.family, c.params), plant(8, "auto"), o);
+      std::vector<std::vector<std::byte>> saved(11);
+      const bool needs = !partition::needs_whole(c.family, c.params).empty();
+      const auto run = [&](int ranks, std::int64_t from, std::int64_t to) {
+        const auto owner = test::random_owners(rng, 11, ranks);
+        test::FakeWorld world(ranks);
+        world.run([&](partition::Exchange& exchange) {
+          const test::Part part = test::part_of(whole, owner, exchange.rank());
+          const auto runner = partition::part_runner(c.family, c.params, needs ? &whole : nullptr, part.model,
+                                                     part.region, exchange);
+          partition::PartRun trial(*runner, part.model, part.ids, 11, plant(8, "auto"), o);
+          trial.start();
+          trial.skip_to(from);
+          for (std::size_t k = 0; k < part.ids.size() && from > 0; ++k)
+            runner->load(static_cast<int>(k), saved[static_cast<std::size_t>(part.ids[k])]);
+          while (trial.sample() < to) trial.advance();
+          std::vector<double> here(part.ids.size() * 4);
+          runner->estimates(here.data());
+          for (std::size_t k = 0; k < part.ids.size(); ++k) {
+            auto& state = saved[static_cast<std::size_t>(part.ids[k])];
+            state.clear();
+            runner->save(static_cast<int>(k), state);
+            const auto at = static_cast<std::size_t>(to) * 11 + static_cast<std::size_t>(part.ids[k]);
+            CHECK(std::memcmp(one.estimate.data() + 4 * at, here.data() + 4 * k, 32) == 0);
+          }
+        });
+      };
+      run(2, 0, 3);
+      run(3, 3, 8);
+    }
+}
+
+TEST_CASE("families that do not run on many ranks are refused by name") {
+  CHECK_THROWS_WITH_AS(partition::require_family("platoon"), doctest::Contains("\"platoon\""), InvalidInput);
+  CHECK_THROWS_WITH_AS(partition::needs_whole("lfre", {}), doctest::Contains("saturation, scalar_gain, rdkf"),
+                       InvalidInput);
+}
