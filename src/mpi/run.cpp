@@ -17,6 +17,7 @@
 #include "mpi/owners.hpp"
 #include "mpi/results.hpp"
 #include "mpi/together.hpp"
+#include "partition/connected.hpp"
 #include "partition/families.hpp"
 #include "partition/part_run.hpp"
 #include "partition/split.hpp"
@@ -71,6 +72,7 @@ class Share {
       region_ = partition::region_of(scenario_.agents(), ids_, scenario_.ground->neighbours(ids_), owners.of,
                                      exchange_.rank());
     });
+    if (partition::needs_connected(scenario_.family)) partition::require_connected(region_, exchange_);
     std::int64_t counts[] = {region_.ghosts(), static_cast<std::int64_t>(region_.heard.size())};
     double most[] = {static_cast<double>(region_.own)};
     exchange_.sum(counts);

@@ -109,6 +109,10 @@ std::string needs_whole(const std::string& family, const ParamMap& params) {
                                 : "covariances of all agents depend on each other";
 }
 
+bool needs_connected(const std::string& family) {
+  return family != "partial_sharing" && family != "structural";
+}
+
 std::unique_ptr<PartRunner> part_runner(const std::string& family, const ParamMap& params, const Whole* whole,
                                         const Model& own, const Region& region, Exchange& exchange) {
   const std::string why = needs_whole(family, params);

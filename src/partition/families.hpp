@@ -19,6 +19,9 @@ void require_family(const std::string& family);
 /// from its own sensor. @throws InvalidInput as `require_family`, and for parameters that do not fit
 std::string needs_whole(const std::string& family, const ParamMap& params);
 
+/// Whether the family's design refuses a network that is not connected (partition/connected.hpp).
+bool needs_connected(const std::string& family);
+
 /// Everything that a design may need.
 struct Whole {
   Model model;

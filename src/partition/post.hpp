@@ -25,10 +25,7 @@ class Post {
  public:
   /// `names`: what the family calls the agent at each place. `states`: n of the plant; `rounds` per sample.
   Post(const Region& region, Exchange& exchange, std::span<const int> names, int states, int rounds)
-      : region_(region), exchange_(exchange), names_(names), states_(states), rounds_(rounds) {
-    senders_.reserve(region.heard.size());
-    for (const std::int32_t place : region.heard) senders_.push_back(names[static_cast<std::size_t>(place)]);
-  }
+      : region_(region), exchange_(exchange), names_(names), states_(states), rounds_(rounds) {}
 
   /// Starts a run over `link` (null = perfect) from the messages that `outgoing` gets next.
   void connect(Link* link) {
@@ -78,6 +75,9 @@ class Post {
 
   /// Sends the current messages of the own agents to the ranks that hear them.
   void send() {
+    if (senders_.empty())  // families that average all at once may never need them
+      for (const std::int32_t place : region_.heard)
+        senders_.push_back(names_[static_cast<std::size_t>(place)]);
     const Message* const now = current();
     for (std::size_t k = 0; k < region_.packed.size(); ++k)
       write_raw(now[region_.packed[k]], out_.data() + k * record_);

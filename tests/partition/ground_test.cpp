@@ -6,6 +6,7 @@
 
 #include <numeric>
 
+#include "partition/connected.hpp"
 #include "partition/sensors.hpp"
 #include "partition/split.hpp"
 #include "parts.hpp"
@@ -130,4 +131,36 @@ TEST_CASE("a region: interior hears own agents only, ghosts lie as their owners 
   }
   CHECK_THROWS_WITH_AS(region_of(3, {}, {}, std::vector<std::int32_t>{0, 0, 0}, 1),
                        doctest::Contains("no agent on rank 1"), InvalidInput);
+}
+
+TEST_CASE("a network that is not connected is found by all ranks, a chain through all of them too") {
+  test::Rng rng(4);
+  Sensors sensors;
+  sensors.A = Matrix::Identity(2, 2);
+  std::vector<int> all(40);
+  std::iota(all.begin(), all.end(), 0);
+  const Model model = sensors.model(all);
+  const auto refusal = [&](const Network& network, int ranks) -> std::string {
+    const Whole whole{model, network};
+    const auto owner = test::random_owners(rng, 40, ranks);
+    std::string words = "connected";
+    test::FakeWorld world(ranks);
+    try {
+      world.run([&](Exchange& exchange) {
+        require_connected(test::part_of(whole, owner, exchange.rank()).region, exchange);
+      });
+    } catch (const InvalidInput& error) {
+      words = error.what();
+    }
+    return words;
+  };
+  std::vector<Edge> cut;
+  for (int i = 0; i + 1 < 40; ++i)
+    if (i != 16) cut.emplace_back(i, i + 1);
+  for (const int ranks : {1, 2, 5}) {
+    CAPTURE(ranks);
+    CHECK(refusal(Network::path(40), ranks) == "connected");
+    const std::string words = refusal(Network(40, cut), ranks);
+    CHECK(words.find("no path joins agent 0 and agent 17, nor 22 others") != std::string::npos);
+  }
 }
