@@ -114,21 +114,24 @@ void Results::write(std::int64_t t, std::span<const double> truth, const Summary
   // Collective: ranks that have nothing of a variable write no numbers of it.
   const MPI_Offset one = first ? 1 : 0;
   const int time = static_cast<int>(t);
-  check(ncmpi_put_vara_int_all(file_, time_, &record, &one, &time), "write into it");
+  check(ncmpi_iput_vara_int(file_, time_, &record, &one, &time, nullptr), "write into it");
   const std::array<std::pair<int, double>, 4> numbers{
       {{mean_, summary.mean}, {largest_, summary.largest}, {median_, summary.median}, {q95_, summary.q95}}};
   for (const auto& [id, value] : numbers)
-    check(ncmpi_put_vara_double_all(file_, id, &record, &one, &value), "write into it");
+    check(ncmpi_iput_vara_double(file_, id, &record, &one, &value, nullptr), "write into it");
   const auto n = static_cast<MPI_Offset>(truth.size());
   const std::array<MPI_Offset, 2> at{record, 0};
   const std::array<MPI_Offset, 2> size{one, first ? n : 0};
-  check(ncmpi_put_vara_double_all(file_, truth_, at.data(), size.data(), truth.data()), "write into it");
-  if (!estimates_) return settle();
+  check(ncmpi_iput_vara_double(file_, truth_, at.data(), size.data(), truth.data(), nullptr),
+        "write into it");
   const bool some = order.last() > order.first();
   const std::array<MPI_Offset, 3> from{record, some ? order.first() : 0, 0};
   const std::array<MPI_Offset, 3> count{some ? 1 : 0, order.last() - order.first(), n};
-  check(ncmpi_put_vara_double_all(file_, estimate_, from.data(), count.data(), estimates.data()),
-        "write into it");
+  if (estimates_)
+    check(ncmpi_iput_vara_double(file_, estimate_, from.data(), count.data(), estimates.data(), nullptr),
+          "write into it");
+  // Everything at once: the header counts a record when all of it is there.
+  check(ncmpi_wait_all(file_, NC_REQ_ALL, nullptr, nullptr), "write into it");
   settle();
 }
 
