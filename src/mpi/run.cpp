@@ -40,7 +40,7 @@ class Share {
   explicit Share(const RunCommand& command) : command_(command) {
     together([&] { scenario_ = read_scenario(command.scenario); });
     cut();
-    together([&] { build(); });
+    build();
     if (!command_.results.empty()) open_results();
     trial_->start();
     if (command_.resume) resume();
@@ -48,6 +48,7 @@ class Share {
 
   void samples() {
     const double start = MPI_Wtime();
+    waited_before_ = exchange_.waited();
     const std::int64_t from = trial_->sample();
     while (trial_->sample() < scenario_.plant.steps) {
       trial_->advance();
@@ -86,20 +87,24 @@ class Share {
   }
 
   void build() {
-    model_ = std::make_unique<Model>(scenario_.sensors.model(ids_));
     std::optional<partition::Whole> whole;
-    if (const std::string why = partition::needs_whole(scenario_.family, scenario_.params); !why.empty()) {
+    together([&] {
+      model_ = std::make_unique<Model>(scenario_.sensors.model(ids_));
+      const std::string why = partition::needs_whole(scenario_.family, scenario_.params, scenario_.agents());
+      if (why.empty()) return;
       require_memory("filter (" + why + ")", std::to_string(scenario_.agents()) + " agents on every rank",
                      kBytesPerAgent * scenario_.agents());
       std::vector<int> all(static_cast<std::size_t>(scenario_.agents()));
       std::iota(all.begin(), all.end(), 0);
       whole.emplace(scenario_.sensors.model(all), partition::network_of(*scenario_.ground));
-    }
+    });
     runner_ = partition::part_runner(scenario_.family, scenario_.params, whole ? &*whole : nullptr, *model_,
                                      region_, exchange_);
-    trial_ = std::make_unique<partition::PartRun>(*runner_, *model_, ids_, scenario_.agents(),
-                                                  scenario_.plant, scenario_.run);
-    estimates_.resize(ids_.size() * static_cast<std::size_t>(scenario_.states()));
+    together([&] {
+      trial_ = std::make_unique<partition::PartRun>(*runner_, *model_, ids_, scenario_.agents(),
+                                                    scenario_.plant, scenario_.run);
+      estimates_.resize(ids_.size() * static_cast<std::size_t>(scenario_.states()));
+    });
   }
 
   void open_results() {
@@ -164,7 +169,7 @@ class Share {
                            link.refused,
                            runner_->resets(),
                            static_cast<std::int64_t>(hash_)};
-    double most[] = {megabytes(), exchange_.waited()};
+    double most[] = {megabytes(), exchange_.waited() - waited_before_};
     exchange_.sum(sums);  // the hash is a sum modulo 2^64
     exchange_.largest(most);
     if (exchange_.rank() != 0) return;
@@ -195,6 +200,7 @@ class Share {
   std::unique_ptr<PublicOrder> order_;
   std::vector<double> estimates_;
   std::string flag_;
+  double waited_before_ = 0.0;  // in the design
   std::uint64_t hash_ = 0;
 };
 

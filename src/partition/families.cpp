@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "garrison/core/dispatch.hpp"
@@ -10,6 +11,7 @@
 #include "garrison/filters/scalar_gain.hpp"
 #include "partition/cut.hpp"
 #include "partition/part_engine.hpp"
+#include "partition/rdkf_here.hpp"
 
 namespace garrison::partition {
 namespace {
@@ -81,6 +83,15 @@ PartialSharing::Gains partial_sharing_here(PartialSharing::Params params, const 
   return gains;
 }
 
+template <class F>
+std::unique_ptr<PartRunner> kalman(const typename F::Params& params, const Whole* whole, const Model& own,
+                                   const Region& region, Exchange& exchange) {
+  if (whole != nullptr)
+    return cut_engine<Rdkf>(F::design(params, whole->model, whole->network), own, region, exchange);
+  return engine<Rdkf>(rdkf_here(params, own, region, exchange), own, region, exchange,
+                      {region.names(), region.places()});
+}
+
 std::string saturation_needs(const Saturation::Params& p) {
   if (std::isnan(p.step)) return "the best step follows from the spectrum of the network: give \"step\"";
   if (p.chebyshev) return "Chebyshev weights follow from the spectrum of the network";
@@ -96,7 +107,7 @@ void require_family(const std::string& family) {
   refuse("filter.name", "\"" + family + "\"", "a filter that runs on many ranks: " + known);
 }
 
-std::string needs_whole(const std::string& family, const ParamMap& params) {
+std::string needs_whole(const std::string& family, const ParamMap& params, int agents) {
   require_family(family);
   if (family == "saturation") return saturation_needs(parse_params<Saturation::Params>(family, params));
   if (family == "scalar_gain")
@@ -105,8 +116,10 @@ std::string needs_whole(const std::string& family, const ParamMap& params) {
     const auto p = parse_params<PartialSharing::Params>(family, params);
     return p.selection.empty() && p.shared_each.empty() ? "" : "selections are given agent by agent";
   }
-  return family == "structural" ? "gains follow from the whole network"
-                                : "covariances of all agents depend on each other";
+  if (family == "structural") return "gains follow from the whole network";
+  if (family == "rdkf" && parse_params<Rdkf::Params>(family, params).penalty == "group")
+    return "penalty \"group\" needs the neighbours' sensors";
+  return agents <= kDesignedWhole ? "covariances of all agents depend on each other" : "";
 }
 
 bool needs_connected(const std::string& family) {
@@ -115,7 +128,7 @@ bool needs_connected(const std::string& family) {
 
 std::unique_ptr<PartRunner> part_runner(const std::string& family, const ParamMap& params, const Whole* whole,
                                         const Model& own, const Region& region, Exchange& exchange) {
-  const std::string why = needs_whole(family, params);
+  const std::string why = needs_whole(family, params, std::numeric_limits<int>::max());
   if (whole == nullptr && !why.empty()) refuse("filter", family + " without the whole network", why);
   if (family == "saturation") return saturation<Saturation>(family, params, whole, own, region, exchange);
   if (family == "scalar_gain") return saturation<ScalarGain>(family, params, whole, own, region, exchange);
@@ -134,10 +147,8 @@ std::unique_ptr<PartRunner> part_runner(const std::string& family, const ParamMa
         Structural::design(parse_params<Structural::Params>(family, params), whole->model, whole->network),
         own, region, exchange);
   }
-  const auto gains = family == "dkf" ? Dkf::design({}, whole->model, whole->network)
-                                     : Rdkf::design(parse_params<Rdkf::Params>(family, params), whole->model,
-                                                    whole->network);
-  return cut_engine<Rdkf>(gains, own, region, exchange);
+  if (family == "dkf") return kalman<Dkf>(Dkf::Params{}, whole, own, region, exchange);
+  return kalman<Rdkf>(parse_params<Rdkf::Params>(family, params), whole, own, region, exchange);
 }
 
 }  // namespace garrison::partition

@@ -67,7 +67,7 @@ struct Estimates {
 
 inline Estimates run_parts(const partition::Whole& whole, const std::string& family, const ParamMap& params,
                            const PlantOptions& plant, const RunOptions& options,
-                           std::span<const std::int32_t> owner, int ranks) {
+                           std::span<const std::int32_t> owner, int ranks, bool by_rank = false) {
   const auto N = static_cast<std::size_t>(whole.model.agents());
   const auto n = static_cast<std::size_t>(whole.model.states());
   Estimates out;
@@ -76,7 +76,7 @@ inline Estimates run_parts(const partition::Whole& whole, const std::string& fam
   FakeWorld world(ranks);
   world.run([&](partition::Exchange& exchange) {
     const Part part = part_of(whole, owner, exchange.rank());
-    const bool needs = !partition::needs_whole(family, params).empty();
+    const bool needs = !by_rank && !partition::needs_whole(family, params, whole.model.agents()).empty();
     const auto runner =
         partition::part_runner(family, params, needs ? &whole : nullptr, part.model, part.region, exchange);
     partition::PartRun run(*runner, part.model, part.ids, whole.model.agents(), plant, options);

@@ -131,7 +131,7 @@ TEST_CASE("states saved on two ranks go on on three with the same bits") {
       const Record one =
           simulate(whole.model, whole.network, *make_filter(c.family, c.params), plant(8, "auto"), o);
       std::vector<std::vector<std::byte>> saved(11);
-      const bool needs = !partition::needs_whole(c.family, c.params).empty();
+      const bool needs = !partition::needs_whole(c.family, c.params, 11).empty();
       const auto run = [&](int ranks, std::int64_t from, std::int64_t to) {
         const auto owner = test::random_owners(rng, 11, ranks);
         test::FakeWorld world(ranks);
@@ -163,6 +163,55 @@ TEST_CASE("states saved on two ranks go on on three with the same bits") {
 
 TEST_CASE("families that do not run on many ranks are refused by name") {
   CHECK_THROWS_WITH_AS(partition::require_family("platoon"), doctest::Contains("\"platoon\""), InvalidInput);
-  CHECK_THROWS_WITH_AS(partition::needs_whole("lfre", {}), doctest::Contains("saturation, scalar_gain, rdkf"),
-                       InvalidInput);
+  CHECK_THROWS_WITH_AS(partition::needs_whole("lfre", {}, 11),
+                       doctest::Contains("saturation, scalar_gain, rdkf"), InvalidInput);
+}
+
+TEST_CASE("the resilient Kalman filter designed by two and three ranks together has the bits of one design") {
+  const std::vector<Case> some{
+      {"dkf", {}},
+      {"rdkf", {{"weight", 0.5}}},
+      {"rdkf", {{"weight", 0.5}, {"penalty", std::string("l1")}}},
+      {"rdkf", {{"weight", 0.5}, {"penalty", std::string("huber")}, {"initial_error", 2.0}}}};
+  for (const int n : {2, 4, 9})
+    for (const Case& c : some) {
+      CAPTURE(n);
+      CAPTURE(c.family);
+      test::Rng rng(static_cast<std::uint64_t>(60 + n));
+      const partition::Whole whole{test::scalar_model(rng, n, 13, 0.98, 0.02, 0.01),
+                                   test::connected_network(rng, 13, 0.15)};
+      const RunOptions o = troubled("drop", Vector::Constant(n, 0.3));
+      const Record one =
+          simulate(whole.model, whole.network, *make_filter(c.family, c.params), plant(6, "auto"), o);
+      for (const int ranks : {1, 2, 3}) {
+        const auto owner = test::random_owners(rng, 13, ranks);
+        const auto parts =
+            test::run_parts(whole, c.family, c.params, plant(6, "auto"), o, owner, ranks, true);
+        CHECK(std::memcmp(one.estimate.data() + 13 * n, parts.values.data(), parts.values.size() * 8) == 0);
+      }
+    }
+}
+
+TEST_CASE("a plant for which the sweeps do not settle is refused by all ranks, one that nobody sees too") {
+  test::Rng rng(2);
+  const Network network = test::connected_network(rng, 8);
+  const auto owner = test::random_owners(rng, 8, 2);
+  const auto refusal = [&](const Matrix& A, const Matrix& row, double process) -> std::string {
+    Noise noise;
+    noise.process_covariance = process * Matrix::Identity(2, 2);
+    noise.measurement_covariance.assign(8, Matrix::Identity(1, 1));
+    const partition::Whole whole{Model(A, std::vector<Matrix>(8, row), noise), network};
+    try {
+      test::run_parts(whole, "dkf", {}, plant(2, "none"), options({}), owner, 2, true);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "designed";
+  };
+  Matrix integrators = Matrix::Identity(2, 2);
+  integrators(0, 1) = 1e-3;
+  Matrix first = Matrix::Zero(1, 2);
+  first(0, 0) = 1.0;
+  CHECK(refusal(integrators, first, 1e-9).find("Newton") != std::string::npos);
+  CHECK(refusal(1.2 * Matrix::Identity(2, 2), first, 1.0).find("grow") != std::string::npos);
 }
