@@ -128,7 +128,8 @@ void ball(const Random& random, std::int64_t t, std::uint32_t agent, double radi
   out *= length > 0.0 ? radius * share * (1.0 - 1e-12) / length : 0.0;
 }
 
-NoiseLaw::NoiseLaw(const std::string& law, const Model& model, const Series* series) : model_(model) {
+NoiseLaw::NoiseLaw(const std::string& law, const Model& model, const Series* series, std::vector<int> ids)
+    : model_(model), ids_(std::move(ids)) {
   const Noise& noise = model.noise();
   const bool bounds_w = !std::isnan(noise.process_bound);
   const bool bounds_v = noise.measurement_bound.size() != 0;
@@ -172,7 +173,7 @@ void NoiseLaw::process(const Random& random, std::int64_t t, Vector& w) const {
 void NoiseLaw::measurement(const Random& random, std::int64_t t, std::span<double> y) const {
   if (measurement_ == Kind::none) return;
   for (int i = 0; i < model_.agents(); ++i) {
-    const auto agent = static_cast<std::uint32_t>(i);
+    const auto agent = static_cast<std::uint32_t>(ids_.empty() ? i : ids_[static_cast<std::size_t>(i)]);
     const int rows = model_.outputs(i);
     double* own = y.data() + model_.offset(i);
     if (measurement_ == Kind::normal) {

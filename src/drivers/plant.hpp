@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "garrison/core/model.hpp"
 #include "garrison/core/random.hpp"
@@ -30,14 +31,16 @@ class Source {
 /// Noise law of a plant, resolved and checked against what the model knows.
 class NoiseLaw {
  public:
-  /// `series`: covariances over time, or null.
-  NoiseLaw(const std::string& law, const Model& model, const Series* series);
+  /// `series`: covariances over time, or null. `ids`: public ids of the model's agents, under which their
+  /// noise is drawn; empty = 0, 1, ..
+  NoiseLaw(const std::string& law, const Model& model, const Series* series, std::vector<int> ids = {});
   void process(const Random& random, std::int64_t t, Vector& w) const;
   void measurement(const Random& random, std::int64_t t, std::span<double> y) const;
 
  private:
   enum class Kind { none, uniform, extreme, normal };
   const Model& model_;
+  std::vector<int> ids_;
   Kind process_ = Kind::none;
   Kind measurement_ = Kind::none;
   Matrix process_root_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Dependencies point one way: core <- kernel; core <- analysis <- certificate <- filters <- engine <-
-// drivers and node; core <- attacks <- engine; core <- wire <- engine.
+// drivers and node; drivers <- partition <- mpi; core <- attacks <- engine; core <- wire <- engine.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -26,6 +26,8 @@ const std::map<std::string, std::set<std::string>> allowed{
     {"engine", {"engine", "attacks", "certificate", "wire", "core", "kernel"}},
     {"node", {"node", "engine", "wire", "core"}},
     {"drivers", {"drivers", "engine", "attacks", "certificate", "wire", "core", "kernel"}},
+    {"partition", {"partition", "drivers", "engine", "filters", "attacks", "wire", "core", "kernel"}},
+    {"mpi", {"mpi", "partition", "node", "drivers", "engine", "attacks", "wire", "core"}},
 };
 
 /// The folder that a path below include/garrison or src begins with; the version belongs to the core,

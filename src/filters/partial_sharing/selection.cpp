@@ -45,15 +45,17 @@ Selection::Selection(const MatrixRef& start, std::int64_t shift)
   }
 }
 
-Selection Selection::random(int states, std::span<const int> shared, std::int64_t shift, std::uint64_t seed) {
+Selection Selection::random(int states, std::span<const int> shared, std::int64_t shift, std::uint64_t seed,
+                            std::span<const int> ids) {
   require_shared(shared, states);
   const Random chance(seed, 0, Purpose::graph, 5);
   Matrix start = Matrix::Zero(static_cast<Eigen::Index>(shared.size()), states);
   std::vector<int> all(static_cast<std::size_t>(states));
   for (std::size_t i = 0; i < shared.size(); ++i) {
+    const auto id = static_cast<std::uint32_t>(ids.empty() ? static_cast<int>(i) : ids[i]);
     std::iota(all.begin(), all.end(), 0);
     for (int k = 0; k < shared[i]; ++k) {  // the first l of a shuffle
-      const double u = chance.uniform(0, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
+      const double u = chance.uniform(0, id, static_cast<std::uint32_t>(k));
       const int other = k + static_cast<int>(u * (states - k));
       std::swap(all[static_cast<std::size_t>(k)], all[static_cast<std::size_t>(other)]);
       start(static_cast<Eigen::Index>(i), all[static_cast<std::size_t>(k)]) = 1.0;

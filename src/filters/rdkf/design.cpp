@@ -4,6 +4,7 @@
 #include "garrison/filters/rdkf/analysis.hpp"
 #include "garrison/filters/rdkf/filter.hpp"
 #include "garrison/filters/rdkf/ipopt_step.hpp"
+#include "garrison/filters/rdkf/part_design.hpp"
 #include "penalties.hpp"
 
 namespace garrison {
@@ -62,8 +63,10 @@ void keep_rows(AgentGains& a, const Setting& s, const Matrix& Q, std::size_t i, 
 }
 
 /// Fills g.agents; the rest of g is set.
-void design_agents(Gains& g, const Setting& s) {
-  const SteadyState steady = steady_state(s);
+void design_agents(Gains& g, const Setting& s, Borders* borders = nullptr) {
+  SteadyOptions options;
+  options.borders = borders;
+  const SteadyState steady = steady_state(s, options);
   for (std::size_t i = 0; i < s.C.size(); ++i)
     g.most_outputs = std::max(g.most_outputs, static_cast<int>(s.C[i].rows()));
   if (g.penalty == Penalty::group && g.most_outputs > kMostGroupOutputs)
@@ -99,9 +102,12 @@ void Rdkf::require_fitting(const Params& p) {
   rdkf::require_ipopt();
 }
 
-Rdkf::Gains Rdkf::design(const Params& p, const Model& model, const Network& network) {
-  require_fitting(p);
-  Gains g;
+namespace {
+
+/// What does not depend on the agents.
+Rdkf::Gains common(const Rdkf::Params& p, const Model& model) {
+  Rdkf::require_fitting(p);
+  Rdkf::Gains g;
   g.penalty = rdkf::penalty_named(p.penalty);
   g.price = {p.weight, p.smoothing};
   g.ipopt = p.solver == "ipopt";
@@ -113,16 +119,49 @@ Rdkf::Gains Rdkf::design(const Params& p, const Model& model, const Network& net
       refuse("process_bound", "none", "a bound on |w|",
              "the run-time error bound needs it; 0 when there is no noise");
   }
+  return g;
+}
+Rdkf::Gains common() {
+  Rdkf::Gains g;
+  g.penalty = rdkf::Penalty::huber;
+  g.price = {kInfinity, 0.0};
+  return g;
+}
+/// The unprotected filter has no bound on a deviation.
+void unbound(Rdkf::Gains& g) {
+  for (auto& agent : g.agents) agent.deviation_bound = kNaN;
+}
+
+}  // namespace
+
+Rdkf::Gains Rdkf::design(const Params& p, const Model& model, const Network& network) {
+  Gains g = common(p, model);
   rdkf::design_agents(g, rdkf::setting(model, network));
   return g;
 }
 
 Rdkf::Gains Dkf::design(const Params&, const Model& model, const Network& network) {
-  Gains g;
-  g.penalty = rdkf::Penalty::huber;
-  g.price = {kInfinity, 0.0};
+  Gains g = common();
   rdkf::design_agents(g, rdkf::setting(model, network));
-  for (auto& agent : g.agents) agent.deviation_bound = kNaN;  // there is none
+  unbound(g);
+  return g;
+}
+
+Rdkf::Gains rdkf::design_part(const Rdkf::Params& p, const Model& model, const Network& network,
+                              Borders& borders) {
+  Rdkf::Gains g = common(p, model);
+  if (g.penalty == Penalty::group)
+    refuse("rdkf.penalty", "\"group\" in a part of a network", "another penalty",
+           "it needs the sensors of agents of other parts");
+  design_agents(g, part_setting(model, network), &borders);
+  return g;
+}
+
+Rdkf::Gains rdkf::design_part(const Dkf::Params&, const Model& model, const Network& network,
+                              Borders& borders) {
+  Rdkf::Gains g = common();
+  design_agents(g, part_setting(model, network), &borders);
+  unbound(g);
   return g;
 }
 

@@ -27,7 +27,7 @@ bool detectable(const MatrixRef& A, const MatrixRef& C) {
   return visibility(A, C, 1.0).all_seen();
 }
 
-Setting setting(const Model& model, const Network& network) {
+Setting part_setting(const Model& model, const Network& network) {
   const int N = model.agents();
   if (network.agents() != N)
     refuse("network", std::to_string(network.agents()) + " agents",
@@ -37,7 +37,6 @@ Setting setting(const Model& model, const Network& network) {
     refuse("process_covariance", "none", "the covariance of w (Sw), n x n, for the Kalman weights");
   if (noise.measurement_covariance.empty() && model.total_outputs() > 0)
     refuse("measurement_covariance", "none", "one covariance (Sv) per agent, for the Kalman weights");
-  network.require_connected();
   Setting s;
   s.A = model.A();
   for (int i = 0; i < N; ++i) {
@@ -61,6 +60,12 @@ Setting setting(const Model& model, const Network& network) {
     all.insert(std::lower_bound(all.begin(), all.end(), i), i);
     s.neighbours.push_back(std::move(all));
   }
+  return s;
+}
+
+Setting setting(const Model& model, const Network& network) {
+  Setting s = part_setting(model, network);
+  network.require_connected();
   const Visibility modes = visibility(s.A, model.stacked(), 1.0);
   if (!modes.all_seen())
     refuse("model", "a pair (A, C) that is not detectable (" + modes.text() + ")",

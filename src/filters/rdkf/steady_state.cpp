@@ -53,41 +53,63 @@ std::vector<Matrix> measured(const Setting& s) {
   return all;
 }
 
+/// A network without other parts.
+class Unbounded final : public Borders {
+ public:
+  void refresh(std::vector<Matrix>&) override {}
+  double largest(double value) override { return value; }
+};
+
 /// Unit of the covariances: what makes a bound of them large or small.
-double scale(const Setting& s, const std::vector<Matrix>& seen) {
+double scale(const Setting& s, const std::vector<Matrix>& seen, Borders& borders) {
   double size = 0.0;
   double information = 0.0;
   for (const Matrix& Sw : s.Sw) size = std::max(size, Sw.cwiseAbs().maxCoeff());
   for (const Matrix& one : seen) information = std::max(information, one.cwiseAbs().maxCoeff());
+  size = borders.largest(size);
+  information = borders.largest(information);
   return information > 0.0 ? std::max(size, 1.0 / information) : size;
+}
+
+void refuse_growth(double grown, int agent) {
+  refuse("model", "covariances that grow beyond " + text(grown),
+         "a pair (A, C) that is detectable with some margin",
+         "equation (5) has no usable solution: " +
+             (agent < 0 ? std::string("an agent") : "agent " + std::to_string(agent)) +
+             " hardly learns of a mode that does not decay");
 }
 
 /// Sweeps until the change is below `tolerance`, or where rounding keeps it; false: still changing after
 /// `most`.
-bool settle(const Setting& s, const std::vector<Matrix>& seen, double tolerance, int most, SteadyState& out) {
-  const double grown = kGrown * scale(s, seen);
+bool settle(const Setting& s, const std::vector<Matrix>& seen, double tolerance, int most, Borders& borders,
+            SteadyState& out) {
+  const double grown = kGrown * scale(s, seen, borders);
   double best = kInfinity;
   int since_best = 0;
   for (int k = 0; k < most; ++k) {
     ++out.sweeps;
     require_time("the sweeps of (5)");
     std::vector<Matrix> next = sweep(s, seen, out.P);
+    borders.refresh(next);
     out.change = 0.0;
+    int beyond = -1;
     for (std::size_t i = 0; i < next.size(); ++i) {
       const double size = next[i].cwiseAbs().maxCoeff();
-      if (!(size <= grown))
-        refuse("model", "covariances that grow beyond " + text(grown),
-               "a pair (A, C) that is detectable with some margin",
-               "equation (5) has no usable solution: agent " + std::to_string(i) +
-                   " hardly learns of a mode that does not decay");
+      if (!(size <= grown) && beyond < 0) beyond = static_cast<int>(i);
       out.change = std::max(out.change, (next[i] - out.P[i]).cwiseAbs().maxCoeff() / size);
     }
+    if (borders.largest(beyond < 0 ? 0.0 : 1.0) > 0.0) refuse_growth(grown, beyond);
+    out.change = borders.largest(out.change);
     out.P = std::move(next);
     since_best = out.change < best ? 0 : since_best + 1;
     best = std::min(best, out.change);
     if (out.change < tolerance || (since_best >= kPatience && best < kSmallChange)) return true;
   }
   return false;
+}
+bool settle(const Setting& s, const std::vector<Matrix>& seen, double tolerance, int most, SteadyState& out) {
+  Unbounded whole;
+  return settle(s, seen, tolerance, most, whole, out);
 }
 
 /// (5) for Newton's method. The best policy at P weighs neighbour j by L_ij = P_i Pbar_j^-1 / d_i, P_i from
@@ -270,6 +292,28 @@ void require_start(const Setting& s, const std::vector<Matrix>& P) {
              "a finite positive semidefinite matrix, as many rows as states");
 }
 
+/// Solves (5) for out.P.
+void solve(const Setting& s, const std::vector<Matrix>& seen, const SteadyOptions& options,
+           SteadyState& out) {
+  const int quick = std::min(kQuickSweeps, options.most_sweeps);
+  if (options.borders != nullptr) {
+    if (settle(s, seen, options.tolerance, quick, *options.borders, out)) return;
+    refuse("model", "covariances that still change after " + std::to_string(out.sweeps) + " sweeps",
+           "a pair (A, C) with which they settle",
+           "Newton's method, which such plants need, is for networks that one process holds");
+  }
+  if (settle(s, seen, options.tolerance, quick, out) || newton(s, out) ||
+      settle(s, seen, options.tolerance, options.most_sweeps - out.sweeps, out) || finish(s, out))
+    return;
+  refuse("model",
+         "covariances that still change by " + text(out.change) + " after " + std::to_string(out.sweeps) +
+             " sweeps",
+         "a pair (A, C) that is detectable with some margin within so many samples, and process noise of at "
+         "least about 1e-14 of what the measurements tell",
+         "take a longer period where states integrate each other, raise process_covariance where it is "
+         "small, or leave out what is hardly seen");
+}
+
 }  // namespace
 
 std::vector<Matrix> riccati_sweep(const Setting& s, const std::vector<Matrix>& P) {
@@ -283,17 +327,7 @@ SteadyState steady_state(const Setting& s, const SteadyOptions& options) {
   SteadyState out;
   out.P = options.start.empty() ? std::vector<Matrix>(s.C.size(), Matrix::Zero(n, n)) : options.start;
   require_start(s, out.P);
-  if (!settle(s, seen, options.tolerance, std::min(kQuickSweeps, options.most_sweeps), out) &&
-      !newton(s, out) && !settle(s, seen, options.tolerance, options.most_sweeps - out.sweeps, out) &&
-      !finish(s, out))
-    refuse(
-        "model",
-        "covariances that still change by " + text(out.change) + " after " + std::to_string(out.sweeps) +
-            " sweeps",
-        "a pair (A, C) that is detectable with some margin within so many samples, and process noise of at "
-        "least about 1e-14 of what the measurements tell",
-        "take a longer period where states integrate each other, raise process_covariance where it is "
-        "small, or leave out what is hardly seen");
+  solve(s, seen, options, out);
   for (std::size_t j = 0; j < s.C.size(); ++j) out.Pbar.push_back(predicted(s, j, out.P[j]));
   out.Q = fused(s, out.P);
   return out;

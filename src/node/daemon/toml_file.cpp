@@ -125,7 +125,9 @@ std::string Section::where(const std::string& key) const {
 }
 
 void Section::only(std::initializer_list<const char*> keys) const {
-  const std::vector<std::string> known(keys.begin(), keys.end());
+  only(std::vector<std::string>(keys.begin(), keys.end()));
+}
+void Section::only(const std::vector<std::string>& known) const {
   for (const auto& [key, value] : std::get<TomlTable>(table_->value)) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     std::string list;
@@ -170,16 +172,36 @@ bool Section::flag(const std::string& key, bool otherwise) const {
   refuse(where(key), shown(*found), "true or false");
 }
 
-std::vector<double> Section::numbers(const std::string& key) const {
-  const TomlValue* found = find(key);
-  if (found == nullptr) return {};
-  const auto* list = std::get_if<TomlArray>(&found->value);
-  if (list == nullptr) refuse(where(key), shown(*found), "a list of numbers");
+namespace {
+
+std::vector<double> finite_numbers(const TomlValue& given, const std::string& where) {
+  const auto* list = std::get_if<TomlArray>(&given.value);
+  if (list == nullptr) refuse(where, shown(given), "a list of numbers");
   std::vector<double> out;
   for (const TomlValue& one : *list) {
     const auto number = as_number(one);
-    if (!number || !std::isfinite(*number)) refuse(where(key), shown(one), "finite numbers");
+    if (!number || !std::isfinite(*number)) refuse(where, shown(one), "finite numbers");
     out.push_back(*number);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> Section::numbers(const std::string& key) const {
+  const TomlValue* found = find(key);
+  return found == nullptr ? std::vector<double>{} : finite_numbers(*found, where(key));
+}
+
+std::vector<std::vector<double>> Section::rows(const std::string& key) const {
+  const TomlValue* found = find(key);
+  if (found == nullptr) return {};
+  const auto* list = std::get_if<TomlArray>(&found->value);
+  if (list == nullptr) refuse(where(key), shown(*found), "a list with a list of numbers per row");
+  std::vector<std::vector<double>> out;
+  for (const TomlValue& one : *list) {
+    const auto number = as_number(one);
+    out.push_back(number ? std::vector<double>{*number} : finite_numbers(one, where(key)));
   }
   return out;
 }

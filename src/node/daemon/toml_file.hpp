@@ -33,6 +33,7 @@ class Section {
 
   /// Refuses every other key, with the nearest of these.
   void only(std::initializer_list<const char*> keys) const;
+  void only(const std::vector<std::string>& keys) const;
   bool has(const std::string& key) const { return find(key) != nullptr; }
   /// Without `otherwise` the key has to be there.
   std::string text(const std::string& key, std::optional<std::string> otherwise = {}) const;
@@ -41,7 +42,9 @@ class Section {
   double number(const std::string& key, double least, double most,
                 std::optional<double> otherwise = {}) const;
   bool flag(const std::string& key, bool otherwise) const;
-  std::vector<double> numbers(const std::string& key) const;     ///< empty where the key is not there
+  std::vector<double> numbers(const std::string& key) const;  ///< empty where the key is not there
+  /// Lists of numbers in a list, e.g. the rows of a matrix; numbers alone are one row each.
+  std::vector<std::vector<double>> rows(const std::string& key) const;
   std::vector<std::string> texts(const std::string& key) const;  ///< the same
   std::int64_t moment(const std::string& key) const;
   /// An empty section where the key is not there.

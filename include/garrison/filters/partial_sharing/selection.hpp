@@ -24,8 +24,10 @@ class GARRISON_EXPORT Selection {
   /// @throws InvalidInput when an entry is neither 0 nor 1
   Selection(const MatrixRef& start, std::int64_t shift);
   /// Every agent starts with its own random subset ("uncoordinated"), or all with the entries 0, 1, .. .
-  /// `shared`: l_i per agent, 1..m. @throws InvalidInput when some l_i is not
-  static Selection random(int states, std::span<const int> shared, std::int64_t shift, std::uint64_t seed);
+  /// `shared`: l_i per agent, 1..m. `ids`: which agents of a larger network these are, ascending; empty = the
+  /// first ones. @throws InvalidInput when some l_i is not
+  static Selection random(int states, std::span<const int> shared, std::int64_t shift, std::uint64_t seed,
+                          std::span<const int> ids = {});
   static Selection coordinated(int states, std::span<const int> shared, std::int64_t shift);
 
   int agents() const { return static_cast<int>(first_.size()) - 1; }

@@ -27,6 +27,10 @@ struct GARRISON_EXPORT Setting {
 /// uniqueness of (5), docs/filters/rdkf.md#r9), the network is not connected, or (A, C) is not detectable
 GARRISON_EXPORT Setting setting(const Model& model, const Network& network);
 
+/// The same for a part of a network: its agents, and those of others that they hear, without rows. Whether
+/// the whole is connected and detectable cannot be seen from here, and is not asked.
+Setting part_setting(const Model& model, const Network& network);
+
 /// Every mode of A on or outside of the unit circle is surely seen by some row of C: visibility(A, C, 1) in
 /// analysis/modes.hpp. A: n x n, C: m x n, m >= 0.
 GARRISON_EXPORT bool detectable(const MatrixRef& A, const MatrixRef& C);

@@ -12,11 +12,25 @@ namespace garrison::rdkf {
 /// (docs/filters/rdkf.md#r1). P: one n x n matrix per agent, symmetric positive semidefinite.
 GARRISON_EXPORT std::vector<Matrix> riccati_sweep(const Setting& s, const std::vector<Matrix>& P);
 
+/// Of a part of a network: agents of other parts, whose equations are not known here, and what is asked of
+/// all parts. All parts make the same calls.
+/// Threads: one at a time.
+class Borders {
+ public:
+  virtual ~Borders() = default;
+  /// Gives the agents of other parts the P_i that those have.
+  virtual void refresh(std::vector<Matrix>& P) = 0;
+  /// Largest of all parts; no NaN.
+  virtual double largest(double value) = 0;
+};
+
 struct SteadyOptions {
   std::vector<Matrix>
       start;  ///< warm start, one P_i per agent; empty = from zero. The limit does not depend on it
   double tolerance = 1e-14;  ///< largest relative change of an entry in the last sweep
   int most_sweeps = 20000;   ///< when neither 400 sweeps nor Newton's method settle
+  /// Null: the setting is a whole network. A part has the sweeps alone, with the bits of the whole.
+  Borders* borders = nullptr;
 };
 
 /// Solution of (5), and how it was reached.

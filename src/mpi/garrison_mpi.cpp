@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// garrison-mpi: one network on many ranks. docs/how-to/one-huge-network.md.
+#include <mpi.h>
+
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+
+#include "garrison/version.hpp"
+#include "mpi/owners.hpp"
+#include "mpi/run.hpp"
+#include "partition/split.hpp"
+
+using namespace garrison;
+using namespace garrison::mpi;
+
+namespace {
+
+constexpr const char* kUsage =
+    "usage: mpirun -n R garrison-mpi run SCENARIO [-o FILE.nc] [--checkpoint SAMPLES] [--resume] [--force] "
+    "[--hash]\n"
+    "       garrison-mpi partition SCENARIO --ranks R\n"
+    "       garrison-mpi whole SCENARIO [--threads T]\n"
+    "\n"
+    "  run        runs the scenario on all ranks; the bits do not depend on their number\n"
+    "  partition  decides beforehand which rank has which agents, and keeps it beside the scenario\n"
+    "  whole      runs it with the engine of one process and prints its hash, to compare\n"
+    "\n"
+    "  -o            results, netCDF\n"
+    "  --checkpoint  keep the states of all agents every so many samples\n"
+    "  --resume      go on from the last checkpoint, on any number of ranks\n"
+    "  --force       replace results that are there\n"
+    "  --hash        print a hash of all estimates\n"
+    "  --version\n"
+    "\n"
+    "Exit codes: 0 done, 2 a file or the command line was refused (the message comes from rank 0 alone).\n";
+
+struct Words {
+  std::string command;
+  RunCommand run;
+  std::int64_t ranks = 0;
+  std::int64_t threads = 0;
+};
+
+std::int64_t number(const std::string& option, const char* word) {
+  std::int64_t value = 0;
+  const char* const end = word + std::strlen(word);
+  const auto [stop, code] = std::from_chars(word, end, value);
+  if (code != std::errc() || stop != end || value < 1 || value > 1'000'000'000)
+    refuse(option, std::string("\"") + word + "\"", "a whole number >= 1");
+  return value;
+}
+
+Words read_words(int count, char** words) {
+  Words out;
+  out.command = count > 1 ? words[1] : "";
+  if (out.command != "run" && out.command != "partition" && out.command != "whole")
+    refuse("garrison-mpi", "\"" + out.command + "\"", "run, partition or whole", "see --help");
+  for (int k = 2; k < count; ++k) {
+    const std::string word = words[k];
+    const auto value = [&] {
+      if (k + 1 == count) refuse(word, "nothing behind it", "a value", "see --help");
+      return words[++k];
+    };
+    const bool runs = out.command == "run";
+    if (runs && word == "-o")
+      out.run.results = value();
+    else if (runs && word == "--checkpoint")
+      out.run.checkpoint = number(word, value());
+    else if (runs && word == "--resume")
+      out.run.resume = true;
+    else if (runs && word == "--force")
+      out.run.force = true;
+    else if (runs && word == "--hash")
+      out.run.hash = true;
+    else if (out.command == "partition" && word == "--ranks")
+      out.ranks = number(word, value());
+    else if (out.command == "whole" && word == "--threads")
+      out.threads = number(word, value());
+    else if (word.starts_with("-") || !out.run.scenario.empty())
+      refuse("garrison-mpi " + out.command, "\"" + word + "\"", "one SCENARIO and the options of --help");
+    else
+      out.run.scenario = word;
+  }
+  if (out.run.scenario.empty())
+    refuse("garrison-mpi " + out.command, "no SCENARIO", "a TOML file", "see --help");
+  if (out.command == "partition" && out.ranks == 0) refuse("--ranks", "nothing", "a number of ranks");
+  if (out.run.results.empty() && (out.run.checkpoint > 0 || out.run.resume))
+    refuse("-o", "nothing", "the results that a checkpoint belongs to");
+  return out;
+}
+
+void make_partition(const Words& words) {
+  const auto ranks = static_cast<int>(words.ranks);
+  const Scenario scenario = read_scenario(words.run.scenario);
+  const Owners owners = owners_of(scenario, ranks);
+  std::printf("%d agents on %d ranks (%s): %s\n", scenario.agents(), ranks, owners.made.c_str(),
+              cache_of(scenario, ranks).c_str());
+}
+
+int obey(int count, char** words, int rank) {
+  try {
+    const Words given = read_words(count, words);
+    if (given.command == "run") run(given.run);
+    if (rank == 0 && given.command == "partition") make_partition(given);
+    if (rank == 0 && given.command == "whole") run_whole(given.run.scenario, static_cast<int>(given.threads));
+    return 0;
+  } catch (const Error& error) {  // the same on all ranks
+    if (rank == 0) std::fprintf(stderr, "garrison-mpi: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {  // memory, mostly, on this rank alone
+    std::fprintf(stderr, "garrison-mpi: rank %d: %s\n", rank, error.what());
+    MPI_Abort(MPI_COMM_WORLD, 2);
+    return 2;
+  }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const std::string_view first = count > 1 ? words[1] : "";
+  if (first == "--version") return std::printf("garrison-mpi " GARRISON_VERSION "\n"), 0;
+  if (first == "--help" || first == "-h") return std::fputs(kUsage, stdout), 0;
+  MPI_Init(&count, &words);
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const int code = obey(count, words, rank);
+  MPI_Finalize();
+  return code;
+}

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mpi/results.hpp"
+
+#include <pnetcdf.h>
+
+#include <array>
+#include <utility>
+
+#include "garrison/version.hpp"
+#include "mpi/together.hpp"
+
+namespace garrison::mpi {
+namespace {
+
+std::string hex(std::uint64_t value) {
+  std::array<char, 17> out{};
+  std::snprintf(out.data(), out.size(), "%016llx", static_cast<unsigned long long>(value));
+  return out.data();
+}
+
+int rank_of() {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank;
+}
+
+}  // namespace
+
+Results::Results(const std::string& path, const Scenario& scenario, bool resume)
+    : path_(path), every_(scenario.every), estimates_(scenario.kept == Kept::estimates) {
+  resume ? open(scenario) : create(scenario);
+}
+
+Results::~Results() {
+  if (file_ >= 0) ncmpi_close(file_);
+}
+
+void Results::check(int code, const char* what) {
+  if (code != NC_NOERR && failure_.empty())
+    failure_ = path_ + ": got " + ncmpi_strerror(code) + ", expected to " + what +
+               "; use another -o, or free the disk";
+}
+void Results::settle() { agree(std::exchange(failure_, {})); }
+
+void Results::create(const Scenario& s) {
+  check(ncmpi_create(MPI_COMM_WORLD, path_.c_str(), NC_CLOBBER | NC_64BIT_OFFSET, MPI_INFO_NULL, &file_),
+        "make it");
+  settle();
+  int time = 0;
+  int state = 0;
+  int agent = 0;
+  check(ncmpi_def_dim(file_, "time", NC_UNLIMITED, &time), "describe it");
+  check(ncmpi_def_dim(file_, "state", s.states(), &state), "describe it");
+  const auto variable = [&](const char* name, nc_type type, std::initializer_list<int> dims,
+                            const char* says) {
+    int id = -1;
+    check(ncmpi_def_var(file_, name, type, static_cast<int>(dims.size()), dims.begin(), &id), "describe it");
+    check(ncmpi_put_att_text(file_, id, "long_name", static_cast<MPI_Offset>(std::string(says).size()), says),
+          "describe it");
+    return id;
+  };
+  time_ = variable("time", NC_INT, {time}, "sample, 0 being the start");
+  truth_ = variable("truth", NC_DOUBLE, {time, state}, "state of the plant");
+  mean_ = variable("error_mean", NC_DOUBLE, {time}, "mean over all agents of |estimate - truth|");
+  largest_ = variable("error_largest", NC_DOUBLE, {time}, "largest over all agents");
+  median_ = variable("error_median", NC_DOUBLE, {time}, "median over all agents, rounded up by at most 1 %");
+  q95_ = variable("error_q95", NC_DOUBLE, {time}, "95 % quantile over all agents, rounded up by at most 1 %");
+  if (estimates_) {
+    check(ncmpi_def_dim(file_, "agent", s.agents(), &agent), "describe it");
+    estimate_ = variable("estimate", NC_DOUBLE, {time, agent, state}, "estimates, agents by public id");
+  }
+  const auto note = [&](const char* name, const std::string& value) {
+    check(ncmpi_put_att_text(file_, NC_GLOBAL, name, static_cast<MPI_Offset>(value.size()), value.c_str()),
+          "describe it");
+  };
+  note("source", "garrison-mpi " GARRISON_VERSION);
+  note("filter", s.family);
+  note("network", s.ground->description());
+  note("scenario_checksum", hex(s.fingerprint));
+  check(ncmpi_enddef(file_), "describe it");
+  settle();
+}
+
+void Results::open(const Scenario& s) {
+  check(ncmpi_open(MPI_COMM_WORLD, path_.c_str(), NC_WRITE, MPI_INFO_NULL, &file_), "open it again");
+  settle();
+  std::string checksum(16, ' ');
+  MPI_Offset length = 0;
+  if (ncmpi_inq_attlen(file_, NC_GLOBAL, "scenario_checksum", &length) != NC_NOERR || length != 16 ||
+      ncmpi_get_att_text(file_, NC_GLOBAL, "scenario_checksum", checksum.data()) != NC_NOERR ||
+      checksum != hex(s.fingerprint))
+    failure_ = path_ + ": got a file of another scenario, expected the results of " + s.path +
+               " as it is now; use another -o without --resume";
+  settle();
+  const auto id_of = [&](const char* name) {
+    int id = -1;
+    check(ncmpi_inq_varid(file_, name, &id), "find its variables");
+    return id;
+  };
+  time_ = id_of("time");
+  truth_ = id_of("truth");
+  mean_ = id_of("error_mean");
+  largest_ = id_of("error_largest");
+  median_ = id_of("error_median");
+  q95_ = id_of("error_q95");
+  if (estimates_) estimate_ = id_of("estimate");
+  settle();
+}
+
+void Results::write(std::int64_t t, std::span<const double> truth, const Summary& summary,
+                    const PublicOrder& order, std::span<const double> estimates) {
+  const MPI_Offset record = t / every_ - 1;
+  const bool first = rank_of() == 0;
+  // Collective: ranks that have nothing of a variable write no numbers of it.
+  const MPI_Offset one = first ? 1 : 0;
+  const int time = static_cast<int>(t);
+  check(ncmpi_iput_vara_int(file_, time_, &record, &one, &time, nullptr), "write into it");
+  const std::array<std::pair<int, double>, 4> numbers{
+      {{mean_, summary.mean}, {largest_, summary.largest}, {median_, summary.median}, {q95_, summary.q95}}};
+  for (const auto& [id, value] : numbers)
+    check(ncmpi_iput_vara_double(file_, id, &record, &one, &value, nullptr), "write into it");
+  const auto n = static_cast<MPI_Offset>(truth.size());
+  const std::array<MPI_Offset, 2> at{record, 0};
+  const std::array<MPI_Offset, 2> size{one, first ? n : 0};
+  check(ncmpi_iput_vara_double(file_, truth_, at.data(), size.data(), truth.data(), nullptr),
+        "write into it");
+  const bool some = order.last() > order.first();
+  const std::array<MPI_Offset, 3> from{record, some ? order.first() : 0, 0};
+  const std::array<MPI_Offset, 3> count{some ? 1 : 0, order.last() - order.first(), n};
+  if (estimates_)
+    check(ncmpi_iput_vara_double(file_, estimate_, from.data(), count.data(), estimates.data(), nullptr),
+          "write into it");
+  // Everything at once: the header counts a record when all of it is there.
+  check(ncmpi_wait_all(file_, NC_REQ_ALL, nullptr, nullptr), "write into it");
+  settle();
+}
+
+void Results::sync() {
+  check(ncmpi_sync(file_), "write it to the disk");
+  settle();
+}
+
+}  // namespace garrison::mpi

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// One run on all ranks.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "mpi/scenario.hpp"
+
+namespace garrison::mpi {
+
+struct RunCommand {
+  std::string scenario;
+  std::string results;          ///< empty: none are written
+  std::int64_t checkpoint = 0;  ///< samples between checkpoints; 0 = none
+  bool resume = false;
+  bool force = false;  ///< replace results that are there
+  bool hash = false;   ///< print the hash of all estimates
+};
+
+/// All ranks call it. @throws Error on all ranks with the same message
+void run(const RunCommand& command);
+
+/// The same scenario with the engine of one process, whose hash has to be that of `run`; no MPI.
+void run_whole(const std::string& scenario, int threads);
+
+}  // namespace garrison::mpi

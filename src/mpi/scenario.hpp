@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scenario of a huge network: the keys of `garrison run` that make sense there, and generators.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "garrison/core/params.hpp"
+#include "garrison/drivers/simulate.hpp"
+#include "partition/ground.hpp"
+#include "partition/sensors.hpp"
+
+namespace garrison::mpi {
+
+/// What is written of every kept sample.
+enum class Kept { estimates, summary };
+
+struct Scenario {
+  std::string path;
+  std::uint64_t fingerprint = 0;  ///< of the file's bytes
+  std::unique_ptr<partition::Ground> ground;
+  partition::Sensors sensors;
+  std::string family;
+  ParamMap params;
+  PlantOptions plant;
+  RunOptions run;
+  std::string method = "auto";  ///< of the partition: auto, metis, coordinates, blocks
+  Kept kept = Kept::summary;
+  int every = 1;  ///< samples between those that are kept
+
+  int agents() const { return ground->agents(); }
+  int states() const { return static_cast<int>(sensors.A.rows()); }
+};
+
+/// @throws IoError, InvalidInput with file, line and key
+Scenario read_scenario(const std::string& path);
+
+}  // namespace garrison::mpi

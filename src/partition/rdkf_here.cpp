@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "partition/rdkf_here.hpp"
+
+#include <algorithm>
+
+namespace garrison::partition {
+namespace {
+
+/// Covariances of ghosts travel as estimates do in a run.
+class Ghosts final : public rdkf::Borders {
+ public:
+  Ghosts(const Region& region, Exchange& exchange, int states)
+      : region_(region),
+        exchange_(exchange),
+        numbers_(static_cast<std::size_t>(states * states)),
+        names_(region.names()),
+        out_(numbers_ * region.packed.size()),
+        in_(numbers_ * static_cast<std::size_t>(region.ghosts())) {
+    exchange.connect(region.routes);
+  }
+  void refresh(std::vector<Matrix>& P) override {
+    for (std::size_t k = 0; k < region_.packed.size(); ++k)
+      std::copy_n(at(P, region_.packed[k]).data(), numbers_, out_.data() + k * numbers_);
+    exchange_.begin(reinterpret_cast<const std::byte*>(out_.data()), reinterpret_cast<std::byte*>(in_.data()),
+                    numbers_ * sizeof(double));
+    exchange_.finish();
+    for (int k = 0; k < region_.ghosts(); ++k)
+      std::copy_n(in_.data() + static_cast<std::size_t>(k) * numbers_, numbers_,
+                  at(P, region_.own + k).data());
+  }
+  double largest(double value) override {
+    exchange_.largest(std::span(&value, 1));
+    return value;
+  }
+
+ private:
+  Matrix& at(std::vector<Matrix>& P, int place) const {
+    return P[static_cast<std::size_t>(names_[static_cast<std::size_t>(place)])];
+  }
+  const Region& region_;
+  Exchange& exchange_;
+  std::size_t numbers_;
+  std::vector<int> names_;
+  std::vector<double> out_;
+  std::vector<double> in_;
+};
+
+/// Own agents and ghosts by name; ghosts have no rows.
+Model model_by_name(const Model& own, const Cast& cast) {
+  std::vector<Matrix> C;
+  Noise noise;
+  noise.process_bound = own.noise().process_bound;
+  noise.process_covariance = own.noise().process_covariance;
+  const auto& variances = own.noise().measurement_covariance;
+  for (std::size_t name = 0, k = 0; name < cast.ids.size(); ++name) {
+    const bool here = cast.own[name] != 0;
+    C.push_back(here ? own.C(static_cast<int>(k)) : Matrix(0, own.states()));
+    if (!variances.empty()) noise.measurement_covariance.push_back(here ? variances[k] : Matrix(0, 0));
+    k += here ? 1 : 0;
+  }
+  return {own.A(), std::move(C), std::move(noise)};
+}
+
+Network network_by_name(const Region& region) {
+  const auto names = region.names();
+  std::vector<Edge> edges;
+  for (int place = 0; place < region.own; ++place)
+    for (std::size_t e = region.first[static_cast<std::size_t>(place)];
+         e < region.first[static_cast<std::size_t>(place) + 1]; ++e)
+      if (region.heard[e] >= region.own || region.heard[e] < place)
+        edges.emplace_back(names[static_cast<std::size_t>(region.heard[e])],
+                           names[static_cast<std::size_t>(place)]);
+  return {region.places(), edges};
+}
+
+}  // namespace
+
+template <class Params>
+Rdkf::Gains rdkf_here(const Params& params, const Model& own, const Region& region, Exchange& exchange) {
+  const Cast cast(region);
+  Ghosts ghosts(region, exchange, own.states());
+  auto gains = rdkf::design_part(params, model_by_name(own, cast), network_by_name(region), ghosts);
+  for (std::size_t name = 0; name < cast.ids.size(); ++name) {
+    if (cast.own[name] != 0) continue;
+    rdkf::AgentGains ghost;
+    ghost.J = std::move(gains.agents[name].J);
+    gains.agents[name] = std::move(ghost);
+  }
+  return gains;
+}
+
+template Rdkf::Gains rdkf_here(const Rdkf::Params&, const Model&, const Region&, Exchange&);
+template Rdkf::Gains rdkf_here(const Dkf::Params&, const Model&, const Region&, Exchange&);
+
+}  // namespace garrison::partition
