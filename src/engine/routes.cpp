@@ -37,6 +37,7 @@ std::size_t Routes::connect(Link* link) {
   lies_ = lies > 0;
   fates_.assign(senders_.size(), Fate::delivered);
   posted_ = 0;
+  current_ = outgoing_ = 0;
   return depth_ * order_.size() + lies;
 }
 

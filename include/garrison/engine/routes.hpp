@@ -48,9 +48,12 @@ class GARRISON_EXPORT Routes {
 
   /// First place of the messages that are being written, which become current with `post`; of the current
   /// ones.
-  std::size_t outgoing() const { return base(posted_); }
-  std::size_t current() const { return base(posted_ == 0 ? 0 : posted_ - 1); }
-  void post() { ++posted_; }
+  std::size_t outgoing() const { return outgoing_; }
+  std::size_t current() const { return current_; }
+  void post() {
+    current_ = outgoing_;
+    outgoing_ = base(++posted_);
+  }
 
   /// Whether everybody hears all that are due, as nothing can happen to a message. `plain`: every estimate is
   /// finite and below kHuge.
@@ -81,7 +84,7 @@ class GARRISON_EXPORT Routes {
   Heard heard(std::size_t k) const {
     const std::size_t due = first_[k + 1] - first_[k];
     if (as_wired_)
-      return {base(posted_ - 1), std::span(slots_).subspan(first_[k], due), senders_.data() + first_[k],
+      return {current_, std::span(slots_).subspan(first_[k], due), senders_.data() + first_[k],
               static_cast<int>(due)};
     return {0, std::span(delivered_).subspan(first_[k], received_[k]), delivered_from_.data() + first_[k],
             static_cast<int>(due)};
@@ -113,6 +116,8 @@ class GARRISON_EXPORT Routes {
   std::vector<char> deliverable_;         // whether what an agent sent this round is finite and below kHuge
   std::size_t depth_ = 2;
   std::uint64_t posted_ = 0;
+  std::size_t current_ = 0;
+  std::size_t outgoing_ = 0;
   bool as_wired_ = true;
   Link* link_ = nullptr;
   bool lies_ = false;  // some agent lies in its messages
