@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/system.sh [docs|bench...]: installs the Debian packages that a build wants and this machine lacks, and the named
+# tools/system.sh [docs|bench|mpi...]: installs the Debian packages that a build wants and this machine lacks, and the named
 # extras' own. PYTHON=/path/to/python3 chooses the interpreter.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -32,6 +32,12 @@ need libsuitesparse-dev installed libsuitesparse-dev
 need libsodium-dev installed libsodium-dev
 need libtomlplusplus-dev installed libtomlplusplus-dev
 if [[ " $* " == *" bench "* ]]; then need coinor-libipopt-dev installed coinor-libipopt-dev; fi
+if [[ " $* " == *" mpi "* ]]; then
+  need libopenmpi-dev installed libopenmpi-dev
+  need openmpi-bin installed openmpi-bin
+  need libpnetcdf-dev installed libpnetcdf-dev
+  need libmetis-dev installed libmetis-dev
+fi
 if [[ " $* " == *" docs "* ]]; then need doxygen have doxygen; fi
 need python3 have "$python"
 need python3-venv "$python" -c 'import venv, ensurepip'
