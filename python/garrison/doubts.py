@@ -12,6 +12,8 @@ from garrison.words import count
 Array = NDArray[np.float64]
 #: growth of the error over half a run, beyond that of the plant, from which on it is called divergence
 _GROWTH = 1e3
+#: names shown in one line
+_NAMES = 5
 #: most samples of which a median is taken
 _WIDTH = 24
 #: most states of the whole network, and sets of sensors, up to which conditions are evaluated without being asked
@@ -62,6 +64,20 @@ def of_alarms(filter: _core.Filter, samples: int) -> list[str]:
     if not needed > samples >= 0:
         return []
     return [f"alarm_after = {needed} tests in a row, but the run has {count(samples, 'sample')}: no alarm is possible"]
+
+
+def of_silence(names: list[str] | None, measurements: Array) -> list[str]:
+    """A line that names the outputs of which a recording (sample, output) holds nothing."""
+    silent = np.isnan(measurements).all(axis=0)
+    if not silent.any():
+        return []
+    if silent.all():
+        return ["the recording holds no measurement at all: every value is missing, and nothing was estimated from it"]
+    which = [names[k] if names else f"output {k}" for k in np.flatnonzero(silent)]
+    shown = ", ".join(which[:_NAMES]) + (f" and {len(which) - _NAMES} more" if len(which) > _NAMES else "")
+    return [
+        f"the recording holds no measurement of {shown}: nothing can be said of {'it' if len(which) == 1 else 'them'}"
+    ]
 
 
 def of_divergence(model: _core.Model, estimate: Array | None, error: Array | None, quiet_from: int) -> list[str]:

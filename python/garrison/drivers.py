@@ -343,7 +343,8 @@ def replay(
     base, series = parted(model)
     plain = network.network if isinstance(network, VaryingNetwork) else network
     require_order("replay", base, plain, filter)
-    y = numbers("measurements", matched("measurements", measurements, output_names(base, plain)))
+    names = output_names(base, plain)
+    y = numbers("measurements", matched("measurements", measurements, names))
     trials = (len(y) if y.ndim == 3 else 1) if trials is None else arguments.whole("trials", trials, 1)
     wanted = arguments.flag("conditions", conditions)
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
@@ -367,6 +368,7 @@ def replay(
         progress=arguments.callback("progress", progress),
     )
     run = _run(data, base, ground, filter, attacks, wanted, known)
+    run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
     run.made = {"driver": "replay"} | _shared(
         trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked)
     )

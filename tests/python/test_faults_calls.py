@@ -127,6 +127,21 @@ def test_an_attack_on_nobody_is_said_aloud() -> None:
     assert "the attack silence names no agent: nothing is attacked" in run.warnings
 
 
+def test_a_recording_says_which_sensors_are_silent() -> None:
+    y = np.zeros((5, MODEL.outputs))
+    assert not any(
+        "recording" in w for w in gr.replay(MODEL, NET, gr.filters.ScalarGain(rounds=2), measurements=y).warnings
+    )
+    y[:, 1] = np.nan
+    words = "the recording holds no measurement of output 1: nothing can be said of it"
+    assert words in gr.replay(MODEL, NET, gr.filters.ScalarGain(rounds=2), measurements=y).warnings
+    y[:] = np.nan
+    (said,) = (
+        w for w in gr.replay(MODEL, NET, gr.filters.ScalarGain(rounds=2), measurements=y).warnings if "recording" in w
+    )
+    assert said.startswith("the recording holds no measurement at all")
+
+
 def test_alarms_that_cannot_be_are_said_aloud() -> None:
     filter = gr.filters.Structural(alarm_after=6)
     words = "alarm_after = 6 tests in a row, but the run has 5 samples: no alarm is possible"
