@@ -42,7 +42,8 @@ from garrison.kalman import central_kalman, extended_kalman, local_kalman
 from garrison.notebook import of_model, of_network
 from garrison.prepared import Prepared, prepare
 from garrison.record import Run
-from garrison.varying import VaryingModel, VaryingNetwork
+from garrison.varying import VaryingModel
+from garrison.varying_network import VaryingNetwork
 from garrison.verdict import Verdict
 from garrison.words import refuse_attribute
 

@@ -11,7 +11,8 @@ from garrison.numeric import matched, numbers
 from garrison.objects import attack_of, described_attack, plain_data
 from garrison.record import Run
 from garrison.sizes import require_memory
-from garrison.varying import Inputs, VaryingModel, VaryingNetwork, inputs_of, links_of, parted
+from garrison.varying import Inputs, VaryingModel, inputs_of, parted
+from garrison.varying_network import VaryingNetwork, links_of
 from garrison.words import count, hinted, refusal, require_order
 
 Array = NDArray[np.float64]

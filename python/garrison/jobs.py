@@ -15,7 +15,7 @@ from garrison.families import family_of
 from garrison.kalman import central_kalman, local_kalman
 from garrison.record import Run
 from garrison.scenario import Scenario
-from garrison.varying import links_of
+from garrison.varying_network import links_of
 from garrison.words import count, refusal
 
 Array = NDArray[np.float64]

@@ -35,8 +35,8 @@ def _number(value: float) -> str:
     return "not known" if np.isnan(value) else f"{value:.4g}"
 
 
-def of_model(model: _core.Model) -> str:
-    """Sizes, the states with units and their row of A, and what is known of the noise."""
+def of_model(model: _core.Model, changes: str = "") -> str:
+    """Sizes, the states with units and their row of A, and what is known of the noise; what changes in time."""
     units, A = model.units, np.asarray(model.A)
     sizes = (count(model.states, "state"), count(model.agents, "agent"), count(model.outputs, "output"))
     names = list(model.state_names)[:_MOST]
@@ -46,17 +46,19 @@ def of_model(model: _core.Model) -> str:
         ("process bound", _number(float(model.process_bound))),
         ("measurement bound", _number(float(bounds.max())) if bounds.size else "not known"),
     ]
-    return titled(f"Model: {', '.join(sizes)}", table(rows, ("state", "unit", "row of A")) + table(noise))
+    title = f"Model: {', '.join(sizes)}" + (f"; {changes}" if changes else "")
+    return titled(title, table(rows, ("state", "unit", "row of A")) + table(noise))
 
 
-def of_network(network: _core.Network) -> str:
-    """Sizes, connectivity and who hears whom."""
+def of_network(network: _core.Network, changes: str = "") -> str:
+    """Sizes, connectivity and who hears whom; what changes in time."""
     names = list(network.names) or [str(i) for i in range(network.agents)]
     links = len(network.edges)
     kind = "directed" if network.directed else "undirected"
     title = f"Network: {count(network.agents, 'agent')}, {count(links, 'link')} ({kind})"
     if not network.connected:
         title += ", NOT CONNECTED"
+    title += f"; {changes}" if changes else ""
     shown = range(min(network.agents, _MOST))
     rows = [(names[i], ", ".join(names[j] for j in network.neighbours(i))) for i in shown]
     if network.agents > _MOST:

@@ -14,7 +14,7 @@ LAYERS = (
     ("words", "verdict", "bound_kind", "drawing", "files"),
     ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms", "circuits"),
     ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform", "labelled"),
-    ("attacks", "record", "doubts", "refuted", "varying"),
+    ("attacks", "record", "doubts", "refuted", "varying", "varying_network"),
     ("drivers", "kalman", "fitting", "fitting_full", "identifying", "calibration", "certificate", "exposing"),
     ("prepared", "designing", "certifying"),
     ("resilience", "mitigation", "lmi", "scenario", "answers"),

@@ -92,6 +92,10 @@ def test_html_is_short_and_escaped(run: gr.Run) -> None:
     assert ("NOT MET" in html["check"]) == (not check.holds)
     assert "alarms" in html["run"] and "B" in html["run"]
     assert html["ring"].count("<tr>") < 20
+    plant = gr.VaryingModel(MODEL, A=np.repeat(np.asarray(MODEL.A)[None], 7, axis=0))
+    assert "A over 7 steps" in plant._repr_html_() and "height" in plant._repr_html_()
+    links = gr.VaryingNetwork(network, np.arange(300).reshape(3, 100) % 4 != 0)
+    assert "over 3 samples, a link is there in 75%" in links._repr_html_()
     assert all(len(text) < 20_000 for text in html.values())
 
 

@@ -11,7 +11,8 @@ from garrison.scenario.section import Section, renamed
 from garrison.tables import read_matrix, read_table
 from garrison.tables.cells import number
 from garrison.tables.text import read_rows
-from garrison.varying import VaryingModel, VaryingNetwork
+from garrison.varying import VaryingModel
+from garrison.varying_network import VaryingNetwork
 from garrison.words import refusal
 
 Array = NDArray[np.float64]

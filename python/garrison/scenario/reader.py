@@ -26,7 +26,8 @@ from garrison.scenario.section import Section, tables_of, whole
 from garrison.tables import Records
 from garrison.tables.clock import Moment
 from garrison.tables.text import decoded
-from garrison.varying import VaryingModel, VaryingNetwork
+from garrison.varying import VaryingModel
+from garrison.varying_network import VaryingNetwork
 from garrison.words import count, only, refusal, shown
 
 Array = NDArray[np.float64]
