@@ -219,7 +219,9 @@ def simulate(
         "steps": steps,
         "x0": plain_data(x0),
         "start_error": float(start_error),
-    } | _shared(trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked))
+    } | _shared(
+        trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked), wanted
+    )
     run.made["noise"] = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
     return run
 
@@ -234,11 +236,13 @@ def _shared(
     kept: list[str],
     design: _core.Design | None,
     certified: tuple[str, float, int | None],
+    conditions: bool,
 ) -> dict[str, Any]:
     """Arguments of both drivers as plain data, for `again`."""
     found = None if design is None else design.certificate
     certificate = dict(zip(("certificate", "failure", "attacked"), certified, strict=True)) if found is None else found
     made = {"trials": trials, "first_trial": first_trial, "seed": int(seed), "start": plain_data(start), "link": links}
+    made["conditions"] = conditions
     return made | {"keep": kept, "attack": [described_attack(a) for a in attacks]} | dict(certificate)
 
 
@@ -371,7 +375,7 @@ def replay(
     run = _run(data, base, ground, filter, attacks, wanted, known)
     run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
     run.made = {"driver": "replay"} | _shared(
-        trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked)
+        trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked), wanted
     )
     return run
 

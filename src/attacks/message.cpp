@@ -168,18 +168,34 @@ class Falsify final : public MessageAttack {
     }
     return true;
   }
-  void require(const FieldList& message) const override {
+  void require(const FieldList& message, int agents) const override {
     std::vector<std::string> known;
     for (const FieldRef& field : message.all()) known.emplace_back(field.name);
-    if (message.find(field_) == nullptr) refuse_unknown("falsify.field", field_, known);
+    const FieldRef* const field = message.find(field_);
+    if (field == nullptr) refuse_unknown("falsify.field", field_, known);
+    const bool set = field->kind == FieldKind::set || field->kind == FieldKind::labels;
+    if (!set && !members_.empty())
+      refuse("falsify.members", "members of " + field_ + ", which is no set", "a value", "value = ..");
+    if (set && value_ != 0.0)
+      refuse("falsify.value", text(value_) + " for " + field_ + ", which is a set", "members", "members = [..]");
+    for (const int id : members_)
+      if (id >= agents)
+        refuse("falsify.members", std::to_string(id), "ids of agents in 0.." + std::to_string(agents - 1));
+    if (set && !keeps(*field))
+      refuse("falsify.field", field_ + ", of which this filter sends nothing with these parameters",
+             "a field that its messages carry");
   }
 
  private:
+  /// Whether a set has room for anything.
+  static bool keeps(const FieldRef& field) {
+    return field.kind == FieldKind::set ? !static_cast<AgentSet*>(field.data)->empty()
+                                        : static_cast<LabelSet*>(field.data)->capacity() > 0;
+  }
   void accuse(AgentSet& set) const {
     if (set.empty()) return;
     set.clear();
-    for (const int id : members_)
-      if (static_cast<std::size_t>(id) < 64 * set.words()) set.insert(id);
+    for (const int id : members_) set.insert(id);
   }
   void accuse(LabelSet& set) const {
     if (set.capacity() == 0) return;

@@ -119,6 +119,7 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
     frame.verdict = record_.verdict.data() + at * N;
   }
   if (keep_.signals) frame.signals = record_.signals.data() + at * N * record_.signal_names.size();
+  frame.believed = vouch_;
   runner.read(frame);
   move(frame.estimate, shift);
   if (!vouch_ && frame.bound != nullptr) disown(frame);
@@ -191,7 +192,8 @@ void Recorder::finish(const LinkCounters& link, const Runner& runner) {
   record_.overflows += runner.overflows();
   record_.resets += runner.resets();
   record_.refuted |= runner.refuted();
-  record_.bytes_per_step = runner.bytes_per_step();
+  bytes_ += runner.bytes_per_step();
+  ++finished_;
 }
 
 Record Recorder::release() {
@@ -199,6 +201,7 @@ Record Recorder::release() {
     record_.missing += counts.missing;
     record_.nonfinite += counts.nonfinite;
   }
+  if (finished_ > 0) record_.bytes_per_step = (bytes_ + finished_ / 2) / finished_;
   // Threads finish trials in any order; the record must not depend on it.
   std::sort(record_.accusations.begin(), record_.accusations.end(), [](const auto& a, const auto& b) {
     return std::tie(a.trial, a.time) < std::tie(b.trial, b.time);

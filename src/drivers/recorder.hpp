@@ -73,6 +73,8 @@ class Recorder {
   void details(int trial, int t, const Runner& runner);
 
   Record record_;
+  std::int64_t bytes_ = 0;  // of a step, summed over what has finished
+  std::int64_t finished_ = 0;
   Keep keep_;
   bool vouch_;   // no agent lies in its messages: only then a family's bounds are covered
   bool direct_;  // the certificate does not rest on what agents say of others

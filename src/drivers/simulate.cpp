@@ -233,11 +233,14 @@ Record drive(const Prepared& prepared, int steps, bool truth_known, const RunOpt
   record.warnings = filter.warnings(model, {record.verdict, record.trials, record.steps + 1, record.agents});
   if (!doubt.empty()) record.warnings.push_back(std::move(doubt));
   for (std::string& words : filter.refuted(record.refuted)) record.warnings.push_back(std::move(words));
-  if (!options.message_attacks.empty())
-    record.warnings.emplace_back(
-        "Agents lie in their messages: no bound is reported, and a sensor called attacked may be honest, "
-        "because both "
-        "rest on what agents tell each other.");
+  if (!options.message_attacks.empty()) {
+    const auto plan = prepared.certificate();
+    const bool direct = plan != nullptr && plan->wanted.spread == certificate::Spread::direct;
+    record.warnings.push_back("Agents lie in their messages: " +
+                              std::string(direct ? "no bound but the direct certificate's" : "no bound") +
+                              " is reported, and a sensor called attacked may be honest, because both "
+                              "rest on what agents tell each other.");
+  }
   if (record.resets > 0)
     record.warnings.push_back("Estimates overflowed and were taken anew from the neighbours " +
                               std::to_string(record.resets) + " times: the filter diverged.");

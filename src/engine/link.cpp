@@ -31,7 +31,7 @@ Link::Link(const Network& network, LinkFaults faults,
 }
 
 void Link::require(const FieldList& message) const {
-  for (const auto& attack : attacks_) attack->require(message);
+  for (const auto& attack : attacks_) attack->require(message, static_cast<int>(liar_.size()));
 }
 
 void Link::decide(std::int64_t sample, int round, const Links& links, std::span<Fate> fates) const {

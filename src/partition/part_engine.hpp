@@ -58,11 +58,11 @@ class PartEngine final : public PartRunner {
     }
   }
 
-  void require(const MessageAttack& attack) const override {
+  void require(const MessageAttack& attack, int agents) const override {
     State state;
     Message message;
     F::template init<n>(local(0), *gains_, Vec<n>::Zero(A_.rows()), state, message);
-    attack.require(FieldList(message));
+    attack.require(FieldList(message), agents);
   }
 
   void reset(const Vector& x0, Link* link) override {

@@ -70,7 +70,7 @@ PartRun::PartRun(PartRunner& runner, const Model& model, std::vector<int> ids, i
     if (!attack->fits(model.states()))
       refuse("attack", "numbers for another plant",
              "one per attacked agent and state (" + std::to_string(model.states()) + " states)");
-    runner.require(*attack);
+    runner.require(*attack, agents);
   }
   if (plant_.x0.size() != 0 && plant_.x0.size() != model.states())
     refuse("x0", std::to_string(plant_.x0.size()) + " numbers",

@@ -20,7 +20,7 @@ class PartRunner {
  public:
   virtual ~PartRunner() = default;
   /// Refuses an attack on messages that the family's messages have no place for. @throws InvalidInput
-  virtual void require(const MessageAttack& attack) const = 0;
+  virtual void require(const MessageAttack& attack, int agents) const = 0;
   /// Time 0: one initial estimate for all, n numbers. `link` (null = perfect) must outlive the run.
   virtual void reset(const Vector& x0, Link* link) = 0;
   /// One sample: every agent senses, then all rounds. `y`: measurements of the own agents, NaN = missing.

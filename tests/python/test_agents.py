@@ -103,6 +103,32 @@ def test_an_agent_that_starts_late_says_nothing_before_it_has_heard_the_others()
     assert np.linalg.norm(joined.estimate) < 1.0
 
 
+@pytest.mark.parametrize("filter", FILTERS, ids=lambda f: f.name)
+def test_a_snapshot_knows_whether_the_agent_has_heard_anybody(filter: gr.Filter) -> None:
+    design = gr.prepare(*problem(), filter)
+    fresh = design.agent(0)
+    fresh.reset([7.0, 7.0], t=100)
+    settled = design.agent(0)
+    settled.sense(1, [0.0])
+    for _ in range(settled.rounds):
+        settled.fuse([])
+    for source in (fresh, settled):
+        kept = design.agent(0)
+        if source is settled:
+            kept.reset([7.0, 7.0], t=100)  # whatever it was before
+        kept.load(source.save())
+        carried = pickle.loads(pickle.dumps(source))
+        assert kept == source and carried == source
+        t = source.sample + 1
+        said = [one.sense(t, [0.0]) for one in (source, kept, carried)]
+        assert said[0] == said[1] == said[2] and (said[0] is None) == (source is fresh)
+    alone = design.agent(0)
+    alone.join(50, [])
+    kept = design.agent(0)
+    kept.load(alone.save())
+    assert alone.sense(51, [0.0]) is None and kept.sense(51, [0.0]) is None
+
+
 def test_messages_have_fields_can_be_kept_and_be_lied_in() -> None:
     model, net = problem()
     message = gr.Agent(model, net, FILTERS[0], 1).sense(1, [1e9])
@@ -212,3 +238,51 @@ def test_links_may_fail_by_schedule_or_by_record() -> None:
         gr.simulate(model, net, filt, steps=6, link={"cuts": [(1, 2)]})
     with pytest.raises(gr.InvalidInput, match="agent 9"):
         gr.simulate(model, net, filt, steps=6, noise="normal", link={"lost": [(6, 0, 9, 0)]})
+
+
+def test_a_run_is_the_same_for_any_number_of_threads_and_is_repeated_as_it_was_asked_for() -> None:
+    model, net = problem()
+    lossy = {"link": {"drop": 0.3}, "certificate": "flooded", "attacked": 1, "conditions": False}
+    runs = [
+        gr.simulate(model, net, gr.filters.ScalarGain(rounds=2), steps=20, trials=4, threads=k, **lossy)
+        for k in (1, 2, 4)
+    ]
+    assert runs[0] == runs[1] == runs[2] == gr.again(runs[0])
+    alone = [
+        gr.simulate(model, net, gr.filters.ScalarGain(rounds=2), steps=20, first_trial=k, **lossy).bytes_per_step
+        for k in range(4)
+    ]
+    assert len(set(alone)) > 1 and runs[0].bytes_per_step == int(np.floor(np.mean(alone) + 0.5))
+    unasked = gr.simulate(model, net, FILTERS[0], steps=3, conditions=False)
+    assert gr.again(unasked) == unasked
+
+
+@pytest.mark.parametrize(
+    ("filter", "lie", "words"),
+    [
+        (FILTERS[0], {"field": "proved", "members": [40]}, "falsify.members: got 40, expected ids of agents in 0..4"),
+        (
+            FILTERS[0],
+            {"field": "estimate", "members": [1]},
+            "falsify.members: got members of estimate, which is no set",
+        ),
+        (FILTERS[0], {"field": "proved", "value": 7.0}, "falsify.value: got 7 for proved, which is a set"),
+        (FILTERS[1], {"field": "nonsense", "value": 7.0}, 'falsify.field: got unknown name "nonsense"'),
+    ],
+)
+def test_a_lie_that_no_message_has_room_for_is_refused(filter: gr.Filter, lie: dict, words: str) -> None:  # type: ignore[type-arg]
+    with pytest.raises(gr.InvalidInput) as told:
+        gr.simulate(*problem(), filter, steps=3, attack=gr.attacks.Falsify(agents=[0], **lie))
+    assert words in str(told.value)
+
+
+def test_a_direct_certificate_is_there_also_where_the_family_has_a_bound_of_its_own() -> None:
+    model, _ = problem()
+    net, lie = gr.Network.complete(AGENTS), gr.attacks.Forge(agents=[0], offset=2.0)
+    for start in ({}, {"initial_error": 3.0}):  # knowing more must not take the proof away
+        filter = gr.filters.Saturation(threshold=0.5, rounds=3, attacked=1, **start)
+        run = gr.simulate(model, net, filter, steps=20, noise="uniform", attack=lie, certificate="direct", failure=0.0)
+        honest = np.arange(AGENTS) != 0
+        assert np.isfinite(run.bound[:, 1:, honest]).all()  # type: ignore[index]
+        assert (run.error[:, 1:, honest] <= run.bound[:, 1:, honest]).all()  # type: ignore[index]
+        assert any("no bound but the direct certificate's is reported" in w for w in run.warnings)

@@ -39,8 +39,9 @@ class GARRISON_EXPORT MessageAttack {
   virtual int age() const { return 0; }
   /// Its numbers fit a plant with that many states; drivers refuse an attack that does not.
   virtual bool fits(int) const { return true; }
-  /// Refuses a family whose messages do not have what the attack lies about. @throws InvalidInput
-  virtual void require(const FieldList&) const {}
+  /// Refuses a family whose messages do not have what the attack lies about, in a network of `agents`.
+  /// @throws InvalidInput
+  virtual void require(const FieldList&, int /*agents*/) const {}
 
  private:
   Schedule schedule_;

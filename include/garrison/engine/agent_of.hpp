@@ -175,17 +175,17 @@ class AgentOf final : public Agent {
 
   std::size_t snapshot_bytes() const noexcept override { return snapshot_bytes_; }
   std::size_t save(std::span<std::byte> out) const noexcept override {
-    if (round_ < rounds_ || out.size() < snapshot_bytes_) return 0;
+    if (round_ < rounds_ || listening_ || out.size() < snapshot_bytes_) return 0;
     constexpr std::size_t around = SnapshotHead::kBytes + SnapshotHead::kChecksum;
     const std::size_t used = written(out.subspan(SnapshotHead::kBytes, snapshot_bytes_ - around));
     if (used + around != snapshot_bytes_) return 0;
-    SnapshotHead{local_.id, part_.design, t_, resets_}.write(out.first(snapshot_bytes_));
+    SnapshotHead{local_.id, part_.design, t_, resets_, fresh_}.write(out.first(snapshot_bytes_));
     return snapshot_bytes_;
   }
   Refusal load(std::span<const std::byte> snapshot) noexcept override {
-    if (round_ < rounds_) return Refusal::order;
+    if (round_ < rounds_ || listening_) return Refusal::order;
     if (snapshot.size() != snapshot_bytes_) return Refusal::size;
-    SnapshotHead head{local_.id, part_.design, 0, 0};
+    SnapshotHead head{local_.id, part_.design, 0, 0, false};
     if (const Refusal why = head.read(snapshot); why != Refusal::none) return why;
     wire::Reader reader(snapshot.subspan(SnapshotHead::kBytes)
                             .first(snapshot_bytes_ - SnapshotHead::kBytes - SnapshotHead::kChecksum),
@@ -193,7 +193,8 @@ class AgentOf final : public Agent {
     reader("", state_);
     if (evidence_) reader("certificate", evidence_->memory());
     const bool certified = !evidence_ || (evidence_->usable() && evidence_->memory().t == head.t);
-    if (reader.end() != Refusal::none || head.t < start() || head.t > kLatest || !certified) {
+    const bool sound = certified && usable<n>(F::template estimate<n>(state_));
+    if (reader.end() != Refusal::none || head.t < start() || head.t > kLatest || !sound) {
       // Somebody forged a checksum: nothing of it may stay.
       Vec<n> zero = Vec<n>::Zero(local_.states);
       F::template init<n>(local_, *gains_, zero, state_, outgoing_);
@@ -203,6 +204,7 @@ class AgentOf final : public Agent {
     }
     t_ = head.t;
     resets_ = head.resets;
+    fresh_ = head.fresh;
     mail_.forget();
     return Refusal::none;
   }

@@ -97,6 +97,7 @@ class Engine final : public Runner {
     }
     if (places_.varying()) return disclaim(f, N);
     if (f.bound == nullptr || f.bound_kind == nullptr) return;
+    if (!f.believed) std::fill_n(f.bound, N, kNaN);
     if (f.published != nullptr) std::copy_n(f.bound, N, f.published);
     if (!certified_) return name_sources(f, N);
     for (std::size_t i = 0; i < N; ++i) {

@@ -22,7 +22,7 @@ struct GARRISON_EXPORT LinkFaults {
   std::vector<Lost> lost = {};
 };
 
-/// What happened to messages during a run.
+/// What happened to messages during a run. Where nothing can happen to any (a perfect link) none is counted.
 struct GARRISON_EXPORT LinkCounters {
   std::int64_t sent = 0;     ///< messages that honest links carried as they were
   std::int64_t lost = 0;     ///< dropped, or withheld by the sender

@@ -23,6 +23,7 @@ struct Frame {
   double* threshold = nullptr;         ///< N
   std::uint8_t* verdict = nullptr;     ///< N, values of Verdict
   double* signals = nullptr;           ///< number of signals x N, signal by signal
+  bool believed = true;  ///< false: agents may lie in their messages, so no bound of a family counts
 };
 
 /// No theorem of a family covers a plant that changes in time: there is no bound of any agent.
