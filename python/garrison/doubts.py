@@ -21,7 +21,7 @@ _STATES, _SUBSETS = 400, 20_000
 
 
 def _cheap(model: _core.Model, filter: _core.Filter) -> bool:
-    attacked = int(filter.params.get("attacked", 0))
+    attacked = max(0, int(filter.params.get("attacked", 0)))  # what is wrong with it the filter says
     return model.agents * model.states <= _STATES and math.comb(model.agents, min(attacked, model.agents)) <= _SUBSETS
 
 
@@ -68,7 +68,7 @@ def of_alarms(filter: _core.Filter, samples: int) -> list[str]:
 
 def of_silence(names: list[str] | None, measurements: Array) -> list[str]:
     """A line that names the outputs of which a recording (sample, output) holds nothing."""
-    silent = np.isnan(measurements).all(axis=0)
+    silent = ~np.isfinite(measurements).any(axis=0)
     if not silent.any():
         return []
     if silent.all():

@@ -222,6 +222,7 @@ def simulate(
     } | _shared(
         trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked), wanted
     )
+    run.warnings += refuted.of_certificates(run.bound_kind, run.made["failure"])
     run.made["noise"] = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
     return run
 
@@ -377,6 +378,7 @@ def replay(
     run.made = {"driver": "replay"} | _shared(
         trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked), wanted
     )
+    run.warnings += refuted.of_certificates(run.bound_kind, run.made["failure"])
     return run
 
 

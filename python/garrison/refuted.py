@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.bound_kind import BoundKind
 from garrison.circuits import Circuits
 
 Array = NDArray[np.float64]
@@ -39,6 +40,25 @@ def of_rate(filter: _core.Filter, statistic: Array | None, threshold: Array | No
         f"most sensors exceed the level of their test in a share of {rate:.2g} of the samples, asked {asked:g}: "
         "process_covariance or measurement_covariance is too small, the noise depends on its past, A or C is wrong, "
         "or a lie has moved all estimates; see garrison.calibrate"
+    ]
+
+
+def of_certificates(kind: NDArray[np.generic] | None, failure: float | None) -> list[str]:
+    """A line when measurements contradict what certificates assume more often than `failure`, the chance of one sample.
+
+    kind: values of BoundKind, (trial, time, agent).
+    """
+    if kind is None:
+        return []
+    refuted = np.asarray(kind) == BoundKind.REFUTED
+    allowed, samples = failure or 0.0, refuted[..., 0].size
+    if not float(refuted.mean(axis=(0, 1)).max()) > allowed + _SURE * math.sqrt(allowed / samples):
+        return []
+    first = int(np.flatnonzero(refuted.any(axis=(0, 2)))[0])
+    return [
+        f"measurements contradict what the certificate assumes in {refuted.mean():.2g} of all bounds, first at sample "
+        f"{first}: measurement_bound, process_bound or the covariances are too small, A or C is wrong, or more than "
+        "`attacked` sources lie; bounds of other samples may be wrong, too"
     ]
 
 

@@ -233,3 +233,26 @@ def test_a_scenario_takes_the_levels_of_its_fit() -> None:
     for wrong, why in (({"failure": 1e-6, "levels": "calibrated"}, "failure >="), ({"levels": "all"}, "levels")):
         with pytest.raises(gr.InvalidInput, match=why):
             read_scenario(wind, set={f"certificate.{key}": value for key, value in wrong.items()})
+
+
+def test_measurements_that_contradict_the_certificate_are_told() -> None:
+    model = gr.Model([[0.95]], [[[1.0]]] * 3, process_bound=0.1, measurement_bound=0.1)
+    net, filter = gr.Network.complete(3), gr.filters.ScalarGain(rounds=2)
+    asked = {"certificate": "flooded", "failure": 0.0, "attacked": 1}
+    for y, contradicted in (([0.0, 5.0, 10.0], True), ([0.0, 0.1, 10.0], False)):
+        run = gr.replay(model, net, filter, measurements=np.tile(y, (5, 1)), **asked)
+        assert any("contradict what the certificate assumes" in w for w in run.warnings) == contradicted
+        assert (run.bound_kind == gr.BoundKind.REFUTED).any() == contradicted
+
+
+def test_understated_noise_bounds_raise_a_doubt_about_the_certificate() -> None:
+    told = 0
+    for seed in range(5):
+        true = gr.Model([[0.95]], [[[1.0]]] * 6, process_bound=0.1, measurement_bound=0.5)
+        small = gr.Model([[0.95]], [[[1.0]]] * 6, process_bound=0.1, measurement_bound=0.375)
+        net, filter = gr.Network.complete(6), gr.filters.ScalarGain(rounds=2)
+        y = gr.simulate(true, net, filter, steps=300, noise="uniform", seed=seed, keep=["measurements"]).measurements
+        asked = {"measurements": y, "certificate": "flooded", "failure": 0.0, "attacked": 1}
+        told += any("contradict" in w for w in gr.replay(small, net, filter, **asked).warnings)
+        assert not any("contradict" in w for w in gr.replay(true, net, filter, **asked).warnings)
+    assert told == 5

@@ -149,3 +149,22 @@ def test_gains_of_the_lmi_are_stable_where_a_plain_choice_is_not() -> None:
     hopeless = theory.Setting(A=np.eye(3) * 1.2, C=np.zeros((4, 3)), W=W, U=np.eye(4))
     with pytest.raises(gr.DesignInfeasible, match="spectral radius"):
         gr.lmi_gains(hopeless, iterations=2)
+
+
+def test_a_residual_that_a_projection_makes_vanish_is_not_tested() -> None:
+    two = gr.Model([[0.9]], [[[1.0]], [[1.0]]], process_covariance=[[0.1]], measurement_covariance=[[[0.1]], [[0.1]]])
+    rng = np.random.default_rng(0)
+    y = rng.normal(size=(400, 2))
+    y[rng.random(y.shape) < 0.2] = np.nan
+    alone = gr.filters.Structural(design="projection", share="none")
+    for link in ({}, {"drop": 0.3}):
+        run = gr.replay(two, gr.Network.complete(2), alone, measurements=y, link=link)
+        assert np.isnan(run.threshold).all()  # type: ignore[arg-type]
+        assert not np.isin(run.verdict, [gr.Verdict.CLEARED, gr.Verdict.ATTACKED, gr.Verdict.SUSPECTED]).any()  # type: ignore[arg-type]
+        assert any("sensor 0 was tested in 0 %" in w for w in run.warnings)
+    one = gr.Model([[0.9]], [[[1.0]]], process_covariance=[[0.1]], measurement_covariance=[[[0.1]]])
+    lie = np.where(np.arange(400) < 200, 0.0, 100.0)[:, None]
+    for window in (1, 4):
+        filter = gr.filters.Structural(design="projection", window=window)
+        run = gr.replay(one, gr.Network([], agents=1), filter, measurements=lie)
+        assert (run.verdict[:, 1:] == gr.Verdict.NOT_TESTED).all()  # type: ignore[index]

@@ -132,10 +132,9 @@ void add_test(Structural::Gains& g, const Setting& s, const GainMatrices& K, con
     }
   }
   for (Index i = 0; i < N; ++i) {
-    // A residual without any spread cannot be judged against rounding.
-    const double tested = g.innovation ? innovation(i) : residual(i);
-    g.std.push_back(tested > 0.0 ? tested : kNaN);
-    g.innovation_std.push_back(innovation(i) > 0.0 ? innovation(i) : kNaN);
+    const auto known = [&](double std) { return structural::varies(std, s.R(i, i)) ? std : kNaN; };
+    g.std.push_back(known(g.innovation ? innovation(i) : residual(i)));
+    g.innovation_std.push_back(known(innovation(i)));
   }
 }
 

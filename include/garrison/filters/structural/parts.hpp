@@ -19,6 +19,13 @@ inline constexpr int kMostRest = 65535;
 /// tests until the error is stationary again.
 inline constexpr int kCarried = 16;
 
+/// Whether what is tested varies by more than rounding: a residual that a gain makes vanish (a projection)
+/// says nothing of its sensor. `std`: its deviation, `noise`: R_ii.
+inline bool varies(double std, double noise) noexcept {
+  constexpr double kRounding = 1e-12;  // of a variance
+  return std > 0.0 && std * std > kRounding * noise;
+}
+
 /// What agent i needs of an agent it hears (or of itself).
 struct Heard {
   int id;
