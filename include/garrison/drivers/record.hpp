@@ -61,7 +61,8 @@ struct GARRISON_EXPORT Record {
   unsigned refuted = 0;               ///< assumptions that some agent refuted: Runner::refuted of all trials
   std::vector<std::string> warnings;  ///< of the family, for people
   bool interrupted = false;           ///< stopped by the caller before the end
-  std::int64_t bytes_per_step = 0;    ///< of the bodies of all messages of one sample, when none is lost: mean over trials
+  /// Of the bodies of all messages of one sample, when none is lost: mean over trials.
+  std::int64_t bytes_per_step = 0;
 };
 
 }  // namespace garrison
