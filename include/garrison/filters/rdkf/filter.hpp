@@ -2,6 +2,7 @@
 // The resilient distributed Kalman filter of Dutta, Zhang, Jin (CDC 2019).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
