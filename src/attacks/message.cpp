@@ -177,7 +177,8 @@ class Falsify final : public MessageAttack {
     if (!set && !members_.empty())
       refuse("falsify.members", "members of " + field_ + ", which is no set", "a value", "value = ..");
     if (set && value_ != 0.0)
-      refuse("falsify.value", text(value_) + " for " + field_ + ", which is a set", "members", "members = [..]");
+      refuse("falsify.value", text(value_) + " for " + field_ + ", which is a set", "members",
+             "members = [..]");
     for (const int id : members_)
       if (id >= agents)
         refuse("falsify.members", std::to_string(id), "ids of agents in 0.." + std::to_string(agents - 1));
