@@ -214,16 +214,24 @@ def simulate(
         progress=arguments.callback("progress", progress),
     )
     run = _run(data, base, ground, filter, attacks, wanted, known)
-    run.made = {
+    drawn = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
+    own = {
         "driver": "simulate",
         "steps": steps,
         "x0": plain_data(x0),
         "start_error": float(start_error),
-    } | _shared(
+        "noise": drawn,
+    }
+    shared = _shared(
         trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked), wanted
     )
-    run.warnings += refuted.of_certificates(run.bound_kind, run.made["failure"])
-    run.made["noise"] = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
+    return _made(run, own | shared)
+
+
+def _made(run: Run, made: dict[str, Any]) -> Run:
+    """The run with what made it, and the doubts that depend on that."""
+    run.made = made
+    run.warnings += refuted.of_certificates(run.bound_kind, made["failure"])
     return run
 
 
@@ -375,11 +383,10 @@ def replay(
     )
     run = _run(data, base, ground, filter, attacks, wanted, known)
     run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
-    run.made = {"driver": "replay"} | _shared(
+    shared = _shared(
         trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked), wanted
     )
-    run.warnings += refuted.of_certificates(run.bound_kind, run.made["failure"])
-    return run
+    return _made(run, {"driver": "replay"} | shared)
 
 
 @hinted

@@ -137,7 +137,6 @@ void Recorder::disown(const Frame& frame) const {
            k == CertificateKind::refuted;
   };
   for (std::size_t i = 0; i < static_cast<std::size_t>(record_.agents); ++i) {
-    if (frame.published != nullptr) frame.published[i] = kNaN;
     if (direct_ && of_measurements(frame.bound_kind[i])) continue;
     frame.bound[i] = kNaN;
     frame.bound_kind[i] = static_cast<std::uint8_t>(CertificateKind::liars);

@@ -11,6 +11,7 @@
 #include "garrison/core/error.hpp"
 #include "garrison/wire/blake2b.hpp"
 #include "garrison/wire/bytes.hpp"
+#include "mpi/here.hpp"
 #include "mpi/together.hpp"
 #include "node/daemon/files.hpp"
 
@@ -37,10 +38,8 @@ std::string Checkpoint::file_of(std::int64_t t, int rank, int ranks) const {
 
 void Checkpoint::write(std::int64_t t, const std::vector<int>& ids,
                        const partition::PartRunner& runner) const {
-  int rank = 0;
-  int ranks = 1;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  const int rank = this_rank();
+  const int ranks = all_ranks();
   together([&] {
     std::filesystem::create_directories(folder_);
     std::vector<std::byte> out;

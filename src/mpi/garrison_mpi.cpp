@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "garrison/version.hpp"
+#include "mpi/here.hpp"
 #include "mpi/owners.hpp"
 #include "mpi/run.hpp"
 #include "partition/split.hpp"
@@ -122,9 +123,7 @@ int main(int count, char** words) {
   if (first == "--version") return std::printf("garrison-mpi " GARRISON_VERSION "\n"), 0;
   if (first == "--help" || first == "-h") return std::fputs(kUsage, stdout), 0;
   MPI_Init(&count, &words);
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  const int code = obey(count, words, rank);
+  const int code = obey(count, words, this_rank());
   MPI_Finalize();
   return code;
 }

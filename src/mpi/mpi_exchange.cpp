@@ -1,36 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mpi/mpi_exchange.hpp"
 
+#include "mpi/here.hpp"
+
 namespace garrison::mpi {
-namespace {
-
-std::vector<int> starts_of(const std::vector<int>& counts) {
-  std::vector<int> starts;
-  int next = 0;
-  for (const int count : counts) {
-    starts.push_back(next);
-    next += count;
-  }
-  return starts;
-}
-
-}  // namespace
 
 MpiExchange::~MpiExchange() {
   if (record_ != MPI_DATATYPE_NULL) MPI_Type_free(&record_);
   if (neighbours_ != MPI_COMM_NULL) MPI_Comm_free(&neighbours_);
 }
 
-int MpiExchange::rank() const {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank;
-}
-int MpiExchange::ranks() const {
-  int ranks = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  return ranks;
-}
+int MpiExchange::rank() const { return this_rank(); }
+int MpiExchange::ranks() const { return all_ranks(); }
 
 void MpiExchange::connect(const partition::Routes& routes) {
   if (neighbours_ != MPI_COMM_NULL) return;

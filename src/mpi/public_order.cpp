@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "mpi/here.hpp"
+
 namespace garrison::mpi {
 namespace {
 
@@ -12,23 +14,11 @@ int start_of(std::int64_t rank, std::int64_t ranks, int agents) {
   return static_cast<int>(std::min<std::int64_t>(agents, blocks * rank / ranks * kBlock));
 }
 
-std::vector<int> starts_of(const std::vector<int>& counts) {
-  std::vector<int> starts;
-  int next = 0;
-  for (const int count : counts) {
-    starts.push_back(next);
-    next += count;
-  }
-  return starts;
-}
-
 }  // namespace
 
 PublicOrder::PublicOrder(std::span<const int> ids, int agents, int width) : width_(width) {
-  int rank = 0;
-  int ranks = 1;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  const int rank = this_rank();
+  const int ranks = all_ranks();
   first_ = start_of(rank, ranks, agents);
   last_ = start_of(rank + 1, ranks, agents);
   // Ids ascend, and so do the ranges: what a rank gets lies together as it is.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "garrison/version.hpp"
+#include "mpi/here.hpp"
 #include "mpi/together.hpp"
 
 namespace garrison::mpi {
@@ -16,12 +17,6 @@ std::string hex(std::uint64_t value) {
   std::array<char, 17> out{};
   std::snprintf(out.data(), out.size(), "%016llx", static_cast<unsigned long long>(value));
   return out.data();
-}
-
-int rank_of() {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank;
 }
 
 }  // namespace
@@ -110,7 +105,7 @@ void Results::open(const Scenario& s) {
 void Results::write(std::int64_t t, std::span<const double> truth, const Summary& summary,
                     const PublicOrder& order, std::span<const double> estimates) {
   const MPI_Offset record = t / every_ - 1;
-  const bool first = rank_of() == 0;
+  const bool first = this_rank() == 0;
   // Collective: ranks that have nothing of a variable write no numbers of it.
   const MPI_Offset one = first ? 1 : 0;
   const int time = static_cast<int>(t);

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "mpi/here.hpp"
 
 namespace garrison::mpi {
 namespace {
@@ -29,15 +30,12 @@ double quantile(const std::vector<std::int64_t>& counts, double share) {
 
 /// All ranks' sums one behind the other, on rank 0.
 std::vector<double> gathered(const std::vector<double>& sums) {
-  int rank = 0;
-  int ranks = 1;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  const int rank = this_rank();
+  const int ranks = all_ranks();
   const auto count = static_cast<int>(sums.size());
   std::vector<int> counts(static_cast<std::size_t>(ranks));
   MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
-  std::vector<int> starts(counts.size());
-  std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
+  const std::vector<int> starts = starts_of(counts);
   std::vector<double> all(rank == 0 ? static_cast<std::size_t>(starts.back() + counts.back()) : 0);
   MPI_Gatherv(sums.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, 0,
               MPI_COMM_WORLD);

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <span>
+
+#include "garrison/wire/blake2b.hpp"
 
 namespace garrison::partition {
 namespace {
@@ -54,11 +57,10 @@ class Listed final : public Ground {
     return out;
   }
   std::string description() const override {
-    std::uint64_t hash = 14695981039346656037U;
-    const auto mix = [&](int value) { hash = (hash ^ static_cast<std::uint32_t>(value)) * 1099511628211U; };
-    for (const int offset : network_.offsets()) mix(offset);
-    for (const int id : network_.lists()) mix(id);
-    return "edges " + std::to_string(agents()) + " " + std::to_string(hash);
+    const auto sum = [](std::span<const int> ids) {
+      return std::to_string(wire::checksum(std::as_bytes(ids)));
+    };
+    return "edges " + std::to_string(agents()) + " " + sum(network_.offsets()) + " " + sum(network_.lists());
   }
 
  private:

@@ -4,6 +4,17 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 
+#: Five agents that watch two states: what scenarios of several tests begin with.
+RING = """
+[model]
+A = [[1.0, 0.1], [0.0, 1.0]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0]]
+process_bound = 0.02
+measurement_bound = 0.01
+[network]
+kind = "ring"
+"""
+
 
 @pytest.fixture(scope="session")
 def wind() -> Path:

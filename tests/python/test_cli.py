@@ -4,16 +4,12 @@ import json
 from pathlib import Path
 
 import pytest
+from conftest import RING
 from garrison.cli import main
 
-SCENARIO = """
-[model]
-A = [[1.0, 0.1], [0.0, 1.0]]
-C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0]]
-process_bound = 0.02
-measurement_bound = 0.01
-[network]
-kind = "ring"
+SCENARIO = (
+    RING
+    + """\
 [filter]
 name = "saturation"
 threshold = 2.0
@@ -29,6 +25,7 @@ trials = 3
 seed = 4
 x0 = [1.0, 1.0]
 """
+)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import garrison as gr
 import pytest
+from conftest import RING
 from garrison.cli import main
 
 SCENARIO = """
@@ -147,14 +148,9 @@ def test_a_matrix_with_a_gap_is_refused_with_its_place(tmp_path: Path, capsys: p
     assert f"{path}, line 2, column 2: got 'nan', expected a finite number" in capsys.readouterr().err
 
 
-UNIT = """
-[model]
-A = [[1.0, 0.1], [0.0, 1.0]]
-C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0]]
-process_bound = 0.02
-measurement_bound = 0.01
-[network]
-kind = "ring"
+UNIT = (
+    RING
+    + """\
 [filter]
 name = "saturation"
 threshold = 2.0
@@ -162,6 +158,7 @@ initial_error = 1.0
 [run]
 steps = 20
 """
+)
 SOURCES = UNIT.replace(
     'name = "saturation"\nthreshold = 2.0\ninitial_error = 1.0', 'name = "lfre"\nfaulty = 0'
 ).replace("C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0]]", "C = [[1, 0], [1, 0], [1, 0], [1, 0], [1, 0]]")

@@ -8,17 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import RING
 from garrison import cli
 from garrison.cli import main
 
-PLANT = """
-[model]
-A = [[1.0, 0.1], [0.0, 1.0]]
-C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0]]
-process_bound = 0.02
-measurement_bound = 0.01
-[network]
-kind = "ring"
+PLANT = (
+    RING
+    + """\
 [filter]
 name = "saturation"
 threshold = 2.0
@@ -32,6 +28,7 @@ start = 10
 [run]
 steps = 20
 """
+)
 WIND = """
 [model]
 fit = "wind.csv"

@@ -45,7 +45,7 @@ class AgentOf final : public Agent {
     mailbox_.assign(mail_.places(), outgoing_);
     look_at(local_.id);
     for (const int j : part_.neighbours) look_at(j);
-    snapshot_bytes_ = SnapshotHead::kBytes + written({}) + SnapshotHead::kChecksum;
+    snapshot_bytes_ = written({}) + SnapshotHead::kAround;
   }
   AgentOf(const AgentOf&) = delete;
   AgentOf& operator=(const AgentOf&) = delete;
@@ -176,10 +176,9 @@ class AgentOf final : public Agent {
   std::size_t snapshot_bytes() const noexcept override { return snapshot_bytes_; }
   std::size_t save(std::span<std::byte> out) const noexcept override {
     if (round_ < rounds_ || listening_ || out.size() < snapshot_bytes_) return 0;
-    constexpr std::size_t around = SnapshotHead::kBytes + SnapshotHead::kChecksum;
-    const std::size_t used = written(out.subspan(SnapshotHead::kBytes, snapshot_bytes_ - around));
-    if (used + around != snapshot_bytes_) return 0;
-    SnapshotHead{local_.id, part_.design, t_, resets_, fresh_}.write(out.first(snapshot_bytes_));
+    const std::span<std::byte> snapshot = out.first(snapshot_bytes_);
+    if (written(SnapshotHead::state_in(snapshot)) + SnapshotHead::kAround != snapshot_bytes_) return 0;
+    SnapshotHead{local_.id, part_.design, t_, resets_, fresh_}.write(snapshot);
     return snapshot_bytes_;
   }
   Refusal load(std::span<const std::byte> snapshot) noexcept override {
@@ -187,9 +186,7 @@ class AgentOf final : public Agent {
     if (snapshot.size() != snapshot_bytes_) return Refusal::size;
     SnapshotHead head{local_.id, part_.design, 0, 0, false};
     if (const Refusal why = head.read(snapshot); why != Refusal::none) return why;
-    wire::Reader reader(snapshot.subspan(SnapshotHead::kBytes)
-                            .first(snapshot_bytes_ - SnapshotHead::kBytes - SnapshotHead::kChecksum),
-                        local_.agents, false);
+    wire::Reader reader(SnapshotHead::state_in(snapshot), local_.agents, false);
     reader("", state_);
     if (evidence_) reader("certificate", evidence_->memory());
     const bool certified = !evidence_ || (evidence_->usable() && evidence_->memory().t == head.t);

@@ -18,6 +18,14 @@ struct SnapshotHead {
   static constexpr std::size_t kBytes = 40;
   static constexpr std::size_t kChecksum = 8;
 
+  /// All that is not the agent's state.
+  static constexpr std::size_t kAround = kBytes + kChecksum;
+  /// The state in a snapshot.
+  template <class Byte>
+  static std::span<Byte> state_in(std::span<Byte> snapshot) noexcept {
+    return snapshot.subspan(kBytes, snapshot.size() - kAround);
+  }
+
   int id;
   std::uint64_t design;
   std::int64_t t;

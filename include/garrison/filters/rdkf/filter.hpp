@@ -17,6 +17,7 @@
 #include "garrison/core/params.hpp"
 #include "garrison/filters/rdkf/agent_step.hpp"
 #include "garrison/filters/rdkf/fits.hpp"
+#include "garrison/kernel/counting.hpp"
 
 namespace garrison {
 
@@ -239,7 +240,7 @@ struct GARRISON_EXPORT Rdkf {
     for (int k = 0; k < nn; ++k) s.x[k] = w.x[k];
     if (g.bounded) s.bound = (bound + w.deviation) * (1.0 + 1e-12) + a.rounding * size;
     if (!(s.bound < kHuge)) s.bound = kNaN;  // it says nothing any more
-    s.saturated = w.step.mu > 0.0 && some ? std::min(s.saturated, INT32_MAX - 1) + 1 : 0;
+    s.saturated = w.step.mu > 0.0 && some ? one_more(s.saturated) : 0;
     send(l, g, s, m);  // after the only round: nobody reads it any more
   }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "garrison/filters/structural/filter.hpp"
+#include "garrison/kernel/counting.hpp"
 
 namespace garrison {
 
@@ -37,8 +38,8 @@ void Structural::judge(const Local& l, const Gains& g, State<n>& s, bool over) n
   if (!absent && std::isnan(s.threshold)) return;
   over = over || absent;
   if (s.coarse && !over) return;
-  s.above = over ? std::min(s.above, INT32_MAX - 1) + 1 : 0;
-  s.below = over ? 0 : std::min(s.below, INT32_MAX - 1) + 1;
+  s.above = over ? one_more(s.above) : 0;
+  s.below = over ? 0 : one_more(s.below);
   if (s.above >= g.alarm_after) s.alarm = true;
   if (s.below >= g.clear_after) s.alarm = false;
   s.accused.clear();
