@@ -72,6 +72,14 @@ def probability(which: str, value: Any) -> float:
     return found
 
 
+def chance(which: str, value: Any) -> float:
+    """A probability that may be 0."""
+    found = number(which, value)
+    if not 0.0 <= found < 1.0:
+        raise refusal(which, f"{found:g}", "a probability in [0, 1)", "0 = never")
+    return found
+
+
 def flag(which: str, value: Any) -> bool:
     """True or false."""
     if not isinstance(value, bool):
@@ -173,15 +181,17 @@ def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any, le
     """What to certify: `attacked` is the filter's own where it has one."""
     if not isinstance(name, str):
         raise refusal("certificate", shown(name), ONE_SPREAD)
+    out: dict[str, Any] = {"certificate": name, "failure": chance("failure", failure)}
+    if attacked is not None:
+        out["attacked"] = whole("attacked", attacked, 0)
+    if levels is not None:
+        out["levels"] = pair_of_levels(levels)
     if name == "none":
         return {}
-    if attacked is None:
-        attacked = filter.params.get("attacked")
-    if attacked is None:
+    if "attacked" not in out and "attacked" not in filter.params:
         advice = "say how many sources may be attacked at a time"
         raise refusal("attacked", f"no value, with certificate {name!r}", "a whole number >= 0", advice)
-    out = {"certificate": name, "failure": number("failure", failure), "attacked": whole("attacked", attacked, 0)}
-    return out if levels is None else out | {"levels": pair_of_levels(levels)}
+    return {"attacked": filter.params.get("attacked")} | out
 
 
 def pair_of_levels(levels: Any) -> tuple[float, float]:

@@ -44,14 +44,16 @@ def _designed(
     network: _core.Network,
     filter: _core.Filter,
     design: _core.Design | None,
-    certificate: dict[str, Any],
+    certificate: str,
+    failure: float,
+    attacked: int | None,
+    levels: tuple[float, float] | None,
 ) -> _core.Design:
+    wanted = arguments.certificate(filter, certificate, failure, attacked, levels)
     if design is None:
-        return _core.Design(model, network, filter, **certificate)
-    if certificate:
-        raise refusal(
-            "certificate", f"{certificate['certificate']!r} with a design", "none", "garrison.prepare takes it"
-        )
+        return _core.Design(model, network, filter, **wanted)
+    if wanted:
+        raise refusal("certificate", f"{certificate!r} with a design", "none", "garrison.prepare takes it")
     return design
 
 
@@ -195,8 +197,9 @@ def simulate(
     wanted = arguments.flag("conditions", conditions)
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, _KEEPABLE)
     require_room(base, filter, kept, trials, steps)
+    design = _designed(base, ground, filter, design, certificate, failure, attacked, levels)
     data = _core.simulate(
-        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked, levels)),
+        design,
         steps=steps,
         x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
         start_error=arguments.moderate("start_error", start_error),
@@ -222,16 +225,14 @@ def simulate(
         "start_error": float(start_error),
         "noise": drawn,
     }
-    shared = _shared(
-        trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked), wanted
-    )
+    shared = _shared(trials, first_trial, seed, start, attacks, links, kept, design, wanted)
     return _made(run, own | shared)
 
 
 def _made(run: Run, made: dict[str, Any]) -> Run:
     """The run with what made it, and the doubts that depend on that."""
     run.made = made
-    run.warnings += refuted.of_certificates(run.bound_kind, made["failure"])
+    run.warnings += refuted.of_certificates(run.bound_kind, made.get("failure", 0.0))
     return run
 
 
@@ -243,16 +244,13 @@ def _shared(
     attacks: list[_core.Attack],
     links: dict[str, Any],
     kept: list[str],
-    design: _core.Design | None,
-    certified: tuple[str, float, int | None],
+    design: _core.Design,
     conditions: bool,
 ) -> dict[str, Any]:
     """Arguments of both drivers as plain data, for `again`."""
-    found = None if design is None else design.certificate
-    certificate = dict(zip(("certificate", "failure", "attacked"), certified, strict=True)) if found is None else found
     made = {"trials": trials, "first_trial": first_trial, "seed": int(seed), "start": plain_data(start), "link": links}
     made["conditions"] = conditions
-    return made | {"keep": kept, "attack": [described_attack(a) for a in attacks]} | dict(certificate)
+    return made | {"keep": kept, "attack": [described_attack(a) for a in attacks]} | dict(design.certificate or {})
 
 
 def output_names(model: _core.Model, network: _core.Network | None = None) -> list[str] | None:
@@ -366,8 +364,9 @@ def replay(
     ground, links = links_of(network, arguments.link(link), samples)
     known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
     require_room(base, filter, kept, trials, samples)
+    design = _designed(base, ground, filter, design, certificate, failure, attacked, levels)
     data = _core.replay(
-        _designed(base, ground, filter, design, arguments.certificate(filter, certificate, failure, attacked, levels)),
+        design,
         measurements=y,
         truth=None if truth is None else numbers("truth", truth),
         trials=trials,
@@ -383,9 +382,7 @@ def replay(
     )
     run = _run(data, base, ground, filter, attacks, wanted, known)
     run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
-    shared = _shared(
-        trials, first_trial, seed, start, attacks, links, kept, design, (certificate, failure, attacked), wanted
-    )
+    shared = _shared(trials, first_trial, seed, start, attacks, links, kept, design, wanted)
     return _made(run, {"driver": "replay"} | shared)
 
 

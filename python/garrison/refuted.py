@@ -43,7 +43,7 @@ def of_rate(filter: _core.Filter, statistic: Array | None, threshold: Array | No
     ]
 
 
-def of_certificates(kind: NDArray[np.generic] | None, failure: float | None) -> list[str]:
+def of_certificates(kind: NDArray[np.generic] | None, failure: float) -> list[str]:
     """A line when measurements contradict what certificates assume more often than `failure`, the chance of one sample.
 
     kind: values of BoundKind, (trial, time, agent).
@@ -51,8 +51,8 @@ def of_certificates(kind: NDArray[np.generic] | None, failure: float | None) -> 
     if kind is None:
         return []
     refuted = np.asarray(kind) == BoundKind.REFUTED
-    allowed, samples = failure or 0.0, refuted[..., 0].size
-    if not float(refuted.mean(axis=(0, 1)).max()) > allowed + _SURE * math.sqrt(allowed / samples):
+    samples = refuted[..., 0].size
+    if not float(refuted.mean(axis=(0, 1)).max()) > failure + _SURE * math.sqrt(failure / samples):
         return []
     first = int(np.flatnonzero(refuted.any(axis=(0, 2)))[0])
     return [

@@ -4,6 +4,7 @@ import csv
 import json
 import pickle
 from pathlib import Path
+from typing import Any
 
 import garrison as gr
 import numpy as np
@@ -159,6 +160,24 @@ def test_slips_are_refused_by_name() -> None:
     bare = gr.Model([[1.0]], [[1]] * 3)
     with pytest.raises(gr.InvalidInput, match="measurement_covariance"):
         gr.prepare(bare, gr.Network.ring(3), gr.filters.ScalarGain(), certificate="local", attacked=1)
+
+
+@pytest.mark.parametrize("certificate", ["none", "local"])
+@pytest.mark.parametrize(
+    "slip", [{"failure": 1.0}, {"failure": float("nan")}, {"failure": "x"}, {"levels": 3}, {"attacked": -1}]
+)
+def test_options_of_certificates_are_looked_at_even_without_one(certificate: str, slip: dict[str, Any]) -> None:
+    model, net, filt = parts()
+    with pytest.raises(gr.InvalidInput, match=f"^{next(iter(slip))}: got "):
+        gr.simulate(model, net, filt, steps=2, certificate=certificate, **({"attacked": 1} | slip))
+
+
+def test_a_run_with_levels_is_repeated_with_them() -> None:
+    model, net, filt = parts()
+    asked: dict[str, Any] = {"steps": 5, "noise": "normal", "certificate": "local", "attacked": 1}
+    run = gr.simulate(model, net, filt, levels=(8.0, 9.0), **asked)
+    assert run.made["levels"] == (8.0, 9.0) and gr.again(run) == run
+    assert not np.array_equal(run.bound, gr.simulate(model, net, filt, **asked).bound, equal_nan=True)
 
 
 def test_check_says_what_to_expect() -> None:
