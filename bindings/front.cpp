@@ -20,6 +20,11 @@ std::string joined(const std::vector<std::string>& names) {
   return all.empty() ? "none" : all;
 }
 
+/// Whether the function gives its object the content: a constructor, or what unpickling calls.
+bool fills(const Front& front) {
+  return front.name.find('.') == std::string::npos || front.name.ends_with(".__setstate__");
+}
+
 }  // namespace
 
 std::vector<py::object> sorted_values(const Front& front, const Call& call) {
@@ -54,7 +59,7 @@ std::vector<py::object> sorted_values(const Front& front, const Call& call) {
     const std::string which = front.name + "." + argument.name;
     if (!values[k] && argument.required) refuse(which, "no value", argument.type.expected());
     if (!values[k]) continue;
-    all[k] = self && front.name.find('.') == std::string::npos  // a constructor: the object is still empty
+    all[k] = self && fills(front)  // the object is still empty
                  ? py::reinterpret_borrow<py::object>(values[k])
                  : read(argument.type, which, values[k]);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "guard.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <new>
 #include <unordered_map>
@@ -131,8 +132,20 @@ void guard_function(py::handle object, const std::string& name, const Classes& c
   fronts().emplace(function->m_self, std::move(front));
 }
 
+/// Protocols 0 and 1 of pickle would call pybind11's base class, which ends the process: they get what
+/// protocol 2 writes.
+void pickle_by_new(py::handle type) {
+  const auto reduce = [](const py::object& self, int protocol) {
+    const py::handle object(reinterpret_cast<PyObject*>(&PyBaseObject_Type));
+    return object.attr("__reduce_ex__")(self, std::max(protocol, 2));
+  };
+  py::setattr(type, "__reduce_ex__",
+              py::cpp_function(reduce, py::name("__reduce_ex__"), py::is_method(type), py::arg("protocol")));
+}
+
 void guard_class(py::handle type, const Classes& classes) {
   const auto name = type.attr("__name__").cast<std::string>();
+  pickle_by_new(type);
   const py::dict entries(type.attr("__dict__"));
   reinterpret_cast<PyTypeObject*>(type.ptr())->tp_setattro = assign;
   // Python fills in a wrapper of its own where there is no constructor.

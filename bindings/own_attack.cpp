@@ -84,6 +84,7 @@ std::unique_ptr<MeasurementAttack> OwnPlan::start(const Model& model, const Rand
 py::object value_of(const FieldRef& field) {
   switch (field.kind) {
     case FieldKind::numbers:
+    case FieldKind::sparse:
       return array_of(static_cast<double*>(field.data), static_cast<std::size_t>(field.size));
     case FieldKind::optional:
       return py::float_(*static_cast<double*>(field.data));
@@ -119,7 +120,8 @@ void put_set(const std::string& which, AgentSet& set, py::handle value) {
 
 void put(const std::string& which, const FieldRef& field, py::handle value) {
   switch (field.kind) {
-    case FieldKind::numbers: {
+    case FieldKind::numbers:
+    case FieldKind::sparse: {
       const auto numbers = convert::array(which, value);
       if (numbers.size() != field.size)
         refuse(which, std::to_string(numbers.size()) + " numbers", std::to_string(field.size));

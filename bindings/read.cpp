@@ -84,6 +84,12 @@ py::object read_tuple(const ArgumentType& type, const std::string& which, py::ha
   return all;
 }
 
+/// Whether no constructor has run: pybind11 would make room for the content and leave it as it is.
+bool empty(py::handle object) {
+  auto* instance = reinterpret_cast<py::detail::instance*>(object.ptr());
+  return instance->get_value_and_holder().value_ptr() == nullptr;
+}
+
 py::object read_wholes(const std::string& which, py::handle given) {
   const auto numbers = convert::array(which, given, "a list of whole numbers");
   const double* end = numbers.data() + numbers.size();
@@ -132,6 +138,9 @@ py::object read(const ArgumentType& type, const std::string& which, py::handle g
       return py::dict(py::reinterpret_borrow<py::object>(given));
     case Kind::instance:
       if (!py::isinstance(given, type.instance)) refuse(which, convert::shown(given), type.expected());
+      if (empty(given))
+        refuse(which, "an object without its content, as __new__ alone leaves it", type.expected(),
+               "make it by calling the class, or the function that returns it");
       return py::reinterpret_borrow<py::object>(given);
     case Kind::anything:
       break;

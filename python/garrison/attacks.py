@@ -109,10 +109,10 @@ def custom_message(
 ) -> Attack:
     """Lies in messages by a function of your own: function(t, round, sender, receiver, message, rng) -> message.
 
-    message: dict of the fields that the filter sends (arrays, numbers, flags, lists of agents); return the fields that
-    change, or None to send nothing to this receiver. rng: a numpy.random.Generator that depends on seed, trial, t,
-    round, sender and receiver only. It is called once per neighbour and round, and must not remember anything. The
-    rest as in `custom`.
+    message: dict of the fields that are sent (arrays, numbers, flags, lists of agents; where a certificate is asked for
+    also what is said for it, such as certificate.measurements); return the fields that change, or None to send nothing
+    to this receiver. rng: a numpy.random.Generator that depends on seed, trial, t, round, sender and receiver only. It
+    is called once per neighbour and round, and must not remember anything. The rest as in `custom`.
     """
     takes = ("t", "round", "sender", "receiver", "message", "rng")
     return _custom("custom_message", function, takes, agents, start, stop, schedule, probability)

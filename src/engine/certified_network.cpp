@@ -121,22 +121,51 @@ void CertifiedNetwork::start() {
   y_ = nullptr;
 }
 
+void CertifiedNetwork::keep_lies(std::size_t places) {
+  lies_.resize(std::max<std::size_t>(places, 1));
+  std::size_t most = 0;
+  for (const certificate::Evidence& one : all_->said) most = std::max(most, one.measurements.size());
+  for (certificate::Evidence& lie : lies_) {
+    lie = all_->said.front();
+    lie.measurements.reserve(most);
+  }
+}
+
+void CertifiedNetwork::say() {
+  start();
+  for (std::size_t i = 0; i < listeners_.size(); ++i) {
+    all_->certifiers[i]->say(round_, all_->said[i]);
+    bytes_ += static_cast<std::int64_t>(listeners_[i]) *
+              static_cast<std::int64_t>(wire::size(all_->said[i], agents()));
+  }
+}
+
+certificate::Evidence& CertifiedNetwork::copy(std::size_t place, int sender) {
+  return lies_[place] = all_->said[static_cast<std::size_t>(sender)];
+}
+
 template <class Heard>
 void CertifiedNetwork::hear_all(Workers& workers, const Heard& heard) {
-  start();
-  say();
   workers.split(agents(), [&](std::int64_t begin, std::int64_t end, int) {
-    for (std::int64_t k = begin; k < end; ++k) heard(k, [&](int agent, int sender) { hear(agent, sender); });
+    for (std::int64_t k = begin; k < end; ++k)
+      heard(k, [&](int agent, int sender, const certificate::Evidence& said) {
+        all_->certifiers[static_cast<std::size_t>(agent)]->hear(round_, sender, said);
+      });
   });
   end_round(workers);
 }
 
-void CertifiedNetwork::round(Workers& workers, const Routes& routes) {
-  if (rounds_ == 0) return;
+void CertifiedNetwork::hear(Workers& workers, const Routes& routes) {
   hear_all(workers, [&](std::int64_t k, const auto& hear) {
     const auto place = static_cast<std::size_t>(k);
     const Heard heard = routes.heard(place);
-    for (std::size_t j = 0; j < heard.slots.size(); ++j) hear(routes.id(place), heard.senders[j]);
+    for (std::size_t j = 0; j < heard.slots.size(); ++j) {
+      const int sender = heard.senders[j];
+      const std::size_t slot = heard.begin + heard.slots[j];
+      const bool honest = slot < routes.first_lie();
+      hear(routes.id(place), sender,
+           honest ? all_->said[static_cast<std::size_t>(sender)] : lies_[slot - routes.first_lie()]);
+    }
   });
 }
 
@@ -144,10 +173,13 @@ void CertifiedNetwork::finish(Workers& workers) {
   if (y_ != nullptr && all_->alike) return at_once(workers);
   start();
   const bool lossless = round_ == 0;
-  while (round_ < rounds_)
+  while (round_ < rounds_) {
+    say();
     hear_all(workers, [&](std::int64_t i, const auto& hear) {
-      for (const int j : network_.neighbours(static_cast<int>(i))) hear(static_cast<int>(i), j);
+      for (const int j : network_.neighbours(static_cast<int>(i)))
+        hear(static_cast<int>(i), j, all_->said[static_cast<std::size_t>(j)]);
     });
+  }
   all_->alike = lossless && all_->reaches_all && all_->all_alike();
 }
 
@@ -178,19 +210,6 @@ void CertifiedNetwork::at_once(Workers& workers) {
     bytes_ += std::abs(y_[k]) < kHuge ? all_->measured_bytes[k] : 0;
   round_ = rounds_;
   y_ = nullptr;
-}
-
-void CertifiedNetwork::say() {
-  for (std::size_t i = 0; i < listeners_.size(); ++i) {
-    all_->certifiers[i]->say(round_, all_->said[i]);
-    bytes_ += static_cast<std::int64_t>(listeners_[i]) *
-              static_cast<std::int64_t>(wire::size(all_->said[i], agents()));
-  }
-}
-
-void CertifiedNetwork::hear(int agent, int sender) {
-  all_->certifiers[static_cast<std::size_t>(agent)]->hear(round_, sender,
-                                                          all_->said[static_cast<std::size_t>(sender)]);
 }
 
 void CertifiedNetwork::end_round(Workers& workers) {

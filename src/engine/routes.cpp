@@ -38,7 +38,7 @@ std::size_t Routes::connect(Link* link) {
   fates_.assign(senders_.size(), Fate::delivered);
   posted_ = 0;
   current_ = outgoing_ = 0;
-  return depth_ * order_.size() + lies;
+  return first_lie() + lies;
 }
 
 void Routes::deliver(std::int64_t t, int round, const Letters& letters) {
@@ -47,7 +47,7 @@ void Routes::deliver(std::int64_t t, int round, const Letters& letters) {
   counters.lost = std::count(fates_.begin(), fates_.end(), Fate::lost);
   counters.late = std::count(fates_.begin(), fates_.end(), Fate::late);
   const std::size_t first_slot = current();
-  std::size_t forged = depth_ * order_.size();
+  std::size_t forged = first_lie();
   for (std::size_t k = 0; k < order_.size(); ++k) {
     std::size_t place = first_[k];
     for (std::size_t e = first_[k]; e < first_[k + 1]; ++e) {

@@ -82,6 +82,65 @@ def test_direct_certificates_hold_although_agents_lie_in_their_messages() -> Non
     assert np.isnan(local.bound).all() and "direct" in local.why_no_bound(0, 5)
 
 
+def test_direct_certificates_hold_whatever_is_said_for_them() -> None:
+    """A liar shows every neighbour another measurement, or none, in every round of random systems and links."""
+    told = absent = 0
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        agents, liar = int(rng.integers(5, 9)), int(rng.integers(0, 5))
+        model = gr.Model(
+            0.95 * np.linalg.qr(rng.normal(size=(2, 2)))[0],
+            [rng.normal(size=(1, 2)) for _ in range(agents)],
+            process_bound=0.02,
+            measurement_bound=0.05,
+        )
+        network = gr.Network.complete(agents)
+
+        def lie(
+            t: int, round: int, sender: int, receiver: int, message: dict[str, Any], rng: np.random.Generator
+        ) -> dict[str, Any]:
+            size = 10.0 ** rng.uniform(-2, 6)
+            said = message["certificate.measurements"] + size * rng.normal()
+            return {"certificate.measurements": said if rng.random() < 0.8 else np.full_like(said, np.nan)}
+
+        run = gr.simulate(
+            model,
+            network,
+            gr.filters.ScalarGain(rounds=2),
+            steps=30,
+            attack=gr.attacks.custom_message(lie, [liar], start=1),
+            link={"drop": 0.2},
+            certificate="direct",
+            failure=0.0,
+            attacked=1,
+            seed=seed,
+            conditions=False,
+        )
+        honest = [i for i in range(agents) if i != liar]
+        bound, error = run.bound[:, :, honest], run.error[:, :, honest]
+        assert run.counters["forged"] > 0
+        assert not (error > bound).any()
+        told += int(np.isfinite(bound).sum())
+        absent += int((~np.isfinite(bound)).sum())
+    assert told > absent
+
+
+@pytest.mark.parametrize("certificate", ["local", "flooded"])
+def test_liars_reach_all_that_is_said_for_a_certificate(certificate: str) -> None:
+    asked: dict[str, Any] = {"steps": 5, "certificate": certificate, "failure": 0.0, "attacked": 1, "conditions": False}
+    for field, value, counted in (
+        ("certificate.measurements", 9.0, "forged"),
+        ("certificate.ball", 0.0, "forged"),
+        ("certificate.age", 2.0, "forged"),
+        ("certificate.fresh", -1.0, "refused"),
+    ):
+        lie = gr.attacks.Falsify([0], field=field, value=value)
+        run = gr.simulate(*parts(), attack=lie, **asked)
+        assert run.counters[counted] > 0 and np.isnan(run.bound).all()
+    with pytest.raises(gr.InvalidInput, match=r"certificate\.age, certificate\.fresh"):
+        gr.simulate(*parts(), attack=gr.attacks.Falsify([0], field="certificate.agee", value=1.0), **asked)
+
+
 def test_the_data_free_table_bounds_where_the_published_bound_ends() -> None:
     model, network, _ = parts()
     options = {"threshold": 1.0, "rounds": 12, "attacked": 1, "initial_error": 2.0, "detector": True}

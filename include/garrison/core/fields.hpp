@@ -55,15 +55,15 @@ struct NumbersOf {
   }
 };
 
-/// All fields of one message, in the order in which they are listed.
+/// All fields of one message, in the order in which they are listed; of several, those that travel as one.
 /// Threads: one at a time.
 class FieldList : public NumbersOf<FieldList> {
  public:
-  static constexpr std::size_t kMost = 12;
+  static constexpr std::size_t kMost = 16;
 
-  template <class Message>
-  explicit FieldList(Message& message) {
-    message.visit(*this);
+  template <class... Messages>
+  explicit FieldList(Messages&... messages) {
+    (messages.visit(*this), ...);
   }
   std::span<const FieldRef> all() const { return {fields_.data(), size_}; }
   const FieldRef* find(std::string_view name) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "garrison/certificate/online/certifier.hpp"
+#include "garrison/certificate/online/evidence.hpp"
 #include "garrison/certificate/online/plan.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/engine/routes.hpp"
@@ -25,9 +26,16 @@ class GARRISON_EXPORT CertifiedNetwork {
   void reset(std::int64_t t);
   /// Sample t; y: all measurements, agent by agent, that stay there until `finish`.
   void begin(std::int64_t t, const double* y);
-  /// One round in which everybody hears what `routes` deliver. Either all rounds of a sample are told so, or
-  /// none: then all messages arrive, and `finish` does them at once.
-  void round(Workers& workers, const Routes& routes);
+  /// Keeps places for so many messages in which agents lie. At least one, to look at.
+  void keep_lies(std::size_t places);
+  /// One round: everybody says what is new. Either all rounds of a sample are told so and heard, or none:
+  /// then all messages arrive, and `finish` does them at once.
+  void say();
+  /// A copy of what `sender` says in this round, to be changed; what it has become.
+  certificate::Evidence& copy(std::size_t place, int sender);
+  const certificate::Evidence& lie(std::size_t place) const { return lies_[place]; }
+  /// Everybody hears what `routes` deliver.
+  void hear(Workers& workers, const Routes& routes);
   /// Ends the sample: the rounds that are left, in which all messages arrive.
   void finish(Workers& workers);
 
@@ -38,11 +46,9 @@ class GARRISON_EXPORT CertifiedNetwork {
  private:
   struct Agents;
   int agents() const { return network_.agents(); }
-  /// heard(k, hear) calls hear(agent, sender) for every message that reached the k-th agent.
+  /// heard(k, hear) calls hear(agent, sender, evidence) for every message that reached the k-th agent.
   template <class Heard>
   void hear_all(Workers& workers, const Heard& heard);
-  void say();
-  void hear(int agent, int sender);
   void end_round(Workers& workers);
   void start();
   void at_once(Workers& workers);
@@ -55,6 +61,7 @@ class GARRISON_EXPORT CertifiedNetwork {
   const double* y_ = nullptr;  // of sample t_, while it has not started
   std::int64_t t_ = 0;
   std::unique_ptr<Agents> all_;
+  std::vector<certificate::Evidence> lies_;  // in the order of the places of Routes
   std::int64_t bytes_ = 0;
   std::int64_t samples_ = 0;
 };

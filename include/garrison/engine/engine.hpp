@@ -59,7 +59,7 @@ class Engine final : public Runner {
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
     }
     batch_.start(*gains_, locals());
-    mail_.fill();
+    mail_.fill(certified_.get());
     bytes_ = mail_.bytes() * F::rounds(*gains_);
     variable_ = mail_.variable();
     samples_ = 0;
@@ -190,10 +190,13 @@ class Engine final : public Runner {
     const int L = F::rounds(*gains_);
     for (int round = 0; round < L; ++round) {
       count_bytes(round);
-      mail_.collect(t, round, plain, [&](std::size_t k, int sender, Message& m) {
-        shape<F, n>(local(k), *gains_, sender, t, m);
-      });
-      if (certified_ && !(plain && mail_.routes().perfect())) certified_->round(workers_, mail_.routes());
+      CertifiedNetwork* const certified = plain && mail_.routes().perfect() ? nullptr : certified_.get();
+      if (certified != nullptr) certified->say();
+      mail_.collect(
+          t, round, plain,
+          [&](std::size_t k, int sender, Message& m) { shape<F, n>(local(k), *gains_, sender, t, m); },
+          certified);
+      if (certified != nullptr) certified->hear(workers_, mail_.routes());
       const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
       if (batch_.fuse(*gains_, locals(), inbox, workers_))
         mail_.post();

@@ -9,6 +9,7 @@
 #include "garrison/core/fields.hpp"
 #include "garrison/core/inbox.hpp"
 #include "garrison/core/network.hpp"
+#include "garrison/engine/certified_network.hpp"
 #include "garrison/engine/routes.hpp"
 #include "garrison/wire/message.hpp"
 
@@ -30,10 +31,11 @@ class Mailroom {
   void connect(Link* link) { messages_.resize(routes_.connect(link)); }
   /// Copies the freshly initialised outgoing messages everywhere, so that later copies find their memory.
   /// @throws InvalidInput when an agent is to lie about what these messages do not hold
-  void fill() {
+  void fill(CertifiedNetwork* certified) {
     const std::size_t N = agents();
     for (std::size_t k = N; k < messages_.size(); ++k) messages_[k] = messages_[k % N];
-    if (routes_.link() != nullptr) routes_.link()->require(FieldList(messages_.front()));
+    if (certified != nullptr) certified->keep_lies(messages_.size() - routes_.first_lie());
+    if (routes_.link() != nullptr) routes_.link()->require(fields(messages_.front(), certified, 0, 0));
   }
 
   /// Bytes of the bodies that all links carry in this round when no message is lost.
@@ -56,13 +58,14 @@ class Mailroom {
   void post() { routes_.post(); }
 
   /// Prepares the inboxes of one round from the current messages. `plain`: every estimate is finite and below
-  /// kHuge. `shape(receiver, sender, message)` derives what a message does not carry.
+  /// kHuge. `shape(receiver, sender, message)` derives what a message does not carry. `certified`: what it
+  /// has said in this round travels with them; null = nothing.
   template <class Shape>
-  void collect(std::int64_t t, int round, bool plain, const Shape& shape) {
+  void collect(std::int64_t t, int round, bool plain, const Shape& shape, CertifiedNetwork* certified) {
     if (routes_.as_wired(plain)) return;
     const Message* const current = messages_.data() + routes_.current();
     for (std::size_t k = 0; k < agents(); ++k) routes_.deliverable(k, bounded(current[k]));
-    routes_.deliver(t, round, Letters<Shape>(messages_, shape));
+    routes_.deliver(t, round, Letters<Shape>(*this, shape, certified));
   }
 
   Inbox<Message> inbox(std::size_t k) const {
@@ -74,19 +77,30 @@ class Mailroom {
   template <class Shape>
   class Letters final : public Routes::Letters {
    public:
-    Letters(std::vector<Message>& messages, const Shape& shape) : messages_(messages), shape_(shape) {}
+    Letters(Mailroom& room, const Shape& shape, CertifiedNetwork* certified)
+        : room_(room), shape_(shape), certified_(certified) {}
     Routes::Letter copy(std::size_t from, std::size_t to, std::size_t k, int sender) const override {
-      Message& message = messages_[to];
-      message = messages_[from];
+      Message& message = room_.messages_[to];
+      message = room_.messages_[from];
       shape_(k, sender, message);
-      return {FieldList(message), entries(message)};
+      return {fields(message, certified_, to - room_.routes_.first_lie(), sender), entries(message)};
     }
-    bool deliverable(std::size_t at) const override { return bounded(messages_[at]); }
+    bool deliverable(std::size_t at) const override {
+      return bounded(room_.messages_[at]) &&
+             (certified_ == nullptr || bounded(certified_->lie(at - room_.routes_.first_lie())));
+    }
 
    private:
-    std::vector<Message>& messages_;
+    Mailroom& room_;
     const Shape& shape_;
+    CertifiedNetwork* certified_;
   };
+
+  /// What a liar can change: the message, and in its `place` a copy of what `sender` said for the
+  /// certificate.
+  static FieldList fields(Message& message, CertifiedNetwork* certified, std::size_t place, int sender) {
+    return certified == nullptr ? FieldList(message) : FieldList(message, certified->copy(place, sender));
+  }
 
   std::size_t agents() const { return static_cast<std::size_t>(routes_.agents()); }
   std::size_t size(const Message& m) const { return wire::size(m, routes_.agents()); }

@@ -39,6 +39,8 @@ class GARRISON_EXPORT Routes {
   /// Starts a run over `link` (null = perfect). How many places it needs.
   std::size_t connect(Link* link);
   const Link* link() const { return link_; }
+  /// First of the places for what liars send.
+  std::size_t first_lie() const { return depth_ * order_.size(); }
   bool perfect() const { return link_ == nullptr || link_->perfect(); }
   Wiring wiring() const { return {first_.data(), slots_.data()}; }
   int id(std::size_t k) const { return order_[k]; }
