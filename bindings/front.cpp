@@ -25,6 +25,19 @@ bool fills(const Front& front) {
   return front.name.find('.') == std::string::npos || front.name.ends_with(".__setstate__");
 }
 
+/// Refuses what belongs in the place of another argument.
+void require_place(const Front& front, std::size_t k, py::handle value,
+                   const std::vector<std::string>& known) {
+  const auto takes = [&](const Argument& argument) {
+    return argument.type.kind == Kind::instance && py::isinstance(value, argument.type.instance);
+  };
+  const Argument& here = front.takes[k];
+  if (here.type.kind != Kind::instance || takes(here)) return;
+  if (std::any_of(front.takes.begin() + (front.method ? 1 : 0), front.takes.end(), takes))
+    refuse(front.name + "." + here.name, convert::shown(value), here.type.expected(),
+           "the order is " + joined(known));
+}
+
 }  // namespace
 
 std::vector<py::object> sorted_values(const Front& front, const Call& call) {
@@ -56,6 +69,7 @@ std::vector<py::object> sorted_values(const Front& front, const Call& call) {
   for (std::size_t k = 0; k < values.size(); ++k) {
     const Argument& argument = front.takes[k];
     const bool self = front.method && k == 0;
+    if (!self && values[k]) require_place(front, k, values[k], known);
     const std::string which = front.name + "." + argument.name;
     if (!values[k] && argument.required) refuse(which, "no value", argument.type.expected());
     if (!values[k]) continue;
