@@ -90,6 +90,22 @@ void deliver(PyAgent& a, const Letter& letter) {
   }
 }
 
+void take_snapshot(PyAgent& a, const py::object& data) {
+  const Refusal why = a->load(from_python(data, "snapshot"));
+  if (why == Refusal::order) refuse_call(a, "load", why, a->sample());
+  if (why != Refusal::none)
+    refuse("snapshot", "bytes with a wrong " + std::string(word(why)),
+           "a snapshot of agent " + std::to_string(a->id()) + " of this very design");
+}
+
+std::string in_short(const PyAgent& a) {
+  return "<Agent " + std::to_string(a->id()) + " of " + std::string(a->family()) + ", sample " +
+         std::to_string(a->sample()) + ">";
+}
+std::string repr(const std::vector<std::byte>& bytes) {
+  return py::repr(to_python(bytes)).cast<std::string>();
+}
+
 }  // namespace
 
 void bind_agents(py::module_& m) {
@@ -104,8 +120,16 @@ void bind_agents(py::module_& m) {
            }),
            py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("id"))
       .def_static(
-          "from_part", [](const py::object& data) { return agent_from(from_python(data, "part")); },
-          py::arg("data"), "The agent whose part of a design Prepared.part(id) wrote; nothing is designed.")
+          "from_part",
+          [](const py::object& data, const py::object& snapshot) {
+            PyAgent a = agent_from(from_python(data, "part"));
+            if (!snapshot.is_none()) take_snapshot(a, snapshot);
+            return a;
+          },
+          py::arg("data"), py::arg("snapshot") = py::none(),
+          "The agent whose part of a design Prepared.part(id) wrote; nothing is designed. snapshot: of "
+          "`save`; it "
+          "goes on from there.")
       .def_property_readonly("id", [](const PyAgent& a) { return a->id(); })
       .def_property_readonly("family", [](const PyAgent& a) { return std::string(a->family()); })
       .def_property_readonly(
@@ -231,16 +255,8 @@ void bind_agents(py::module_& m) {
       .def(
           "save", [](const PyAgent& a) { return to_python(a.snapshot()); },
           "A snapshot as bytes, between samples only; the agent that loads it goes on with the same bits.")
-      .def(
-          "load",
-          [](PyAgent& a, const py::object& data) {
-            const Refusal why = a->load(from_python(data, "snapshot"));
-            if (why == Refusal::order) refuse_call(a, "load", why, a->sample());
-            if (why != Refusal::none)
-              refuse("snapshot", "bytes with a wrong " + std::string(word(why)),
-                     "a snapshot of agent " + std::to_string(a->id()) + " of this very design");
-          },
-          py::arg("data"), "Go on from a snapshot. Raises InvalidInput for one of another agent or design.")
+      .def("load", &take_snapshot, py::arg("data"),
+           "Go on from a snapshot. Raises InvalidInput for one of another agent or design.")
       .def(
           "__eq__",
           [](const PyAgent& a, const py::object& other) {
@@ -253,9 +269,10 @@ void bind_agents(py::module_& m) {
       .def("__hash__", [](const PyAgent& a) { return py::hash(to_python(a.file())); })
       .def("__repr__",
            [](const PyAgent& a) {
-             return "<Agent " + std::to_string(a->id()) + " of " + std::string(a->family()) + ", sample " +
-                    std::to_string(a->sample()) + ">";
+             if (a->round() < a->rounds()) return in_short(a);  // nothing can be kept within a sample
+             return "garrison.Agent.from_part(" + repr(a.file()) + ", " + repr(a.snapshot()) + ")";
            })
+      .def("__str__", &in_short)
       .def(py::pickle([](const PyAgent& a) { return to_python(kept(a)); },
                       [](const py::bytes& b) { return agent_kept(from_python(b, "agent")); }));
 }

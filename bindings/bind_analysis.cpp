@@ -20,7 +20,7 @@ void bind_subsets(py::module_& m) {
       "Result of a search over the s removed sensors; the true value lies in [lower, upper].\n"
       "Safe in theorems: lower of lambda0, upper of varpi and tau0.");
   using B = SubsetBound;
-  keep_fields<B>(bound, KeptField{"lower", &B::lower}, KeptField{"upper", &B::upper},
+  keep_fields<B>(bound, "garrison.SubsetBound", KeptField{"lower", &B::lower}, KeptField{"upper", &B::upper},
                  KeptField{"exact", &B::exact}, KeptField{"removed", &B::removed},
                  KeptField{"nodes", &B::nodes}, KeptField{"method", &B::method});
   bound.def_readonly("lower", &SubsetBound::lower)
@@ -28,11 +28,7 @@ void bind_subsets(py::module_& m) {
       .def_readonly("exact", &SubsetBound::exact, "The search finished.")
       .def_readonly("removed", &SubsetBound::removed, "Worst set found, sorted.")
       .def_readonly("nodes", &SubsetBound::nodes)
-      .def_readonly("method", &SubsetBound::method)
-      .def("__repr__", [](const SubsetBound& b) {
-        return "SubsetBound(lower=" + text(b.lower) + ", upper=" + text(b.upper) +
-               ", exact=" + (b.exact ? "True" : "False") + ", method='" + b.method + "')";
-      });
+      .def_readonly("method", &SubsetBound::method);
   const SubsetLimits limits;
   m.def(
       "lambda0",

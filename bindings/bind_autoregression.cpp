@@ -23,7 +23,7 @@ void bind_autoregression(py::module_& m) {
           "Mean log-likelihood of a held-out sample under orders 1, 2, ..; empty where the order was given.")
       .def_readonly("samples", &Autoregression::samples, "Samples with a complete past, on which it rests.");
   keep_fields<Autoregression>(
-      found, KeptField<Autoregression, int>{"order", &Autoregression::order},
+      found, "garrison._core.Autoregression", KeptField<Autoregression, int>{"order", &Autoregression::order},
       KeptField<Autoregression, Matrix>{"A", &Autoregression::A},
       KeptField<Autoregression, Matrix>{"B", &Autoregression::B},
       KeptField<Autoregression, Matrix>{"residual_covariance", &Autoregression::residual_covariance},

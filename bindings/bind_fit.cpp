@@ -10,26 +10,21 @@ void bind_fit(py::module_& m) {
   const FitOptions standard;
   py::class_<FitOptions> options(m, "FitOptions", "What a model was identified with; see garrison.fit.");
   using O = FitOptions;
-  keep_fields<O>(options, KeptField{"factors", &O::factors}, KeptField{"harmonics", &O::harmonics},
-                 KeptField{"period", &O::period}, KeptField{"root", &O::root},
-                 KeptField{"factor", &O::factor});
+  keep_fields<O>(options, "garrison._core.FitOptions", KeptField{"factors", &O::factors},
+                 KeptField{"harmonics", &O::harmonics}, KeptField{"period", &O::period},
+                 KeptField{"root", &O::root}, KeptField{"factor", &O::factor});
   options.def_readonly("factors", &O::factors)
       .def_readonly("harmonics", &O::harmonics)
       .def_readonly("period", &O::period, "samples")
       .def_readonly("root", &O::root)
-      .def_readonly("factor", &O::factor)
-      .def("__repr__", [](const O& o) {
-        return as_code(
-            "FitOptions",
-            py::dict(py::arg("factors") = o.factors, py::arg("harmonics") = o.harmonics,
-                     py::arg("period") = o.period, py::arg("root") = o.root, py::arg("factor") = o.factor));
-      });
+      .def_readonly("factor", &O::factor);
   py::class_<Identified> identified(m, "Identified",
                                     "A model identified from clean records; use garrison.fit.");
   using I = Identified;
-  keep_fields<I>(identified, KeptField{"options", &I::options}, KeptField{"season", &I::season},
-                 KeptField{"scale", &I::scale}, KeptField{"A", &I::A}, KeptField{"C", &I::C},
-                 KeptField{"share", &I::share}, KeptField{"process_covariance", &I::process_covariance},
+  keep_fields<I>(identified, "garrison._core.Identified", KeptField{"options", &I::options},
+                 KeptField{"season", &I::season}, KeptField{"scale", &I::scale}, KeptField{"A", &I::A},
+                 KeptField{"C", &I::C}, KeptField{"share", &I::share},
+                 KeptField{"process_covariance", &I::process_covariance},
                  KeptField{"measurement_variance", &I::measurement_variance},
                  KeptField{"process_bound", &I::process_bound},
                  KeptField{"measurement_bound", &I::measurement_bound});

@@ -79,8 +79,9 @@ void bind_rdkf(py::module_& m) {
       m.def_submodule("rdkf", "Covariances, constants and step of the resilient distributed Kalman filter.");
   py::class_<SteadyState> solution(r, "SteadyState", "Solution of (5): one matrix per agent each.");
   using S = SteadyState;
-  keep_fields<S>(solution, KeptField{"P", &S::P}, KeptField{"Pbar", &S::Pbar}, KeptField{"Q", &S::Q},
-                 KeptField{"sweeps", &S::sweeps}, KeptField{"change", &S::change});
+  keep_fields<S>(solution, "garrison._core.rdkf.SteadyState", KeptField{"P", &S::P},
+                 KeptField{"Pbar", &S::Pbar}, KeptField{"Q", &S::Q}, KeptField{"sweeps", &S::sweeps},
+                 KeptField{"change", &S::change});
   solution.def_readonly("P", &SteadyState::P, "(5), (n, n) per agent")
       .def_readonly("Pbar", &SteadyState::Pbar, "(6)")
       .def_readonly("Q", &SteadyState::Q, "(1/d_i) sum of Pbar_j^-1 over the agent and its neighbours")

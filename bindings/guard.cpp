@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "guard.hpp"
 
-#include <algorithm>
 #include <functional>
 #include <new>
 #include <unordered_map>
@@ -132,20 +131,23 @@ void guard_function(py::handle object, const std::string& name, const Classes& c
   fronts().emplace(function->m_self, std::move(front));
 }
 
-/// Protocols 0 and 1 of pickle would call pybind11's base class, which ends the process: they get what
-/// protocol 2 writes.
-void pickle_by_new(py::handle type) {
-  const auto reduce = [](const py::object& self, int protocol) {
-    const py::handle object(reinterpret_cast<PyObject*>(&PyBaseObject_Type));
-    return object.attr("__reduce_ex__")(self, std::max(protocol, 2));
-  };
-  py::setattr(type, "__reduce_ex__",
-              py::cpp_function(reduce, py::name("__reduce_ex__"), py::is_method(type), py::arg("protocol")));
+/// What pickle and copy ask for. Python's own would call pybind11's base class for old protocols, which ends
+/// the process, and speak of bugs where a class cannot be kept.
+py::tuple reduced(const py::object& self) {
+  const py::type type = py::type::of(self);
+  if (!py::hasattr(type, "__setstate__"))
+    garrison::refuse(type.attr("__name__").cast<std::string>(), "pickle or copy", "none",
+                     "objects of this class are worked with: keep what it was made from");
+  return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"), py::make_tuple(type),
+                        self.attr("__getstate__")());
+}
+void make_reducible(py::handle type) {
+  py::setattr(type, "__reduce__", py::cpp_function(&reduced, py::name("__reduce__"), py::is_method(type)));
 }
 
 void guard_class(py::handle type, const Classes& classes) {
   const auto name = type.attr("__name__").cast<std::string>();
-  pickle_by_new(type);
+  make_reducible(type);
   const py::dict entries(type.attr("__dict__"));
   reinterpret_cast<PyTypeObject*>(type.ptr())->tp_setattro = assign;
   // Python fills in a wrapper of its own where there is no constructor.

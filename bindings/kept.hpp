@@ -53,9 +53,16 @@ struct KeptField {
   M T::* member;
 };
 
-/// Results without a constructor: pickled by their fields, equal when these are.
+/// Results are made of their fields, by name, pickled by them, and equal when these are; `maker` is what
+/// Python calls the class.
 template <class T, class Class, class... M>
-void keep_fields(Class& bound, KeptField<T, M>... fields) {
+void keep_fields(Class& bound, const std::string& maker, KeptField<T, M>... fields) {
+  const auto make = [fields...](M... values) {
+    T x;
+    ((x.*(fields.member) = std::move(values)), ...);
+    return x;
+  };
+  bound.def(pybind11::init(make), pybind11::kw_only(), pybind11::arg(fields.name)...);
   const auto state = [fields...](const T& x) {
     pybind11::dict all;
     ((all[fields.name] = x.*(fields.member)), ...);
@@ -66,7 +73,8 @@ void keep_fields(Class& bound, KeptField<T, M>... fields) {
     ((x.*(fields.member) = given[fields.name].template cast<M>()), ...);
     return x;
   });
-  const auto code = [state](const T& x) { return as_code("", state(x)); };
+  const auto code = [maker, state](const T& x) { return as_code(maker, state(x)); };
+  bound.def("__repr__", code);
   compare<T>(
       bound, [code](const T& a, const T& b) { return code(a) == code(b); },
       [code](const T& x) { return pybind11::str(code(x)); });

@@ -12,6 +12,7 @@ from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.objects import described_model, model_of
 from garrison.record import Run
+from garrison.result import Result
 from garrison.words import count, hinted, hinted_methods, refusal, require_order
 
 Array = NDArray[np.float64]
@@ -27,8 +28,8 @@ _ENOUGH = 5.0
 
 
 @hinted_methods
-@dataclass(frozen=True)
-class Calibration:
+@dataclass(frozen=True, eq=False, repr=False)
+class Calibration(Result):
     """A filter whose false alarms on clean records are as frequent as asked.
 
     filter: the same with the nominal rate `nominal` in place of `asked`. tests: of all sensors together, over which

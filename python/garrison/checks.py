@@ -8,12 +8,13 @@ from garrison import _core, arguments
 from garrison.arguments import number
 from garrison.expected import expected_certificate
 from garrison.notebook import of_check
+from garrison.result import Result
 from garrison.words import hinted, hinted_methods, require_order
 
 
 @hinted_methods
-@dataclass(frozen=True, eq=False)
-class Check:
+@dataclass(frozen=True, eq=False, repr=False)
+class Check(Result):
     """What `check` found. A condition that fails is data, not an error.
 
     conditions: dicts with name, value, needed, holds, meaning, required (False: it only
@@ -23,14 +24,6 @@ class Check:
 
     conditions: list[dict[str, Any]]
     quantities: list[dict[str, Any]]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Check) and self._text() == other._text()  # as text, nan is nan
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def _text(self) -> str:
-        return repr((self.conditions, self.quantities))
 
     @property
     def holds(self) -> bool:

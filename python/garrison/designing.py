@@ -15,6 +15,7 @@ from garrison.checks import Check, check
 from garrison.drawing import drawn
 from garrison.drivers import simulate
 from garrison.filters import make_filter
+from garrison.result import Result
 from garrison.words import hinted, hinted_methods, near, refusal, require_plant
 
 if TYPE_CHECKING:
@@ -28,8 +29,8 @@ _CURVE = 16
 
 
 @hinted_methods
-@dataclass(frozen=True)
-class Choice:
+@dataclass(frozen=True, eq=False, repr=False)
+class Choice(Result):
     """A number of rounds with its best threshold: the bound it certifies, and the bytes of all messages per sample."""
 
     rounds: int
@@ -39,8 +40,8 @@ class Choice:
 
 
 @hinted_methods
-@dataclass(frozen=True)
-class Designed:
+@dataclass(frozen=True, eq=False, repr=False)
+class Designed(Result):
     """filter: as designed. error: the asymptotic bound that it certifies (theorem 1 item 3), unit of the state.
 
     attacked: liars that it stands. curve: what fewer and more rounds cost and give, feasible ones only. fewest_rounds:

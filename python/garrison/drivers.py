@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, arguments, doubts, refuted
 from garrison.numeric import matched, numbers
-from garrison.objects import attack_of, described_attack, plain_data
+from garrison.objects import described_attack, plain_data
+from garrison.recipe import recipe
 from garrison.record import Run
 from garrison.sizes import require_memory
 from garrison.varying import Inputs, VaryingModel, inputs_of, parted
@@ -407,16 +408,5 @@ def again(run: Run) -> Run:
     """
     if not isinstance(run, Run):
         raise refusal("again", f"a {type(run).__name__}", "a garrison.Run")
-    if not run.made:
-        raise refusal("again", "a run that does not say what made it", "one of simulate or replay")
-    given = {key: value for key, value in run.made.items() if key not in ("driver", "attack")}
-    attacks = [attack_of(plain) for plain in run.made["attack"]]
-    changes: dict[str, Any] = run.varying
-    plant = VaryingModel(run.model, **changes) if changes else run.model
-    parts, given["inputs"] = (plant, run.network, run.filter), run.inputs
-    if run.made["driver"] == "simulate":
-        return simulate(*parts, attack=attacks, **given)
-    if run.measurements is None:
-        raise refusal("again", "a replay without its measurements", 'keep to contain "measurements"')
-    lies = [attack for attack in attacks if attack.target == "message"]
-    return replay(*parts, measurements=run.measurements, truth=run.truth, attack=lies, **given)
+    driver, objects, given = recipe(run)
+    return simulate(*objects, **given) if driver == "simulate" else replay(*objects, **given)

@@ -13,6 +13,7 @@ from garrison.arguments import whole
 from garrison.clean import clean_levels
 from garrison.notebook import of_model, titled
 from garrison.numeric import real
+from garrison.result import Result
 from garrison.sizes import require_memory
 from garrison.tables import Records
 from garrison.words import hinted_methods, only, refusal, shown
@@ -25,8 +26,8 @@ INFLATION = 1.1
 
 
 @hinted_methods
-@dataclass(frozen=True)
-class Whiteness:
+@dataclass(frozen=True, eq=False, repr=False)
+class Whiteness(Result):
     """Ljung-Box test of a model's residuals, station by station.
 
     statistic (N,): chi-square with `lags` degrees if the residuals are independent of their past. correlation (N,):
@@ -52,8 +53,8 @@ class Whiteness:
 
 
 @hinted_methods
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(Result):
     """A model identified from clean records.
 
     model: with unit rows, noise bounds and covariances. records: what it was fitted to.

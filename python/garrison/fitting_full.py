@@ -20,7 +20,7 @@ _NOISE = 0.01
 
 
 @hinted_methods
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class FullFit(Fit):
     """A vector autoregression: every station's deviation from its season is a state, with `order` samples of the past.
 

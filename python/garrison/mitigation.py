@@ -13,13 +13,14 @@ from garrison.arguments import entries, whole
 from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.record import Run
+from garrison.result import Result
 from garrison.words import hinted, hinted_methods, refusal
 
 Array = NDArray[np.float64]
 
 
-@dataclass
-class Switch:
+@dataclass(eq=False, repr=False)
+class Switch(Result):
     """One sensor given up: at `time` (samples) `agent`'s alarm made it measure `after` instead (None: nothing)."""
 
     time: int
@@ -30,8 +31,8 @@ class Switch:
 
 
 @hinted_methods
-@dataclass
-class Mitigated:
+@dataclass(eq=False, repr=False)
+class Mitigated(Result):
     """What came out: estimates (time, agent, n) and errors (time, agent) over all segments, time 0 first.
 
     segments: (first sample, measured states, run) between switches; each is designed anew.

@@ -18,6 +18,7 @@ from garrison.drawing import animated, drawn
 from garrison.families import family_of
 from garrison.notebook import of_run
 from garrison.objects import described, filter_of, model_of, network_of
+from garrison.recipe import code
 from garrison.verdict import Verdict
 from garrison.words import count, hinted_methods, near, refusal
 
@@ -216,7 +217,8 @@ class Run:
         one, two = self._arrays(), other._arrays()
         return one.keys() == two.keys() and all(np.array_equal(one[k], two[k], equal_nan=True) for k in one)
 
-    __hash__ = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash((self.model, self.network, self.filter, self.shape))
 
     def plot(self, trial: int = 0, *, agents: Iterable[int | str] | None = None, compare: Iterable[Run] = ()) -> Figure:
         """Errors with their bounds, and statistics against thresholds, of one trial, as a figure (extra: plot).
@@ -285,9 +287,12 @@ class Run:
         return of_run(self)
 
     def __repr__(self) -> str:
+        """The call that makes it once more, if that is not longer than people read; else what it is in short."""
+        if (call := code(self)) is not None:
+            return call
         trials, times, agents = self.shape
         sizes = (count(trials, "trial"), count(max(times - 1, 0), "sample"), count(agents, "agent"))
-        return f"Run({self.filter.name}: {', '.join(sizes)})"
+        return f"<Run of {self.filter.name}: {', '.join(sizes)}>"
 
 
 def _restored(data: bytes, name: str) -> Run:

@@ -147,13 +147,11 @@ DesignHead head_of(const AnyFilter& filter, const Model& model) {
 
 template <class Content>
 std::vector<std::byte> sealed(DesignHead head, Content content) {
-  wire::GrowingSink sink;
-  std::copy_n(reinterpret_cast<const std::byte*>(wire::kDesignMagic), sizeof wire::kDesignMagic,
-              sink.more(sizeof wire::kDesignMagic));
-  wire::Writer<wire::GrowingSink> writer(sink);
+  const std::span<const std::byte> magic = std::as_bytes(std::span(wire::kDesignMagic));
+  std::vector<std::byte> file(magic.begin(), magic.end());
+  wire::Writer writer(file);
   writer("head", head);
   writer("content", content);
-  std::vector<std::byte> file = sink.release();
   const wire::Digest digest = wire::blake2b(file);
   file.insert(file.end(), digest.begin(), digest.end());
   return file;

@@ -11,10 +11,11 @@ PACKAGE = ROOT / "python" / "garrison"
 #: bottom first; a module imports modules of its own layer or below. Packages stand for all that is in them.
 LAYERS = (
     ("_core",),
-    ("words", "verdict", "bound_kind", "drawing", "files"),
+    ("words", "verdict", "bound_kind", "drawing", "files", "result"),
     ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms", "circuits"),
     ("arguments", "parameters", "clean", "expected", "checks", "families", "tables", "longform", "labelled"),
-    ("attacks", "record", "doubts", "refuted", "varying", "varying_network"),
+    ("attacks", "varying", "varying_network"),
+    ("record", "recipe", "doubts", "refuted"),
     ("drivers", "kalman", "fitting", "fitting_full", "identifying", "calibration", "certificate", "exposing"),
     ("prepared", "designing", "certifying"),
     ("resilience", "mitigation", "lmi", "scenario", "answers"),

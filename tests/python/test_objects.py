@@ -181,8 +181,71 @@ def test_settings_and_results_are_kept() -> None:
         _core.identify(np.random.default_rng(0).normal(size=(900, 3)), 1, factors=1),
     ]
     for x in results:
-        assert pickle.loads(pickle.dumps(x)) == x == copy.deepcopy(x)
-        assert hash(copy.copy(x)) == hash(x)
+        keeps(x)
+
+
+def small_run(**more: Any) -> gr.Run:
+    model = gr.Model(0.9, [1.0, 1.0, 1.0], process_covariance=0.2, measurement_covariance=0.3)
+    return gr.simulate(model, gr.Network.complete(3), gr.filters.Dkf(), steps=5, noise="normal", **more)
+
+
+def test_runs_are_the_call_that_makes_them() -> None:
+    lies = [gr.attacks.Bias([0], value=2.0), gr.attacks.Forge([1], offset=1.0)]
+    run = small_run(attack=lies, link={"drop": 0.2}, trials=2, seed=3, certificate="local", attacked=1)
+    keeps(run)
+    assert repr(run).startswith("garrison.simulate(garrison.Model(")
+    y = run.measurements
+    replayed = gr.replay(run.model, run.network, run.filter, measurements=y[0], truth=run.truth[0])
+    keeps(replayed)
+    long = gr.replay(run.model, run.network, run.filter, measurements=np.zeros((400, 3)))
+    assert repr(long) == "<Run of dkf: 1 trial, 400 samples, 3 agents>"
+    assert long == copy.deepcopy(long)
+
+
+def test_agents_are_their_part_and_a_snapshot() -> None:
+    run = small_run()
+    agents = [gr.Agent(run.model, run.network, run.filter, i) for i in range(3)]
+    keeps(agents[1])
+    said = [agent.sense(1, [0.5]) for agent in agents]
+    assert repr(agents[1]) == "<Agent 1 of rdkf, sample 1>"
+    agents[1].fuse([said[0], said[2]])
+    keeps(agents[1])
+    assert str(agents[1]) == "<Agent 1 of rdkf, sample 1>"
+
+
+def test_answers_are_kept() -> None:
+    run = small_run()
+    check = gr.check(run.model, run.network, run.filter)
+    keeps(check)
+    keeps(gr.certify(run.model, run.measurements[0], attacked=1))
+    keeps(gr.expose(run.model, run.measurements[0], attacked=1))
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_every_protocol_of_pickle(protocol: int) -> None:
+    for x in (full_model(), full_network(), FILTERS[0][0], ATTACKS[0][0]):
+        assert pickle.loads(pickle.dumps(x, protocol)) == x
+
+
+def test_objects_without_content_are_refused() -> None:
+    for kind in {value for value in bound(_core) if isinstance(value, type)}:
+        empty = kind.__new__(kind)
+        for name in dir(kind):
+            if name.startswith("__") and name not in ("__repr__", "__eq__", "__hash__", "__reduce__", "__getstate__"):
+                continue
+            try:
+                found = getattr(empty, name)
+                if name.startswith("__"):
+                    found(*[empty] * (name == "__eq__"))
+            except gr.InvalidInput as error:
+                assert ": got " in str(error)
+
+
+def test_what_is_worked_with_says_that_it_is_not_kept() -> None:
+    window = gr.certificate.Window(2, 2, 3, 3, 9)
+    for keep in (pickle.dumps, copy.copy, copy.deepcopy):
+        with pytest.raises(gr.InvalidInput, match="Window: got pickle or copy, expected none"):
+            keep(window)
 
 
 def test_numbers_that_are_not_ambiguous_are_accepted() -> None:
@@ -289,7 +352,10 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
         r"network: got 4 agents, expected 3",
     ),
     (lambda: _core.rdkf.Setting(MODEL, gr.Network.ring(4)), r"network: got 4 agents, expected 3"),
-    (lambda: _core.check(RING, MODEL, gr.filters.Dkf()), r"check.model: got a Network, expected a Model"),
+    (
+        lambda: _core.check(RING, MODEL, gr.filters.Dkf()),
+        r"check.model: got a Network, expected a Model; the order is model, net",
+    ),
     (lambda: gr.structural.best_scalar_gain(0.9, np.zeros((0, 0))), r"W: got 0 x 0"),
     (lambda: gr.partial_sharing.Selection(np.zeros((0, 0)), 1), r"start: got 0 x 0"),
     (lambda: gr.partial_sharing.SelectionProblem(np.eye(4), 2, 1).objective([]), r"s: got 0 numbers"),
@@ -302,7 +368,9 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     ),
     (lambda: gr.structural.chi_square_level(2**31 - 1, 0.01), r"degrees .*got 2147483647"),
     (lambda: gr.platoon.grounded_eigenvalues(2**31 - 1), r"vehicles .*GB"),
-    (lambda: gr.SubsetBound(), r"SubsetBound: got a call, expected none"),
+    (lambda: gr.SubsetBound(), r"SubsetBound.lower: got no value, expected a number"),
+    (lambda: gr.Response.__new__(gr.Response).state, r"Response.state.self: got an object without its content"),
+    (lambda: gr.Agent(gr.filters.Dkf(), MODEL, RING, 0), r"the order is model, network, filter, id"),
     (lambda: gr.Model.A.fget(3), r"Model.A.self: got 3, expected a Model"),
 ]
 

@@ -59,7 +59,7 @@ def test_a_run_saves_plots_and_converts(system: tuple[gr.Model, gr.Network, gr.F
         assert {"error", "threshold", "verdict", "signal_innovation"} <= set(saved.files)
     assert run.to_xarray()["estimate"].dims == ("trial", "time", "agent", "state")
     assert len(run.plot().axes) >= 2
-    assert repr(run) == "Run(saturation: 1 trial, 10 samples, 5 agents)"
+    assert repr(run).startswith("garrison.simulate(garrison.Model(A=")
 
 
 def test_networks_from_other_libraries() -> None:

@@ -282,11 +282,10 @@ class AgentOf final : public Agent {
 
   /// Writes the state; how many bytes that takes.
   std::size_t written(std::span<std::byte> out) const noexcept {
-    wire::FixedSink sink(out);
-    wire::Writer<wire::FixedSink> writer(sink);
+    wire::Writer writer(out);
     writer("", const_cast<State&>(state_));  // only read
     if (evidence_) writer("certificate", evidence_->memory());
-    return sink.used();
+    return writer.used();
   }
 
   std::shared_ptr<const Gains> gains_;

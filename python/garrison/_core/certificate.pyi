@@ -81,6 +81,7 @@ class Region:
         """
         center (n,), radius >= 0, box (n,) >= 0. Raises InvalidInput.
         """
+    def __reduce__(self) -> tuple: ...
     def bound_around(self, estimate: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]) -> float:
         """
         Bound on ||estimate - x|| for any estimate (n,); inf without an answer, nan when refuted.
@@ -119,6 +120,7 @@ class Witness:
     """
     Answer of leverage_ball and witness_subsets.
     """
+    def __reduce__(self) -> tuple: ...
     @property
     def box(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None:
         """
@@ -151,6 +153,7 @@ class ErrorSystem:
     """
     E(t) = M E(t-1) + B_w w(t-1) + B (v(t) + a(t)), agent by agent.
     """
+    def __reduce__(self) -> tuple: ...
     @property
     def B(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
@@ -172,6 +175,7 @@ class Kernels:
     What k steps of the error system do: gb, ge (K, N, N), wb, we (K, N),
     Rb, Re (K+1, N, N).
     """
+    def __reduce__(self) -> tuple: ...
     @property
     def Rb(self) -> numpy.typing.NDArray[numpy.float64]: ...
     @property
@@ -191,6 +195,7 @@ class Table:
     """
     Data-free bounds, row t = 0..T, column = agent; infinite where they overflow.
     """
+    def __reduce__(self) -> tuple: ...
     @property
     def H(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
@@ -221,6 +226,7 @@ class GaussianTable:
     """
     Table for Gaussian noise; d and eta without the noise itself.
     """
+    def __reduce__(self) -> tuple: ...
     def bound(
         self, t: typing.SupportsInt | typing.SupportsIndex, delta: typing.SupportsFloat | typing.SupportsIndex
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -279,6 +285,7 @@ class Propagation:
         """
         w = Gam w~, w~ ~ N(0, I): zc for each coordinate, z2 for the vector. Raises InvalidInput.
         """
+    def __reduce__(self) -> tuple: ...
     def age(self, then: Region, age: typing.SupportsInt | typing.SupportsIndex) -> Region:
         """
         The Region of today for one that held `age` steps ago; its box is never wider than what the ball, the box and the ellipsoid give.
@@ -299,6 +306,7 @@ class Recovery:
         After a loss in step t: b bounds ||e_i(t)||, d is the table's d_i(t).
         """
     def __init__(self, kernels: Kernels, s: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def __reduce__(self) -> tuple: ...
     def error_excess(
         self,
         agent: typing.SupportsInt | typing.SupportsIndex,
@@ -359,6 +367,7 @@ class TwoNumbers:
         bw: typing.SupportsFloat | typing.SupportsIndex,
         bv: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     ) -> None: ...
+    def __reduce__(self) -> tuple: ...
     def step(self, gamma: typing.SupportsFloat | typing.SupportsIndex) -> float:
         """
         One step; returns the bound. Raises InvalidInput.
@@ -394,6 +403,7 @@ class Window:
         For at most `steps` steps of `states` numbers, Gam (states, noise), and `capacity` measurements of sources 0..sources-1.
         Raises InvalidInput.
         """
+    def __reduce__(self) -> tuple: ...
     def add(
         self,
         source: typing.SupportsInt | typing.SupportsIndex,
@@ -497,6 +507,7 @@ class WindowWitness:
     """
     Answer of a certificate with memory.
     """
+    def __reduce__(self) -> tuple: ...
     @property
     def box(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"] | None:
         """
@@ -568,6 +579,7 @@ class Bank:
         """
         A, Q (n, n). Raises InvalidInput, also when C(sources, s) > limit.
         """
+    def __reduce__(self) -> tuple: ...
     def merge(
         self, most: typing.SupportsInt | typing.SupportsIndex, z2: typing.SupportsFloat | typing.SupportsIndex
     ) -> None:
@@ -633,6 +645,7 @@ class ObserverTable:
     """
     Row t = 0..T; infinite from where it overflows or exceeds 1e12.
     """
+    def __reduce__(self) -> tuple: ...
     @property
     def d(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
@@ -653,6 +666,7 @@ class Meters:
     """
     What a static set of meters withstands.
     """
+    def __reduce__(self) -> tuple: ...
     @property
     def bound(self) -> list[float]:
         """
@@ -683,6 +697,7 @@ class SmallestAttack:
     """
     The smallest set of meters that can lie unseen.
     """
+    def __reduce__(self) -> tuple: ...
     @property
     def example(self) -> list[int]: ...
     @property

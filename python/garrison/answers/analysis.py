@@ -17,6 +17,7 @@ from garrison.answers.removals import Removal
 from garrison.answers.sensors import sensors_of
 from garrison.answers.watch import Progress, Watch
 from garrison.drawing import drawn
+from garrison.result import Result
 from garrison.words import count, hinted, hinted_methods, refusal, require_plant, shown
 
 if TYPE_CHECKING:
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
 
 
 @hinted_methods
-@dataclass
-class Analysis:
+@dataclass(eq=False, repr=False)
+class Analysis(Result):
     """Answers about a model on a network. Sensors are single measured numbers; `sensors` has their names.
 
     limits: the most liars for each guarantee. over_time, one_sample: the fewest sensors whose loss leaves a part of the

@@ -19,6 +19,7 @@ from garrison.families import family_of
 from garrison.kalman import central_kalman, local_kalman
 from garrison.prepared import prepare
 from garrison.record import Run
+from garrison.result import Result
 from garrison.varying import undriven
 from garrison.words import hinted, hinted_methods, refusal, require_plant
 
@@ -47,8 +48,8 @@ COLUMNS = (
 
 
 @hinted_methods
-@dataclass
-class Comparison:
+@dataclass(eq=False, repr=False)
+class Comparison(Result):
     """rows: a dict per filter and attack ("none" first), None where something does not exist for it.
 
     q50, q95, q99: quantiles of the errors of honest agents' estimates from the attack's start on, over agents, samples

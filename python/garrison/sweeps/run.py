@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from garrison import _core, arguments
 from garrison.drawing import drawn
+from garrison.result import Result
 from garrison.scenario import read_document
 from garrison.scenario.overrides import digest, overridden
 from garrison.sweeps.grid import Point, points_of
@@ -31,8 +32,8 @@ _LASTS, _LANES = 5.0, 8
 
 
 @hinted_methods
-@dataclass
-class Sweep:
+@dataclass(eq=False, repr=False)
+class Sweep(Result):
     """trials: one row (a dict) per point, filter, condition and trial; points: one per point, filter and condition.
 
     keys: what was varied. refused, lost: points that were refused, trials that were lost. folder: with trials.csv,

@@ -9,6 +9,7 @@
 #include "../filters/platoon/random_platoon.hpp"
 #include "garrison/drivers/simulate.hpp"
 #include "garrison/engine/design_file.hpp"
+#include "garrison/engine/snapshot_head.hpp"
 #include "garrison/filters/saturation/data_free.hpp"
 #include "garrison/wire/blake2b.hpp"
 
@@ -63,12 +64,11 @@ void drive(Agent& agent) {
 
 /// A snapshot with the checksum that belongs to it.
 Bytes forged_snapshot(test::Rng& rng, Bytes snapshot) {
-  constexpr std::size_t kSnapshotHead = 32;
-  snapshot.resize(snapshot.size() - 8);
-  change(rng, snapshot, kSnapshotHead);
+  snapshot.resize(snapshot.size() - SnapshotHead::kChecksum);
+  change(rng, snapshot, SnapshotHead::kBytes);
   const std::uint64_t sum = wire::checksum(snapshot);
-  snapshot.resize(snapshot.size() + 8);
-  wire::store(snapshot.data() + snapshot.size() - 8, sum);
+  snapshot.resize(snapshot.size() + SnapshotHead::kChecksum);
+  wire::store(snapshot.data() + snapshot.size() - SnapshotHead::kChecksum, sum);
   return snapshot;
 }
 

@@ -253,7 +253,7 @@ struct GARRISON_EXPORT Saturation {
                  exceeds(std::abs(h), s.level, std::abs(y[r]), std::abs(expected_y))) {
         accused = true;  // (c) proof (15)
       } else {
-        injected = std::clamp(h, -beta, beta);  // (d) = k h with k of (4), without 0/0
+        injected = std::max(-beta, std::min(h, beta));  // (d) = k h with k of (4), without 0/0
         limited += std::abs(h) > beta ? 1 : 0;
         ++used;
       }
