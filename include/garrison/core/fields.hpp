@@ -59,7 +59,9 @@ struct NumbersOf {
 /// Threads: one at a time.
 class FieldList : public NumbersOf<FieldList> {
  public:
-  static constexpr std::size_t kMost = 16;
+  /// Fields of a family's message; and with those of a certificate behind them.
+  static constexpr std::size_t kMost = 12;
+  static constexpr std::size_t kMostTogether = kMost + 4;
 
   template <class... Messages>
   explicit FieldList(Messages&... messages) {
@@ -96,7 +98,7 @@ class FieldList : public NumbersOf<FieldList> {
 
  private:
   void add(const FieldRef& field) { fields_[size_++] = field; }
-  std::array<FieldRef, kMost> fields_;
+  std::array<FieldRef, kMostTogether> fields_;
   std::size_t size_ = 0;
 };
 
