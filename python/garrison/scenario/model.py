@@ -76,7 +76,9 @@ def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | N
 
 def between(section: Section, records: Records) -> Records:
     """The records between the section's `from` and `to`."""
-    ends = [moment(section.place(k), section.table[k]) if k in section else None for k in ("from", "to")]
+    ends = [
+        moment(section.place(k), section.table[k], last=k == "to") if k in section else None for k in ("from", "to")
+    ]
     try:
         return records.between(*ends)
     except _core.Error as error:

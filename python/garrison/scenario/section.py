@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison.numeric import numbers, real
 from garrison.tables import read_matrix
+from garrison.tables.cells import number as cell_number
+from garrison.tables.moments import read_end, spelt_out
 from garrison.words import near, only, refusal, shown
 
 Array = NDArray[np.float64]
@@ -123,19 +125,27 @@ def tables_of(where: str, value: Any, folder: Path) -> list[Section]:
     return [Section(f"[[{where}]] {k}", entry, folder) for k, entry in enumerate(entries, start=1)]
 
 
-def moment(where: str, value: Any) -> dt.date | float:
-    """A date, a date with a time (UTC where it has a zone), or seconds."""
+def moment(where: str, value: Any, *, last: bool = False) -> dt.date | float:
+    """A date, a date with a time (UTC where it has a zone), or a number: of seconds, or a year (`Records.between`).
+
+    last: as the last record; a month is meant to its end.
+    """
     if isinstance(value, dt.datetime):
         return _plain(value)
     if isinstance(value, dt.date):
         return value
     if (seconds := real(value)) is not None:
         return seconds
+    text = value.strip() if isinstance(value, str) else ""
+    if (found := cell_number(text)) is not None and math.isfinite(found) and spelt_out([text]) == [text]:
+        return found
     try:
-        found = dt.datetime.fromisoformat(value)
-    except (TypeError, ValueError):
-        raise refusal(where, shown(value), "a date YYYY-MM-DD (with a time where the records have one)") from None
-    return found.date() if len(value.strip()) <= 10 else _plain(found)
+        end = read_end(text, last)
+    except _core.Error:
+        end = None
+    if end is None:
+        raise refusal(where, shown(value), "a date YYYY-MM-DD (with a time where the records have one)")
+    return _plain(end) if ":" in text or end.time() != dt.time() else end.date()
 
 
 def _plain(value: dt.datetime) -> dt.datetime:
