@@ -8,12 +8,12 @@ from garrison import _core, arguments
 from garrison.arguments import number
 from garrison.expected import expected_certificate
 from garrison.notebook import of_check
-from garrison.words import hinted, hinted_methods, require_order
+from garrison.words import Hinting, hinted, hinted_methods, require_order
 
 
 @hinted_methods
 @dataclass(frozen=True, eq=False)
-class Check:
+class Check(metaclass=Hinting):
     """What `check` found. A condition that fails is data, not an error.
 
     conditions: dicts with name, value, needed, holds, meaning, required (False: it only

@@ -15,7 +15,7 @@ from garrison.checks import Check, check
 from garrison.drawing import drawn
 from garrison.drivers import simulate
 from garrison.filters import make_filter
-from garrison.words import hinted, hinted_methods, near, refusal, require_plant
+from garrison.words import Hinting, hinted, hinted_methods, near, refusal, require_plant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,7 +29,7 @@ _CURVE = 16
 
 @hinted_methods
 @dataclass(frozen=True)
-class Choice:
+class Choice(metaclass=Hinting):
     """A number of rounds with its best threshold: the bound it certifies, and the bytes of all messages per sample."""
 
     rounds: int
@@ -40,7 +40,7 @@ class Choice:
 
 @hinted_methods
 @dataclass(frozen=True)
-class Designed:
+class Designed(metaclass=Hinting):
     """filter: as designed. error: the asymptotic bound that it certifies (theorem 1 item 3), unit of the state.
 
     attacked: liars that it stands. curve: what fewer and more rounds cost and give, feasible ones only. fewest_rounds:

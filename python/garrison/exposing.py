@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core
 from garrison.arguments import flag, pair_of_levels, probability, table, whole
-from garrison.words import hinted, hinted_methods, refusal, shown
+from garrison.words import Hinting, hinted, hinted_methods, refusal, shown
 
 
 @hinted_methods
 @dataclass
-class Exposed:
+class Exposed(metaclass=Hinting):
     """What the measurements prove.
 
     sources: who can lie, names, or numbers of agents. proved (samples, sources): shown to lie at that sample.

@@ -15,7 +15,7 @@ from garrison.notebook import of_model, titled
 from garrison.numeric import real
 from garrison.sizes import require_memory
 from garrison.tables import Records
-from garrison.words import hinted_methods, only, refusal, shown
+from garrison.words import Hinting, hinted_methods, only, refusal, shown
 
 Array = NDArray[np.float64]
 #: p-value below which residuals are called not white
@@ -26,7 +26,7 @@ INFLATION = 1.1
 
 @hinted_methods
 @dataclass(frozen=True)
-class Whiteness:
+class Whiteness(metaclass=Hinting):
     """Ljung-Box test of a model's residuals, station by station.
 
     statistic (N,): chi-square with `lags` degrees if the residuals are independent of their past. correlation (N,):
@@ -53,7 +53,7 @@ class Whiteness:
 
 @hinted_methods
 @dataclass(frozen=True)
-class Fit:
+class Fit(metaclass=Hinting):
     """A model identified from clean records.
 
     model: with unit rows, noise bounds and covariances. records: what it was fitted to.

@@ -10,7 +10,7 @@ from garrison import _core
 from garrison.arguments import number, texts, whole
 from garrison.fitting import Fit, Whiteness, _by_name, _options
 from garrison.tables import Records
-from garrison.words import hinted_methods, only, refusal
+from garrison.words import Hinting, hinted_methods, only, refusal
 
 Array = NDArray[np.float64]
 _ORDER = ("order", "most", "held_out", "noise", "inputs")
@@ -21,7 +21,7 @@ _NOISE = 0.01
 
 @hinted_methods
 @dataclass(frozen=True)
-class FullFit(Fit):
+class FullFit(Fit, metaclass=Hinting):
     """A vector autoregression: every station's deviation from its season is a state, with `order` samples of the past.
 
     model: states named as the stations, B for known inputs. autoregression: order, residuals and the likelihoods that

@@ -13,7 +13,7 @@ from garrison.arguments import entries, whole
 from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.record import Run
-from garrison.words import hinted, hinted_methods, refusal
+from garrison.words import Hinting, hinted, hinted_methods, refusal
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ class Switch:
 
 @hinted_methods
 @dataclass
-class Mitigated:
+class Mitigated(metaclass=Hinting):
     """What came out: estimates (time, agent, n) and errors (time, agent) over all segments, time 0 first.
 
     segments: (first sample, measured states, run) between switches; each is designed anew.

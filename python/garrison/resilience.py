@@ -10,12 +10,12 @@ from garrison import _core
 from garrison._core import partial_sharing as theory
 from garrison.arguments import number, whole_numbers
 from garrison.filters import PartialSharing
-from garrison.words import hinted, hinted_methods, refusal
+from garrison.words import Hinting, hinted, hinted_methods, refusal
 
 
 @hinted_methods
 @dataclass(frozen=True)
-class Resilience:
+class Resilience(metaclass=Hinting):
     """One number of shared entries. Errors are exact, means over the cycle of the periodic steady state.
 
     shared: entries l per message; bytes_per_step: payload of all messages of a sample; mse: mean over agents of the

@@ -17,7 +17,7 @@ from garrison.answers.removals import Removal
 from garrison.answers.sensors import sensors_of
 from garrison.answers.watch import Progress, Watch
 from garrison.drawing import drawn
-from garrison.words import count, hinted, hinted_methods, refusal, require_plant, shown
+from garrison.words import Hinting, count, hinted, hinted_methods, refusal, require_plant, shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @hinted_methods
 @dataclass
-class Analysis:
+class Analysis(metaclass=Hinting):
     """Answers about a model on a network. Sensors are single measured numbers; `sensors` has their names.
 
     limits: the most liars for each guarantee. over_time, one_sample: the fewest sensors whose loss leaves a part of the

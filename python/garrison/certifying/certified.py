@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison.numeric import numbers
-from garrison.words import count, hinted_methods, refusal
+from garrison.words import Hinting, count, hinted_methods, refusal
 
 Array = NDArray[np.float64]
 
 
 @hinted_methods
 @dataclass(frozen=True)
-class Certified:
+class Certified(metaclass=Hinting):
     """What is sure of the state at every sample: |x_i - center_i| <= box_i for all i, and ||x - center|| <= radius.
 
     center, box (samples, n), radius (samples,): inf where the measurements so far cannot answer, nan where they refute

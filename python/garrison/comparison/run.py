@@ -20,7 +20,7 @@ from garrison.kalman import central_kalman, local_kalman
 from garrison.prepared import prepare
 from garrison.record import Run
 from garrison.varying import undriven
-from garrison.words import hinted, hinted_methods, refusal, require_plant
+from garrison.words import Hinting, hinted, hinted_methods, refusal, require_plant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,7 +48,7 @@ COLUMNS = (
 
 @hinted_methods
 @dataclass
-class Comparison:
+class Comparison(metaclass=Hinting):
     """rows: a dict per filter and attack ("none" first), None where something does not exist for it.
 
     q50, q95, q99: quantiles of the errors of honest agents' estimates from the attack's start on, over agents, samples

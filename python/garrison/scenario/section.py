@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.numeric import numbers, real
+from garrison.numeric import numbers, real, whole_of
 from garrison.tables import read_matrix
 from garrison.tables.cells import number as cell_number
 from garrison.tables.moments import read_end, spelt_out
@@ -65,7 +65,7 @@ class Section:
         """A string."""
         value = self.table.get(key, default)
         if not isinstance(value, str):
-            raise refusal(self.place(key), shown(value), "a string")
+            raise refusal(self.place(key), shown(value), "a string, in quotes")
         return value
 
     def choice(self, key: str, default: str, known: Sequence[str]) -> str:
@@ -98,13 +98,12 @@ class Section:
 
 def whole(where: str, value: Any, least: int = 0, most: int = _MOST) -> int:
     """`value` as a whole number in a range."""
-    if isinstance(value, float) and math.isfinite(value) and value == int(value):
-        value = int(value)
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        above = isinstance(value, int) and value > most
+    found = whole_of(value)
+    if found is None or not least <= found <= most:
+        above = found is not None and found > most
         words = f"a whole number in {least}..{most}" if above or most < _MOST else f"a whole number >= {least}"
         raise refusal(where, shown(value), words)
-    return value
+    return found
 
 
 def number(where: str, value: Any, *, positive: bool = False) -> float:

@@ -17,7 +17,7 @@ from garrison.sweeps.grid import Point, points_of
 from garrison.sweeps.pool import outcomes
 from garrison.sweeps.tables import Row, point_rows, read_part, trial_rows, write_csv, write_parquet
 from garrison.sweeps.work import COLUMNS, Task, rows_of
-from garrison.words import count, hinted, hinted_methods, refusal, shown
+from garrison.words import Hinting, count, hinted, hinted_methods, refusal, shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,7 +32,7 @@ _LASTS, _LANES = 5.0, 8
 
 @hinted_methods
 @dataclass
-class Sweep:
+class Sweep(metaclass=Hinting):
     """trials: one row (a dict) per point, filter, condition and trial; points: one per point, filter and condition.
 
     keys: what was varied. refused, lost: points that were refused, trials that were lost. folder: with trials.csv,

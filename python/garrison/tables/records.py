@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from garrison.tables.clock import Moment, of_number, seconds_of
 from garrison.tables.columns import read_table
-from garrison.words import hinted_methods, refusal
+from garrison.words import Hinting, hinted_methods, refusal
 
 Array = NDArray[np.float64]
 _DAY = 86400.0
@@ -18,7 +18,7 @@ _DAYS_OF_A_YEAR = 365.25
 
 @hinted_methods
 @dataclass(frozen=True)
-class Records:
+class Records(metaclass=Hinting):
     """Regular records: times, and one column of numbers per station; nan = missing.
 
     dates: dates, dates with a time, or seconds. step: seconds between records. units: per station, "" = not said.
