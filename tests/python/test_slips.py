@@ -380,6 +380,27 @@ def test_usage_errors_return_2(capsys: pytest.CaptureFixture[str]) -> None:
     assert "saturation" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["sweep", "x.toml", "-o", "out", "--trials", "2.5"],
+        ["sweep", "x.toml", "-o", "out", "--trials", "ten"],
+        ["compare", "x.toml", "--trials", "1_0"],
+        ["design", "x.toml", "--most-rounds", "nan"],
+        ["fit", "x.csv", "--attacked", "1.5"],
+    ],
+)
+def test_no_whole_number_on_the_command_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 2
+    assert f"got {words[-1]!r}, expected a whole number" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["fit", "x.csv", "--scale", "1_0.5"], ["analyze", "x.toml", "--seconds", "5 s"]])
+def test_no_number_on_the_command_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 2
+    assert f"got {words[-1]!r}, expected a number" in capsys.readouterr().err
+
+
 def test_list_one(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["list", "bias"]) == 0
     out = capsys.readouterr().out

@@ -35,11 +35,11 @@ def add(commands: Commands) -> None:
     )
     command.add_argument(
         "--attacked",
-        type=int,
+        type=whole_number,
         help="also store levels for certificates with so many stations attacked, and wider bounds",
     )
     command.add_argument(
-        "--failure", type=float, default=1e-3, help="rate at which clean records exceed these levels (default 1e-3)"
+        "--failure", type=number, default=1e-3, help="rate at which clean records exceed these levels (default 1e-3)"
     )
     command.add_argument("-o", "--output", help="model file to write (JSON); default: standard output")
     command.add_argument("--force", action="store_true", help="replace an existing model file")

@@ -29,7 +29,7 @@ from garrison.tables.clock import Moment
 from garrison.tables.text import decoded
 from garrison.varying import VaryingModel
 from garrison.varying_network import VaryingNetwork
-from garrison.words import count, only, refusal, shown
+from garrison.words import count, near, only, refusal, shown
 
 Array = NDArray[np.float64]
 
@@ -229,7 +229,7 @@ def _certificate(section: Section) -> dict[str, Any]:
         return {}
     out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": section.number("failure", 1e-6)}
     if out["certificate"] not in SPREADS:
-        raise refusal(section.place("spread"), shown(out["certificate"]), ONE_SPREAD)
+        raise refusal(section.place("spread"), shown(out["certificate"]), ONE_SPREAD, near(out["certificate"], SPREADS))
     if not 0 <= out["failure"] < 1:
         raise refusal(section.place("failure"), shown(out["failure"]), "a probability in [0, 1)", "0 = deterministic")
     if "attacked" in section:
