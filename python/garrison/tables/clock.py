@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison.tables.cells import is_missing, number
-from garrison.tables.moments import looks_like_time, moment_of, order_of, spelt_out
+from garrison.tables.moments import looks_like_time, moment_of, order_of, seconds_of_day, spelt_out
 from garrison.tables.text import Rows
 from garrison.words import count, refusal
 
@@ -77,7 +77,8 @@ def read_clock(rows: Rows, cells: list[str], name: str = "", unit: str = "") -> 
     cells = spelt_out(cells)
     if _IMPLIED.get(name.lower()) == "a" and all(_YEAR.fullmatch(c.strip()) for c in cells):
         cells = [f"{c.strip()}-01-01" for c in cells]
-    plain = [number(c, True) for c in cells]
+    alone = [seconds_of_day(c) for c in cells]
+    plain = [number(c, True) for c in cells] if None in alone else alone
     moments: list[Moment]
     if plain[0] is not None and not looks_like_time(cells[0]):
         moments = _seconds(places, cells, plain, unit or _IMPLIED.get(name.lower(), ""))

@@ -195,8 +195,20 @@ def _numbers(rows: Rows, first: int, skip: int, names: list[str], notes: list[st
     if wrong:
         others = list(wrong)[1:]
         more = f"; also in column {', '.join(others[:8])}" if others else ""
-        raise _core.InvalidInput(f"{next(iter(wrong.values()))}, expected a number or an empty cell{more}")
+        first_wrong = next(cell for row in cells for cell in row if number(cell, comma) is None)
+        raise _core.InvalidInput(
+            f"{next(iter(wrong.values()))}, expected a number or an empty cell{_advice(first_wrong)}{more}"
+        )
     return values
+
+
+def _advice(cell: str) -> str:
+    """What to do with a cell that is no number but nearly one."""
+    if looks_like_time(cell):
+        return "; the column of times comes first"
+    if re.fullmatch(r"\W{0,2}\d[\d.,'_\s]*\D{0,8}\d?", cell):
+        return "; write numbers with a decimal point, nothing between thousands, and units in the header: A [unit]"
+    return ""
 
 
 def _suspicious(columns: list[Column], values: Array) -> list[str]:

@@ -56,6 +56,19 @@ def looks_like_time(cell: str) -> bool:
     return _parts(text) is not None or (compact is not None and bool(compact["t"]))
 
 
+def seconds_of_day(cell: str) -> float | None:
+    """Seconds since midnight of a time with hours, minutes and seconds; None for anything else."""
+    text = cell.strip()
+    found = _CLOCK.fullmatch(text)
+    if found is None or not is_time_of_day(text) or found["second"] is None:
+        return None
+    try:
+        since = _with_clock(dt.datetime(1, 1, 1), text) - dt.datetime(1, 1, 1)
+    except ValueError:
+        return None
+    return since.total_seconds()
+
+
 def is_time_of_day(cell: str) -> bool:
     """A time without a date."""
     return _TIME_ALONE.fullmatch(cell.strip()) is not None
@@ -135,6 +148,8 @@ def _with_clock(day: dt.datetime, text: str) -> dt.datetime:
         if not 1 <= hour <= 12:
             raise ValueError
         hour = hour % 12 + (12 if m["half"][0] in "pP" else 0)
+    if hour == 24 and minute == second == 0:  # the end of the day
+        day, hour = day + dt.timedelta(days=1), 0
     micro = round(float(f"0.{m['part'] or 0}") * 1e6)
     found = day.replace(hour=hour, minute=minute, second=second) + dt.timedelta(microseconds=micro)
     return found if not m["zone"] else found.replace(tzinfo=_zone(m["zone"]))
