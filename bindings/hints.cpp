@@ -50,7 +50,7 @@ PyObject* get(PyObject* self, PyObject* name) {
   PyObject* found = PyObject_GenericGetAttr(self, name);
   // Subclasses written in Python have attributes of their own, and are asked in every step.
   if (found == nullptr && hinted().count(Py_TYPE(self)) != 0)
-    explain(Py_TYPE(self), name, "a " + name_of(Py_TYPE(self)));
+    explain(Py_TYPE(self), name, "'" + name_of(Py_TYPE(self)) + "' object");
   return found;
 }
 

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from garrison import _core
 from garrison.files import contents
 from garrison.numeric import Array, numbers, real, whole_of
@@ -78,9 +80,9 @@ def chance(which: str, value: Any) -> float:
 
 def flag(which: str, value: Any) -> bool:
     """True or false."""
-    if not isinstance(value, bool):
+    if not isinstance(value, (bool, np.bool_)):
         raise refusal(which, shown(value), "True or False")
-    return value
+    return bool(value)
 
 
 def text(which: str, value: Any) -> str:

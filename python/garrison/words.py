@@ -24,7 +24,7 @@ def shown(value: Any, most: int = 60) -> str:
         return "no value"
     if isinstance(value, (type, BuiltinFunctionType, FunctionType)):
         return _kind(value)
-    text = repr(value) if isinstance(value, str) else str(value)
+    text = repr(str(value)) if isinstance(value, str) else str(value)
     text = " ".join(text.split())
     text = text if len(text) <= most else f"{text[: most - 3]}..."
     if isinstance(value, bool):
@@ -81,7 +81,7 @@ def missing(self: Any, name: str) -> Any:
     """`__getattr__` of our classes: called for what an object lacks."""
     if not name.startswith("_") and hasattr(type(self), name):  # a property that failed: its own words
         return object.__getattribute__(self, name)
-    return refuse_unknown(f"a {type(self).__name__}", name, [*_names(type(self)), *vars(self)])
+    return refuse_unknown(f"{type(self).__name__!r} object", name, [*_names(type(self)), *vars(self)])
 
 
 def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:

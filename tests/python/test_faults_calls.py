@@ -168,6 +168,26 @@ def test_what_is_no_whole_number_is_refused_everywhere(wrong: Any) -> None:
             call()
 
 
+def test_flags_and_words_of_numpy() -> None:
+    assert gr.simulate(*PARTS, steps=2, conditions=np.bool_(False)).shape == (1, 3, 3)
+    with pytest.raises(gr.InvalidInput, match="conditions: got 1, expected True or False"):
+        gr.simulate(*PARTS, steps=2, conditions=1)  # type: ignore[arg-type]
+    with pytest.raises(gr.InvalidInput, match="keep: got 'estimat', expected"):
+        gr.simulate(*PARTS, steps=2, keep=[np.str_("estimat")])
+
+
+def test_tables_of_pandas_are_matrices() -> None:
+    model = gr.Model(pd.DataFrame([[0.9, 0.1], [0.0, 0.8]]), pd.DataFrame([[1, 0], [0, 1]]))
+    assert [c.tolist() for c in model.C] == [[[1.0, 0.0]], [[0.0, 1.0]]]
+
+
+def test_choices_get_the_nearest() -> None:
+    with pytest.raises(gr.InvalidInput, match=r'structural.test: got "inovation".*did you mean "innovation"'):
+        gr.filters.Structural(test="inovation")
+    with pytest.raises(gr.InvalidInput, match=r'noise: got .*"normale".*did you mean "normal"'):
+        gr.simulate(*PARTS, steps=2, noise="normale")
+
+
 def test_numbers_of_numpy_are_shown_as_numbers() -> None:
     with pytest.raises(gr.InvalidInput) as refused:
         gr.Network(np.array([[0, np.nan, 1], [np.nan, 0, 1], [1, 1, 0]]))
