@@ -111,7 +111,11 @@ std::string shown(py::handle given) {
     if (a.ndim() > 0 && a.size() != 1)
       return "an array of shape " + py::str(a.attr("shape")).cast<std::string>();
   }
-  const py::object text = attempt([&] { return py::object(py::repr(given)); });
+  const py::object text = attempt([&] {  // numpy writes its numbers as np.float64(nan)
+    const bool number_of_numpy = py::isinstance(given, numpy("generic"));
+    return py::object(py::repr(number_of_numpy ? py::object(given.attr("item")())
+                                               : py::reinterpret_borrow<py::object>(given)));
+  });
   constexpr std::size_t most = 60;
   std::string words = text ? text.cast<std::string>() : "an object of class " + type;
   if (words.size() > most || words.find('\n') != std::string::npos)
@@ -158,7 +162,9 @@ py::int_ whole(const std::string& which, py::handle given) {
     const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
     if (index) return index;
     PyErr_Clear();
-    refuse(which, shown(given), expected);
+    const bool lone = py::isinstance<py::array>(given) &&
+                      py::reinterpret_borrow<py::array>(given).dtype().kind() == 'f';  // array(3.0)
+    if (!lone) refuse(which, shown(given), expected);
   }
   const double value = given.is_none() ? garrison::kNaN : [&] {
     try {

@@ -7,6 +7,7 @@
 
 #include "front.hpp"
 #include "garrison/core/error.hpp"
+#include "hints.hpp"
 
 namespace py = pybind11;
 
@@ -189,7 +190,10 @@ void guard(const py::module_& module) {
       classes[value.attr("__module__").cast<std::string>() + "." +
               value.attr("__qualname__").cast<std::string>()] = value;
   });
-  for (const auto& [name, type] : classes) guard_class(type, classes);
+  for (const auto& [name, type] : classes) {
+    guard_class(type, classes);
+    hint(type);
+  }
   walk(module,
        [&](const std::string& name, py::handle value) { guard_function(value, name, classes, false); });
 }

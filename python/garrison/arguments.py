@@ -1,15 +1,16 @@
 """Arguments of the public functions, read one by one: each is of the kind that is asked for, or refused by name."""
 
 import inspect
-import operator
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from garrison import _core
 from garrison.files import contents
-from garrison.numeric import Array, numbers, real
+from garrison.numeric import Array, numbers, real, whole_of
 from garrison.words import near, only, refusal, shown
 
 T = TypeVar("T")
@@ -18,13 +19,10 @@ _HUGE = 1e150
 
 
 def whole(which: str, value: Any, least: int, most: int = _MOST) -> int:
-    """A whole number in a range."""
-    try:
-        found = operator.index(value)
-    except TypeError:
-        found = least - 1
-    if isinstance(value, bool) or not least <= found <= most:
-        small = most >= _MOST and not found > most
+    """A whole number in a range; 3.0 is one."""
+    found = whole_of(value)
+    if found is None or not least <= found <= most:
+        small = most >= _MOST and not (found is not None and found > most)
         words = f"a whole number >= {least}" if small else f"a whole number in {least}..{most}"
         raise refusal(which, shown(value), words)
     return found
@@ -38,8 +36,8 @@ def entries(which: str, value: Any, expected: str) -> list[Any]:
 
 
 def alone(value: Any) -> bool:
-    """One whole number, not an array of them."""
-    return hasattr(value, "__index__") and getattr(value, "ndim", 0) == 0
+    """One number, not an array of them."""
+    return whole_of(value) is not None or real(value) is not None or getattr(value, "ndim", 1) == 0
 
 
 def whole_numbers(which: str, value: Any, least: int = 0) -> list[int]:
@@ -82,9 +80,9 @@ def chance(which: str, value: Any) -> float:
 
 def flag(which: str, value: Any) -> bool:
     """True or false."""
-    if not isinstance(value, bool):
+    if not isinstance(value, (bool, np.bool_)):
         raise refusal(which, shown(value), "True or False")
-    return value
+    return bool(value)
 
 
 def text(which: str, value: Any) -> str:

@@ -23,8 +23,9 @@ _RATE = "false_alarm"
 _LEAST, _ACCURACY = 1e-300, 5e-3
 #: parts of the records in which rates are looked at apart, and deviations between these that are allowed for
 _PARTS, _MARGIN = 5, 1.0
-#: alarms expected on the records, among tests that do not overlap, from which on the rate asked for can be judged
-_ENOUGH = 5.0
+#: alarms on the records, counted as so many independent ones, from which on the rate of later ones is within a factor
+#: of two with 95 %: both are then known to a quarter. Blocks of the records whose counts say how they cluster
+_ENOUGH, _BLOCKS = 16.0, 20
 
 
 @hinted_methods
@@ -34,8 +35,9 @@ class Calibration(Result):
 
     filter: the same with the nominal rate `nominal` in place of `asked`. tests: of all sensors together, over which
     the rate is taken; got, before: share of alarms among them now, and with the filter as it was given. by_part: the
-    share now in each fifth of the records: what a later record may differ by. judged: there are enough tests that do
-    not overlap to judge so rare an alarm; where there are not, the rate on other records may be another one altogether.
+    share now in each fifth of the records: what a later record may differ by. judged: there are enough alarms that do
+    not come together (storms, overlapping windows) to judge so rare an alarm; where there are not, the rate on other
+    records may be another one altogether.
     thresholds (N, 3): of every sensor's statistic the level that it exceeds at the rate asked for, and an interval
     that holds the true one with 95 % if the tests are independent (tests over overlapping windows are not: take it as
     optimistic); nan where there are too few tests. model: with noise bounds that hold on these records too; the
@@ -135,7 +137,7 @@ def calibrate(
         _share(after),
         tuple(_share(part) for part in np.array_split(after, _PARTS)),
         tests,
-        tests * asked >= _ENOUGH * max(1, filter.params.get("window", 1)),
+        _independent(after) >= _ENOUGH,
         thresholds,
         inflated,
         exceeds,
@@ -155,6 +157,18 @@ def _share(ratios: Array) -> float:
     """Of the tests that are an alarm; nan without tests."""
     tests = np.isfinite(ratios).sum()
     return float((ratios > 1.0).sum() / tests) if tests else float("nan")
+
+
+def _independent(ratios: Array) -> float:
+    """Alarms, counted as so many independent ones: alarms that come in clusters vary more from block to block."""
+    blocks = np.array_split(ratios, _BLOCKS)
+    alarms = np.array([(block > 1.0).sum() for block in blocks], dtype=float)
+    tests = np.array([np.isfinite(block).sum() for block in blocks], dtype=float)
+    if not alarms.any():
+        return 0.0
+    expected = tests * alarms.sum() / tests.sum()
+    clusters = float(np.sum((alarms - expected) ** 2) / (_BLOCKS - 1) / expected.mean())
+    return float(alarms.sum()) / max(1.0, clusters)
 
 
 def _allowed(ratios: Array, asked: float) -> float:

@@ -58,12 +58,34 @@ def of_attacks(attacks: list[_core.Attack], samples: int) -> list[str]:
     ]
 
 
+#: parameters that ask for samples before the first test or alarm: what they are, and what is absent without them
+_WAITS = {
+    "window": ("samples of a test", "nothing can be tested"),
+    "settle": ("samples without a test", "nothing can be tested"),
+    "alarm_after": ("tests in a row", "no alarm is possible"),
+}
+
+
+def waits(filter: _core.Filter) -> list[tuple[str, int, str]]:
+    """Parameter, samples that a run needs for it to do anything, and what is absent in a shorter one."""
+    found = []
+    for name, (_, absent) in _WAITS.items():
+        value = filter.params.get(name)
+        if isinstance(value, int):
+            found.append((name, value + (name == "settle"), absent))
+    return found
+
+
 def of_alarms(filter: _core.Filter, samples: int) -> list[str]:
-    """A line where the run is over before the filter could raise an alarm."""
-    needed = filter.params.get("alarm_after", 1)
-    if not needed > samples >= 0:
-        return []
-    return [f"alarm_after = {needed} tests in a row, but the run has {count(samples, 'sample')}: no alarm is possible"]
+    """Lines where the run is over before the filter could test, or raise an alarm, or where most of it is over."""
+    lines = []
+    for name, needed, absent in waits(filter):
+        about = f"{name} = {filter.params[name]} {_WAITS[name][0]}"
+        if needed > samples >= 0:
+            lines.append(f"{about}, but the run has {count(samples, 'sample')}: {absent}")
+        elif 2 * (needed - 1) >= samples >= 0 and name != "alarm_after":
+            lines.append(f"{about}: the first {needed - 1} of {samples} samples were not tested")
+    return lines
 
 
 def of_silence(names: list[str] | None, measurements: Array) -> list[str]:

@@ -1,5 +1,6 @@
 """Numbers from what people pass: lists, arrays, masked arrays, tables of pandas. What is masked or NA becomes nan."""
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,20 @@ def real(value: Any) -> float | None:
         return float(value)
     except (OverflowError, TypeError):
         return None
+
+
+def whole_of(value: Any) -> int | None:
+    """A whole number, also one that is kept as a float (3.0); None for anything else."""
+    value = value.item() if type(value) is np.ndarray and value.ndim == 0 else value
+    if isinstance(value, (bool, np.bool_, np.ndarray)):
+        return None
+    if hasattr(value, "__index__"):
+        try:
+            return operator.index(value)
+        except TypeError:
+            return None
+    found = real(value)
+    return int(found) if found is not None and np.isfinite(found) and found == int(found) else None
 
 
 def _plain(value: Any) -> Any:

@@ -7,11 +7,11 @@ from garrison import _core, arguments, drivers
 from garrison.arguments import read, whole, write
 from garrison.checks import Check, check
 from garrison.record import Run
-from garrison.words import hinted, hinted_methods, refusal, require_order
+from garrison.words import Hinting, hinted, hinted_methods, refusal, require_order
 
 
 @hinted_methods
-class Prepared:
+class Prepared(metaclass=Hinting):
     """A filter designed for one model and network: `prepare` makes it, `save` and `load` carry it elsewhere.
 
     The gains travel with it, so that every run and agent of it has the same bits, here and on another machine; nothing

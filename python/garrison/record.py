@@ -20,7 +20,7 @@ from garrison.notebook import of_run
 from garrison.objects import described, filter_of, model_of, network_of
 from garrison.recipe import code
 from garrison.verdict import Verdict
-from garrison.words import count, hinted_methods, near, refusal
+from garrison.words import Hinting, count, hinted_methods, near, refusal
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -50,7 +50,7 @@ _VARYING = "varying_"
 
 
 @hinted_methods
-class Run:
+class Run(metaclass=Hinting):
     """Arrays of a finished run, indexed [trial, time, agent, ...]; time 0 is the start, nan = does not exist.
 
     truth (trial, time, n), or (trial, time, agent, n) of agents with states of their own; estimate (trial, time, agent,

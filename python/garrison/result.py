@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from garrison.words import Hinting
+
 #: larger arrays are not shown as code, as in numpy
 MOST_SHOWN = 1000
 
@@ -38,7 +40,7 @@ def code(value: Any) -> str:
     return repr(value)
 
 
-class Result:
+class Result(metaclass=Hinting):
     """Base of the dataclasses that functions answer with."""
 
     def _fields(self) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core, notebook
 from garrison.arguments import whole
 from garrison.numeric import matched, numbers
-from garrison.words import hinted, hinted_methods, refusal, shown
+from garrison.words import Hinting, hinted, hinted_methods, refusal, shown
 
 Array = NDArray[np.float64]
 #: matrices over time, or a function of the time
@@ -22,7 +22,7 @@ _PARTS = ("A", "B", "C", "process_covariance")
 
 
 @hinted_methods
-class VaryingModel:
+class VaryingModel(metaclass=Hinting):
     """A plant that changes in time: x(t+1) = A(t) x(t) + B(t) u(t) + w(t), y(t) = C(t) x(t) + v(t).
 
     Taken by `simulate`, `replay`, `central_kalman` and `local_kalman`. Filters: `ScalarGain`, `Saturation` without

@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core, notebook
 from garrison.arguments import entries
 from garrison.numeric import numbers
-from garrison.words import hinted, hinted_methods, refusal, shown
+from garrison.words import Hinting, hinted, hinted_methods, refusal, shown
 
 
 @hinted_methods
-class VaryingNetwork:
+class VaryingNetwork(metaclass=Hinting):
     """A network whose links come and go: at every sample a message arrives over those that are present.
 
     Filters are designed for the network of all links that ever exist; one that is absent is a lost message (bounds and

@@ -2,8 +2,10 @@
 
 from enum import IntEnum
 
+from garrison.words import HintingEnum, missing
 
-class Verdict(IntEnum):
+
+class Verdict(IntEnum, metaclass=HintingEnum):
     """The values of `Run.verdict`. NOT_TESTED never means cleared."""
 
     CLEARED = 0  #: its measurement was used as it is
@@ -11,6 +13,8 @@ class Verdict(IntEnum):
     ATTACKED = 2  #: the filter takes it for attacked and isolates it, or raises an alarm
     SILENT = 3  #: it had no measurement: a relay, or lost
     NOT_TESTED = 4  #: the filter could not, or does not, test it
+
+    __getattr__ = missing
 
     @property
     def word(self) -> str:

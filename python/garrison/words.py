@@ -3,6 +3,7 @@
 import functools
 import inspect
 from collections.abc import Callable, Iterable
+from enum import EnumType
 from types import BuiltinFunctionType, FunctionType
 from typing import Any, NoReturn, ParamSpec, TypeVar
 
@@ -23,7 +24,7 @@ def shown(value: Any, most: int = 60) -> str:
         return "no value"
     if isinstance(value, (type, BuiltinFunctionType, FunctionType)):
         return _kind(value)
-    text = repr(value) if isinstance(value, str) else str(value)
+    text = repr(str(value)) if isinstance(value, str) else str(value)
     text = " ".join(text.split())
     text = text if len(text) <= most else f"{text[: most - 3]}..."
     if isinstance(value, bool):
@@ -45,6 +46,44 @@ def refuse_attribute(module: str, name: str, known: Iterable[str]) -> NoReturn:
     raise AttributeError("; ".join(filter(None, [f"module {module!r} has no attribute {name!r}", near(name, known)])))
 
 
+class Hinting(type):
+    """The class of our classes: an attribute that a class lacks is refused with the nearest name."""
+
+    def __getattr__(cls, name: str) -> NoReturn:
+        refuse_unknown(f"the class {cls.__name__}", name, _names(cls))
+
+
+class HintingEnum(EnumType):
+    """The same for enumerations."""
+
+    def __getattr__(cls, name: str) -> Any:
+        members = cls.__dict__.get("_member_map_", {})
+        if name in members:  # in Python 3.11 members are found here
+            return members[name]
+        refuse_unknown(f"the class {cls.__name__}", name, [*members, *_names(cls)])
+
+
+def refuse_unknown(owner: str, name: str, known: Iterable[str]) -> NoReturn:
+    """The AttributeError of something that lacks `name`, with the public name that was probably meant.
+
+    Names with an underscore in front are questions of libraries, not slips.
+    """
+    advice = "" if name.startswith("_") else near(name, [one for one in known if not one.startswith("_")])
+    raise AttributeError("; ".join(filter(None, [f"{owner} has no attribute {name!r}", advice])))
+
+
+def _names(cls: type) -> list[str]:
+    """Names of a class; `dir` does not tell those of enumerations."""
+    return [name for one in cls.__mro__ for name in vars(one)]
+
+
+def missing(self: Any, name: str) -> Any:
+    """`__getattr__` of our classes: called for what an object lacks."""
+    if not name.startswith("_") and hasattr(type(self), name):  # a property that failed: its own words
+        return object.__getattribute__(self, name)
+    return refuse_unknown(f"{type(self).__name__!r} object", name, [*_names(type(self)), *vars(self)])
+
+
 def only(where: str, names: Iterable[str], known: Iterable[str]) -> None:
     """Refuse names that are not known, with the nearest one."""
     known = list(known)
@@ -60,7 +99,11 @@ def hinted(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def hinted_methods(cls: type[T]) -> type[T]:
-    """`cls` with its public methods, its constructor and assignments to its attributes guarded like that."""
+    """`cls` with its public methods, its constructor and assignments to its attributes guarded like that.
+
+    Attributes that an object of it lacks are refused with the nearest name; the metaclass Hinting does the same for
+    those of the class.
+    """
     for key, value in list(vars(cls).items()):
         if key.startswith("_") and key != "__init__":
             continue
@@ -83,6 +126,7 @@ def hinted_methods(cls: type[T]) -> type[T]:
             raise refusal(f"{cls.__name__}.{key}", "an assignment", "none", advice) from None
 
     cls.__setattr__ = assign  # type: ignore[method-assign]
+    cls.__getattr__ = missing  # type: ignore[attr-defined]
     return cls
 
 

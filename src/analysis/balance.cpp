@@ -21,24 +21,6 @@ double power_of_2(double d) {
   return std::exp2(std::round(std::clamp(std::log2(d), -kMostPower, kMostPower)));
 }
 
-/// States in the order of their distance from the outputs: one pass then carries a scale all the way.
-std::vector<Index> from_outputs(const Matrix& A, const Matrix& C) {
-  const Index n = A.rows();
-  std::vector<Index> order;
-  std::vector<char> known(static_cast<std::size_t>(n), 0);
-  const auto add = [&](Index j) {
-    if (known[static_cast<std::size_t>(j)]) return;
-    known[static_cast<std::size_t>(j)] = 1;
-    order.push_back(j);
-  };
-  for (Index j = 0; j < n; ++j)
-    if (C.rows() > 0 && (C.col(j).array() != 0.0).any()) add(j);
-  for (std::size_t k = 0; k < order.size(); ++k)
-    for (Index j = 0; j < n; ++j)
-      if (A(order[k], j) != 0.0) add(j);
-  return order;
-}
-
 class Balancing {
  public:
   Balancing(const Matrix& A, const Matrix& C, double rate, double pull)
@@ -108,6 +90,23 @@ class Balancing {
 };
 
 }  // namespace
+
+std::vector<Index> from_outputs(const Matrix& A, const Matrix& C) {
+  const Index n = A.rows();
+  std::vector<Index> order;
+  std::vector<char> known(static_cast<std::size_t>(n), 0);
+  const auto add = [&](Index j) {
+    if (known[static_cast<std::size_t>(j)]) return;
+    known[static_cast<std::size_t>(j)] = 1;
+    order.push_back(j);
+  };
+  for (Index j = 0; j < n; ++j)
+    if (C.rows() > 0 && (C.col(j).array() != 0.0).any()) add(j);
+  for (std::size_t k = 0; k < order.size(); ++k)
+    for (Index j = 0; j < n; ++j)
+      if (A(order[k], j) != 0.0) add(j);
+  return order;
+}
 
 Pair balanced(const Matrix& A, const Matrix& C, double rate, double pull) {
   Balancing balancing(A, C, rate, pull);

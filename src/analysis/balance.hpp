@@ -29,6 +29,13 @@ Pair rows_scaled(const Matrix& A, const Matrix& C, double rate);
 /// A rate of the pair that no scaling changes: the largest sqrt(|a_ij a_ji|), 1 where all are 0.
 double natural_rate(const Matrix& A);
 
+/// The pair in units in which no square of an entry overflows or vanishes, as far as doubles allow; as it is
+/// where that holds already. Powers of 2 only, so nothing is rounded.
+Pair in_moderate_units(const Matrix& A, const Matrix& C);
+
+/// States in the order of their distance from the outputs; those that move none are missing.
+std::vector<Eigen::Index> from_outputs(const Matrix& A, const Matrix& C);
+
 /// For every state: it moves some output, at once or through other states (by the zeros of A and C alone).
 std::vector<char> reach_outputs(const Matrix& A, const Matrix& C);
 

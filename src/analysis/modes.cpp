@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 
+#include "balance.hpp"
 #include "unseen_part.hpp"
 
 namespace garrison {
@@ -52,12 +53,12 @@ std::string Visibility::text() const {
 Visibility visibility(const MatrixRef& A, const MatrixRef& C, double least) {
   require_pair(A, C);
   if (!(least >= 0.0)) refuse("least", text(least), "a modulus >= 0");
-  const Matrix own = C.rows() > 0 ? Matrix(C) : Matrix(0, A.rows());
-  Visibility v = detail::examine(A, own, least);
+  const auto [own_A, own_C] = detail::in_moderate_units(A, C.rows() > 0 ? Matrix(C) : Matrix(0, A.rows()));
+  Visibility v = detail::examine(own_A, own_C, least);
   if (v.sight != Sight::seen) return v;
   // Entries of the size of rounding must not be what makes a mode visible.
-  Matrix A_without = A;
-  Matrix C_without = own;
+  Matrix A_without = own_A;
+  Matrix C_without = own_C;
   if (!detail::drop_rounding(A_without, C_without)) return v;
   Visibility without = detail::examine(A_without, C_without, least);
   if (without.sight == Sight::seen) return v;

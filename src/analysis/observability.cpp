@@ -141,8 +141,7 @@ bool s_sparse_observable(const MatrixRef& A, const MatrixRef& C, int s) {
   std::vector<Group> groups;
   for (const auto& members : detail::group_rows(C).members)
     groups.push_back({members.front(), static_cast<int>(members.size())});
-  const Matrix own_A = A;
-  const Matrix own_C = C;
+  const auto [own_A, own_C] = detail::in_moderate_units(A, C);
   const double rate = detail::natural_rate(own_A);
   const detail::Pair pair = detail::balanced(own_A, own_C, rate);
   const auto modes = detail::candidate_modes(own_A, pair.A, rate, 0.0);

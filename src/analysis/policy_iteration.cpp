@@ -33,8 +33,9 @@ Matrices unstacked(const Vector& v, std::size_t count, Index n) {
   return D;
 }
 
-/// Solves (I - L) x = b (Saad, Schultz 1986); returns the relative residual reached.
-double gmres(const RiccatiMap& map, const Vector& b, std::size_t count, Index n, Vector& x) {
+/// Solves (I - L) x = b (Saad, Schultz 1986) for b whose squares neither overflow nor vanish; returns the
+/// relative residual reached.
+double gmres_of_size_one(const RiccatiMap& map, const Vector& b, std::size_t count, Index n, Vector& x) {
   constexpr Index kBasis = 80;
   constexpr int kRestarts = 20;
   constexpr double kGoal = 1e-12;
@@ -72,6 +73,14 @@ double gmres(const RiccatiMap& map, const Vector& b, std::size_t count, Index n,
          Eigen::JacobiSVD<Matrix>(small, Eigen::ComputeThinU | Eigen::ComputeThinV).solve(goal);
   }
   return (b - apply(x)).norm() / size;
+}
+
+/// The same for any finite b.
+double gmres(const RiccatiMap& map, const Vector& b, std::size_t count, Index n, Vector& x) {
+  const double size = b.cwiseAbs().maxCoeff();
+  const double left = gmres_of_size_one(map, size > 0.0 ? Vector(b / size) : b, count, n, x);
+  x *= size;
+  return left;
 }
 
 double relative_change(const Matrices& D, const Matrices& P) {

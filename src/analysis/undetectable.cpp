@@ -99,8 +99,7 @@ std::vector<int> undetectable_agents(const Model& model) {
   for (int i = 0; i < model.agents(); ++i)
     if (model.outputs(i) > 0) agents.push_back({i, model.offset(i), model.outputs(i)});
   if (agents.empty()) return {};
-  Matrix A = model.A();
-  Matrix C = model.stacked();
+  auto [A, C] = detail::in_moderate_units(model.A(), model.stacked());
   std::vector<int> found = necessary_agents(A, C, agents);
   if (!detail::drop_rounding(A, C)) return found;
   // Who is necessary when entries of the size of rounding count for nothing is not surely replaced by them.

@@ -37,7 +37,11 @@ Visibility in_good_units(const Matrix& A, const Matrix& C, double least) {
   constexpr double kLoose = 1e-2;
   const Pair loose = balanced(A, C, rate, kLoose);
   const Visibility w = split(rows_scaled(loose.A, loose.C, rate), candidates, least);
-  return w.distance > v.distance ? w : v;
+  const Visibility& best = w.distance > v.distance ? w : v;
+  if (best.sight != Sight::unclear || best.distance > balanced_level(A.rows())) return best;
+  for (const Visibility* other : {&given, &v, &w})
+    if (other->sight == Sight::unseen) return *other;
+  return best;
 }
 
 /// Rows and columns `kept` of A, columns of C.
@@ -78,13 +82,17 @@ bool drop_rounding(Matrix& A, Matrix& C) {
     entry = 0.0;
     dropped = true;
   };
-  const double level = part * natural_rate(A);
+  const double rate = natural_rate(A);
+  const Matrix whole = A;
   for (Index j = 0; j < n; ++j)
     for (Index i = 0; i < n; ++i)
-      if (i != j) drop(A(i, j), level);
+      if (i != j && std::abs(whole(i, j)) * std::abs(whole(j, i)) <= part * rate * rate)
+        drop(A(i, j), part * rate);
   for (Index k = 0; k < C.rows(); ++k) {
-    const double row = part * C.row(k).cwiseAbs().maxCoeff();
-    for (Index j = 0; j < n; ++j) drop(C(k, j), row);
+    Index largest = 0;
+    const double row = C.row(k).cwiseAbs().maxCoeff(&largest);
+    for (Index j = 0; j < n; ++j)
+      if (std::abs(C(k, j)) * std::abs(whole(j, largest)) <= part * row * rate) drop(C(k, j), part * row);
   }
   return dropped;
 }

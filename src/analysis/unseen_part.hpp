@@ -10,19 +10,29 @@
 
 namespace garrison::detail {
 
-/// Relative distance up to which a mode counts as unseen: 16 n^1.5 eps, at most 2000 eps.
+/// Relative distance up to which a mode counts as unseen, what a change of coordinates leaves: 4 n eps, at
+/// most 500 eps.
 inline double unseen_level(Eigen::Index n) {
-  const double factor = std::min(16.0 * std::pow(static_cast<double>(n), 1.5), 2000.0);
-  return factor * std::numeric_limits<double>::epsilon();
+  return std::min(4.0 * static_cast<double>(n), 500.0) * std::numeric_limits<double>::epsilon();
 }
-/// Up to this it is unclear: 1000 times that, at most 1e-10.
-inline double unclear_level(Eigen::Index n) { return std::min(1000.0 * unseen_level(n), 1e-10); }
+/// What the rounding of a change of coordinates becomes in balanced units: 16 n^1.5 eps, at most 2000 eps. Up
+/// to this a mode counts as unseen if it is up to unseen_level in some units.
+inline double balanced_level(Eigen::Index n) {
+  return std::min(16.0 * std::pow(static_cast<double>(n), 1.5), 2000.0) *
+         std::numeric_limits<double>::epsilon();
+}
+/// Up to this it is unclear: 16000 n^1.5 eps, at most 1e-10.
+inline double unclear_level(Eigen::Index n) {
+  return std::min(16e3 * std::pow(static_cast<double>(n), 1.5) * std::numeric_limits<double>::epsilon(),
+                  1e-10);
+}
 
 /// visibility() without the question of entries that are rounding only.
 Visibility examine(const Matrix& A, const Matrix& C, double least);
 
 /// Sets entries to 0 that may be nothing but rounding: off-diagonal ones of A up to 2 eps of its natural
-/// rate, those of C up to 2 eps of the largest of their row. (Not more: units may well differ by 1e12.) False
+/// rate, those of C up to 2 eps of the largest of their row. (Not more: units may well differ by 1e12.) Not
+/// those that are small by their units alone: a_ij a_ji and c_j a_ji / c_i are the same in all units. False
 /// when there are none.
 bool drop_rounding(Matrix& A, Matrix& C);
 

@@ -173,8 +173,8 @@ Attack autoregressive(Schedule schedule, double coefficient, double size) {
 }
 
 Attack false_trajectory(Schedule schedule, Vector offset, Vector push) {
-  if (!offset.allFinite() || !push.allFinite())
-    refuse("false_trajectory", "a number that is not finite", "finite ones");
+  if (!offset.allFinite()) refuse("false_trajectory.offset", "a number that is not finite", "finite numbers");
+  if (!push.allFinite()) refuse("false_trajectory.push", "a number that is not finite", "finite numbers");
   return std::make_shared<Plan<Story, FalseTrajectory, false>>(std::move(schedule),
                                                                Story{std::move(offset), std::move(push)});
 }

@@ -9,6 +9,8 @@ namespace {
 
 /// Parameters that are whole numbers are kept as int.
 constexpr double kMostWhole = 2147483647.0;
+/// Letters of a name from which on a longer one that holds it is meant.
+constexpr std::size_t kTelling = 4;
 
 std::string join(std::span<const std::string> names) {
   std::string all;
@@ -66,6 +68,11 @@ std::string nearest_name(const std::string& unknown, std::span<const std::string
       least = distance;
       best = name;
     }
+  if (!best.empty() || unknown.size() < kTelling) return best;
+  // kalman: the only known name with it
+  const auto holds = [&](const std::string& name) { return name.find(unknown) != std::string::npos; };
+  if (std::count_if(known.begin(), known.end(), holds) == 1)
+    best = *std::find_if(known.begin(), known.end(), holds);
   return best;
 }
 
@@ -79,8 +86,11 @@ void check_param(const std::string& owner, const ParamInfo& info, const ParamVal
   const std::string which = owner + "." + info.name;
   if (const auto* words = std::get_if<std::string>(&value)) {
     if (!info.choices.empty() &&
-        std::find(info.choices.begin(), info.choices.end(), *words) == info.choices.end())
-      refuse(which, shown(value), "one of: " + join(info.choices), info.doc);
+        std::find(info.choices.begin(), info.choices.end(), *words) == info.choices.end()) {
+      const std::string near = nearest_name(*words, info.choices);
+      refuse(which, shown(value), "one of: " + join(info.choices),
+             near.empty() ? info.doc : "did you mean \"" + near + "\"?");
+    }
     return;
   }
   if (std::holds_alternative<bool>(value)) return;

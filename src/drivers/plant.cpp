@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/solvers.hpp"
+#include "garrison/core/params.hpp"
 #include "garrison/core/response.hpp"
 
 namespace garrison::detail {
@@ -150,7 +151,7 @@ NoiseLaw::NoiseLaw(const std::string& law, const Model& model, const Series* ser
              "give process and measurement covariance");
     process_ = measurement_ = Kind::normal;
   } else if (law != "none") {
-    refuse("noise", "\"" + law + "\"", "one of: auto, uniform, extreme, normal, none");
+    refuse_unknown("noise", law, std::vector<std::string>{"auto", "uniform", "extreme", "normal", "none"});
   }
   if (process_ == Kind::normal && changes)
     for (const Matrix& covariance : series->process_covariance) process_roots_.push_back(root(covariance));

@@ -41,7 +41,7 @@ def test_arrays_are_lists_and_numbers_alone_are_none(parts: tuple[gr.Model, gr.N
         assert gr.compare(*parts[:2], which, steps=4, start=2, trials=1, filters={}, baselines=False).attacked == [0, 1]
     titles = [run.plot(agents=agents).get_suptitle() for agents in (np.array([0, 2]), [0, 2], (0, np.int8(2)))]
     assert "agents 0, 2" in titles[0] and titles.count(titles[0]) == 3
-    lone = np.array(1.0)  # iterable by its class, but not in fact
+    lone = np.array(1.5)  # iterable by its class, but not in fact
     calls: dict[str, Callable[[], object]] = {
         r"attacked\[0\]: got": lambda: gr.compare(*parts[:2], lone),
         "link.cuts: got": lambda: gr.simulate(*parts, steps=3, link={"cuts": lone}),

@@ -7,6 +7,7 @@ import garrison as gr
 import numpy as np
 import pytest
 from conftest import ROOT
+from garrison import calibration
 from garrison.cli import main
 from garrison.scenario import read_scenario
 from garrison.tables import read_records
@@ -44,9 +45,53 @@ def test_the_rate_asked_for_is_got_on_held_out_wind(years, window: int, asked: f
     assert asked / 2 <= rate(found, network, calibrated.filter, later) <= 2 * asked
     assert rate(found, network, filter, later) > 1.5 * asked  # why it is needed
     assert calibrated.got <= asked < calibrated.before
+    # 12 sensors on 2192 days: 26 alarms are expected of 1e-4 at most, and those of windows come together
+    assert calibrated.judged == (asked == 1e-2 and window == 1)
     value, lower, upper = calibrated.thresholds.T
     known = np.isfinite(lower) & np.isfinite(upper)
     assert (lower[known] <= value[known]).all() and (value[known] <= upper[known]).all()
+
+
+def test_alarms_that_come_together_count_as_one() -> None:
+    rng = np.random.default_rng(3)
+    single = np.where(rng.uniform(size=(4000, 5)) < 0.01, 2.0, 0.5)
+    alarms = (single > 1.0).sum()
+    assert 0.4 * alarms < calibration._independent(single) <= alarms
+    storm = np.full((4000, 5), 0.5)
+    storm[1000:1040] = 2.0
+    assert calibration._independent(storm) < 2.0
+    storm[:, 1:] = np.nan
+    assert calibration._independent(storm) < 2.0
+    assert calibration._independent(np.full((4000, 5), 0.5)) == 0.0
+
+
+def test_the_command_says_what_it_cannot_judge(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rng = np.random.default_rng(4)
+    x = np.zeros(600)
+    for t in range(1, 600):
+        x[t] = 0.9 * x[t - 1] + rng.normal()
+    y = x[:, None] + rng.normal(size=(600, 4))
+    (tmp_path / "log.csv").write_text("\n".join(",".join(f"{v:.6f}" for v in row) for row in y))
+    scenario = """
+[model]
+A = [[0.9]]
+C = [[1], [1], [1], [1]]
+process_covariance = 1.0
+measurement_covariance = 1.0
+[network]
+kind = "complete"
+[data]
+file = "log.csv"
+[filter]
+name = "structural"
+false_alarm = RATE
+"""
+    for rate, judged in (("0.05", True), ("0.001", False)):
+        (tmp_path / "s.toml").write_text(scenario.replace("RATE", rate))
+        assert main(["calibrate", str(tmp_path / "s.toml")]) == 0
+        said = " ".join(capsys.readouterr().out.split())
+        assert ("not judged" in said) != judged
+        assert ("too rare, or comes too much in clusters" in said) != judged
 
 
 def test_bounds_and_levels_hold_on_the_records(years) -> None:

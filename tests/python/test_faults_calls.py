@@ -85,6 +85,130 @@ def test_misspelt_names_get_the_nearest(module: Any, name: str, meant: str) -> N
         getattr(module, name)
 
 
+OBJECTS: list[tuple[Any, str, str]] = [
+    (MODEL, "procss_covariance", "process_covariance"),
+    (NET, "edgs", "edges"),
+    (FILTER, "parms", "params"),
+    (RUN, "estimates", "estimate"),
+    (PREPARED, "simulat", "simulate"),
+    (gr.check(*PARTS), "hold", "holds"),
+    (gr.Verdict.CLEARED, "wrd", "word"),
+    (gr.BoundKind.TABLE, "wy", "why"),
+    (gr.attacks.Bias([0], value=1.0), "agnts", "agents"),
+    (gr.Agent(MODEL, NET, FILTER, 0), "estimte", "estimate"),
+    (gr.Model, "stats", "states"),
+    (gr.Network, "cmplete", "complete"),
+    (gr.filters.Saturation, "nme", "name"),
+    (gr.Run, "laod", "load"),
+    (gr.Prepared, "lod", "load"),
+    (gr.Verdict, "CLEARD", "CLEARED"),
+    (gr.Comparison, "plt", "plot"),
+]
+
+
+@pytest.mark.parametrize(("thing", "name", "meant"), OBJECTS)
+def test_misspelt_attributes_get_the_nearest(thing: Any, name: str, meant: str) -> None:
+    assert hasattr(thing, meant), meant
+    with pytest.raises(AttributeError, match=f"'{name}'; did you mean \"{meant}\""):
+        getattr(thing, name)
+    assert not hasattr(thing, name)
+    assert getattr(thing, name, 5) == 5
+
+
+def test_every_public_class_and_its_objects_name_the_nearest() -> None:
+    classes = [c for m in (gr, gr.filters, gr.attacks) for c in vars(m).values() if isinstance(c, type)]
+    ours = [c for c in classes if c.__module__.startswith("garrison") and not issubclass(c, Exception)]
+    assert len(ours) > 25
+    for cls in ours:
+        member = next(name for name in dir(cls) if not name.startswith("_"))
+        with pytest.raises(AttributeError, match=f'did you mean "{member}"'):
+            getattr(cls, f"{member}q")
+        assert not hasattr(cls, "__of_a_library__")
+        if "__getattr__" in vars(cls):  # of Python: an empty object will do
+            with pytest.raises(AttributeError, match="did you mean"):
+                getattr(cls.__new__(cls, *([0] if issubclass(cls, int) else [])), f"{member}q")
+
+
+def test_a_subclass_that_forgets_its_base_is_refused_in_our_words() -> None:
+    class Mine(gr.Filter):
+        def __init__(self) -> None:
+            self.gain = 0.5
+
+    with pytest.raises(gr.InvalidInput, match=r"Mine.__init__: got no call .* write super\(\).__init__\(\)"):
+        Mine()
+
+    class Broken(gr.Filter):
+        def __init__(self) -> None:
+            super().__init__()
+            raise TypeError("of the user")
+
+    with pytest.raises(TypeError, match="of the user"):
+        Broken()
+
+
+@pytest.mark.parametrize("three", [3, 3.0, np.int8(3), np.float64(3.0), np.array(3), np.array(3.0)])
+def test_a_whole_number_may_be_kept_as_a_float_everywhere(three: Any) -> None:
+    assert gr.simulate(*PARTS, steps=three, trials=three, seed=three).estimate is not None
+    assert gr.filters.Saturation(threshold=1.0, rounds=three).params["rounds"] == 3
+    assert gr.Network.complete(three).agents == 3
+    assert gr.filters.make_filter("saturation", {"threshold": 1.0, "attacked": three}).params["attacked"] == 3
+    assert gr.attacks.Bias([0], value=1.0, start=three).start == 3
+    assert RUN.shape == gr.simulate(*PARTS, steps=float(three)).shape
+
+
+@pytest.mark.parametrize("wrong", [3.5, np.nan, np.inf, "3", True, [3, 3], np.bool_(True), 1e300])
+def test_what_is_no_whole_number_is_refused_everywhere(wrong: Any) -> None:
+    for which, call in (
+        ("steps", lambda: gr.simulate(*PARTS, steps=wrong)),
+        ("rounds", lambda: gr.filters.Saturation(threshold=1.0, rounds=wrong)),
+        ("complete", lambda: gr.Network.complete(wrong)),
+        ("start", lambda: gr.attacks.Bias([0], value=1.0, start=wrong)),
+    ):
+        with pytest.raises(gr.InvalidInput, match=which):
+            call()
+
+
+def test_flags_and_words_of_numpy() -> None:
+    assert gr.simulate(*PARTS, steps=2, conditions=np.bool_(False)).shape == (1, 3, 3)
+    with pytest.raises(gr.InvalidInput, match="conditions: got 1, expected True or False"):
+        gr.simulate(*PARTS, steps=2, conditions=1)  # type: ignore[arg-type]
+    with pytest.raises(gr.InvalidInput, match="keep: got 'estimat', expected"):
+        gr.simulate(*PARTS, steps=2, keep=[np.str_("estimat")])
+
+
+def test_tables_of_pandas_are_matrices() -> None:
+    model = gr.Model(pd.DataFrame([[0.9, 0.1], [0.0, 0.8]]), pd.DataFrame([[1, 0], [0, 1]]))
+    assert [c.tolist() for c in model.C] == [[[1.0, 0.0]], [[0.0, 1.0]]]
+
+
+def test_choices_get_the_nearest() -> None:
+    with pytest.raises(gr.InvalidInput, match=r'structural.test: got "inovation".*did you mean "innovation"'):
+        gr.filters.Structural(test="inovation")
+    with pytest.raises(gr.InvalidInput, match=r'noise: got .*"normale".*did you mean "normal"'):
+        gr.simulate(*PARTS, steps=2, noise="normale")
+
+
+def test_numbers_of_numpy_are_shown_as_numbers() -> None:
+    with pytest.raises(gr.InvalidInput) as refused:
+        gr.Network(np.array([[0, np.nan, 1], [np.nan, 0, 1], [1, 1, 0]]))
+    assert "nan" in str(refused.value) and "np.float64" not in str(refused.value)
+    with pytest.raises(gr.InvalidInput, match=r"got 0\.5, expected"):
+        gr.Network.complete(np.float64(0.5))
+
+
+@pytest.mark.parametrize(("name", "value", "absent"), [
+    ("window", 50, "nothing can be tested"),
+    ("settle", 20, "nothing can be tested"),
+    ("window", 15, "the first 14 of 20 samples were not tested"),
+    ("settle", 15, "the first 15 of 20 samples were not tested"),
+])  # fmt: skip
+def test_tests_that_a_run_is_too_short_for_are_said_aloud(name: str, value: int, absent: str) -> None:
+    run = gr.simulate(MODEL, NET, gr.filters.Structural(**{name: value}), steps=20)
+    assert any(f"{name} = {value}" in w and absent in w for w in run.warnings), run.warnings
+    quiet = gr.simulate(MODEL, NET, gr.filters.Structural(**{name: 4}), steps=20).warnings
+    assert not any(name in w for w in quiet)
+
+
 def test_central_kalman_matches_columns_by_name() -> None:
     model = gr.Model(
         [[0.8]], [[1.0]] * 3, process_covariance=0.2, measurement_covariance=[0.1, 0.5, 2.0], outputs=["a", "b", "c"]

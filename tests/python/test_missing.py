@@ -2,6 +2,7 @@
 
 import garrison as gr
 import numpy as np
+import pytest
 
 
 def unit(row: np.ndarray) -> np.ndarray:
@@ -70,3 +71,35 @@ def test_all_that_is_left_out_is_let_in_again_within_sixty_samples() -> None:
             assert jump < 1000 or accused[340], (agents, jump, seed)
             assert accused[500:].any()
             assert not accused[560:600].any(), (agents, jump, seed)
+
+
+@pytest.mark.parametrize("jump", [300.0, 3e3, 3e4])
+@pytest.mark.parametrize(("positions", "speeds"), [(1, 1), (1, 3), (3, 1)])
+def test_a_necessary_sensor_is_back_within_sixty_samples_of_a_jump(positions: int, speeds: int, jump: float) -> None:
+    """Nobody else sees where it is: a lie that lasts is followed after a while, but the way back is short."""
+    A = np.array([[1.0, 1.0], [0.0, 1.0]])
+    C = np.array([[1.0, 0.0]] * positions + [[0.0, 1.0]] * speeds)
+    deviations = np.array([1.0] * positions + [0.5] * speeds)
+    model = gr.Model(
+        A, C, process_covariance=[[1e-4, 0.0], [0.0, 1e-2]], measurement_covariance=(deviations**2).tolist()
+    )
+    filt = gr.filters.Structural(false_alarm=1e-4, isolate=True)
+    rng = np.random.default_rng(1)
+    x, states, y = np.zeros(2), [], []
+    for t in range(700):
+        x = A @ x + rng.normal(size=2) * [1e-2, 1e-1]
+        states.append(x)
+        y.append(C @ x + rng.normal(size=len(C)) * deviations)
+        if 200 <= t < 500:
+            y[-1][:positions] += jump
+    run = gr.replay(model, gr.Network.complete(len(C)), filt, measurements=np.array(y))
+    accused = (run.verdict[0, 1:, :positions] == gr.Verdict.ATTACKED).any(axis=1)
+    error = np.abs(run.estimate[0, 1:, :, 0] - np.array(states)[:, None, 0]).max(axis=1)
+    assert not accused[50:200].any()
+    assert accused[200]
+    assert error[200:230].max() < 10.0  # not followed at once
+    assert error[499] > jump / 2.0  # but in the end
+    assert accused[500]
+    assert not accused[530:].any()
+    assert error[560:].max() < 10.0
+    assert any("alone sees a mode" in w for w in run.warnings) == (positions == 1)

@@ -152,7 +152,7 @@ def test_a_log_with_header_times_and_names_in_another_order(tmp_path: Path) -> N
     assert scenario.dates[0] == dt.datetime(2024, 5, 1, 11)
     assert at_time(scenario, 1) == "at 2024-05-01 11:00:00"
     (tmp_path / "x.toml").write_text(LOG.replace('"y.csv"', '"y.csv"\nfrom = 3'))
-    with pytest.raises(gr.InvalidInput, match=r"\[data\] from: got a number of seconds"):
+    with pytest.raises(gr.InvalidInput, match=r"\[data\] from: got the number 3, expected a date"):
         read_scenario(tmp_path / "x.toml")
 
 

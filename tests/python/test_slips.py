@@ -185,6 +185,36 @@ REFUSED = [
     ("plant.toml", "threshold = 2.0", "threshold = true", ["saturation.threshold", "true"]),
     ("plant.toml", "threshold = 2.0", "threshold = 2.0\ndetector = 1", ["saturation.detector", "true or false"]),
     ("plant.toml", "[model]", "title = []\n[model]", ["title"]),
+    ("plant.toml", "[model]", "title = true\n[model]", ["title", "true", "in quotes"]),
+    ("plant.toml", "[model]", "title = 5\n[model]", ["title", "5", "in quotes"]),
+    ("plant.toml", "threshold = 2.0", "threshold = 2.0\nlabel = 0.5", ["[filter].label", "0.5", "in quotes"]),
+    ("plant.toml", "threshold = 2.0", "threshold = 2.0\nlabel = 1961-01-01", ["[filter].label", "in quotes"]),
+    ("plant.toml", "process_bound = 0.02", "process_bound = 0.02\nnames = [1, 2, 3, 4, 5]", ["names", "in quotes"]),
+    ("plant.toml", "threshold = 2.0", "threshold = 2.0\ninitial_error = inf", ["initial_error", "inf"]),
+    (
+        "plant.toml",
+        "process_bound = 0.02",
+        "process_bound = 0.02\nprocess_covariance = [[1]]",
+        ["process_covariance", "1 x 1", "2 x 2"],
+    ),
+    (
+        "plant.toml",
+        "process_bound = 0.02",
+        "process_bound = 0.02\nmeasurement_covariance = [[[1, 0], [0, 1]], 1, 1, 1, 1]",
+        ["measurement_covariance[0]", "(2, 2)"],
+    ),
+    (
+        "plant.toml",
+        'name = "scalar_gain"',
+        'name = "scalar_gain"\n[[compare]]\nname = "structural"\nwindow = 21',
+        ["window", "21", "at most 20", "nothing can be tested"],
+    ),
+    (
+        "plant.toml",
+        'name = "scalar_gain"',
+        'name = "scalar_gain"\n[[compare]]\nname = "structural"\nsettle = 20',
+        ["settle", "20", "at most 19", "nothing can be tested"],
+    ),
     ("plant.toml", "[model]", "model = 3\n[modell]", ["model"]),
     ("wind.toml", "factors = 1", 'factors = "1"', ["factors", "'1'"]),
     ("wind.toml", "factors = 1", "factors = 2147483647", ["factors", "2147483647"]),
@@ -348,6 +378,27 @@ def test_usage_errors_return_2(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert main(["list", "saturatoin"]) == 2
     assert "saturation" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["sweep", "x.toml", "-o", "out", "--trials", "2.5"],
+        ["sweep", "x.toml", "-o", "out", "--trials", "ten"],
+        ["compare", "x.toml", "--trials", "1_0"],
+        ["design", "x.toml", "--most-rounds", "nan"],
+        ["fit", "x.csv", "--attacked", "1.5"],
+    ],
+)
+def test_no_whole_number_on_the_command_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 2
+    assert f"got {words[-1]!r}, expected a whole number" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["fit", "x.csv", "--scale", "1_0.5"], ["analyze", "x.toml", "--seconds", "5 s"]])
+def test_no_number_on_the_command_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 2
+    assert f"got {words[-1]!r}, expected a number" in capsys.readouterr().err
 
 
 def test_list_one(capsys: pytest.CaptureFixture[str]) -> None:

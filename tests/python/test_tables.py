@@ -6,10 +6,13 @@ from pathlib import Path
 import garrison as gr
 import numpy as np
 import pytest
+from garrison.scenario.section import moment
 from garrison.tables import read_matrix, read_records, read_rows
 
 nan = float("nan")
 DAYS = [dt.date(2024, 1, 1), dt.date(2024, 1, 2), dt.date(2024, 1, 3)]
+MONTHS = [dt.date(2024, m, 1) for m in (1, 2, 3)]
+NOON = [dt.datetime(2024, 1, 13, h) for h in (11, 12, 13)]
 HOURS = [dt.datetime(2024, 1, 1, h) for h in (0, 1, 2)]
 
 
@@ -71,6 +74,27 @@ CLOCKS = {
     "milliseconds since 1970": ("1704067200000", "1704070800000", "1704074400000", HOURS, 3600),
     "microseconds since 1970": ("1704067200000000", "1704070800000000", "1704074400000000", HOURS, 3600),
     "nanoseconds since 1970": ("1704067200000000000", "1704070800000000000", "1704074400000000000", HOURS, 3600),
+    "seconds since 1970": ("1704067200", "1704070800", "1704074400", HOURS, 3600),
+    "seconds since 1970, with parts": ("1704067200.0", "1704070800.000", "1.7040744e9", HOURS, 3600),
+    "seconds since 1970, days": ("1704067200", "1704153600", "1704240000", DAYS, 86400),
+    "months as ISO": ("2024-01", "2024-02", "2024-03", MONTHS, 30.4375 * 86400),
+    "months, the year last": ("01/2024", "02/2024", "03/2024", MONTHS, 30.4375 * 86400),
+    "months in words": ("Jan 2024", "February 2024", "Mar 2024", MONTHS, 30.4375 * 86400),
+    "days in words": ("1 Jan 2024", "2 January 2024", "Jan 3 2024", DAYS, 86400),
+    "compact days": ("20240101", "20240102", "20240103", DAYS, 86400),
+    "compact": ("20240101T000000", "20240101T010000", "20240101T020000", HOURS, 3600),
+    "compact, short": ("20240101T00", "20240101T0100", "20240101T02", HOURS, 3600),
+    "compact, UTC": ("20240101T000000Z", "20240101T010000Z", "20240101T030000+0100", HOURS, 3600),
+    "compact, no T": ("20240101000000", "20240101010000", "20240101020000", HOURS, 3600),
+    "compact, minutes": ("202401010000", "202401010100", "202401010200", HOURS, 3600),
+    "compact, hours": ("2024010100", "2024010101", "2024010102", HOURS, 3600),
+    "clock of 12 hours": ("1/13/2024 11:00 AM", "1/13/2024 12:00 PM", "1/13/2024 1:00 PM", NOON, 3600),
+    "clock of 12 hours, ISO": ("2024-01-13 11:00am", "2024-01-13 12:00 p.m.", "2024-01-13 01:00:00 pm", NOON, 3600),
+    "midnight of 12 hours": ("2024-01-01 12:00 AM", "2024-01-01 1:00 AM", "2024-01-01 2:00 AM", HOURS, 3600),
+    "end of the day": ("2023-12-31 24:00", "2024-01-01 01:00", "2024-01-01 02:00", HOURS, 3600),
+    "times of the day": ("12:00:00", "12:00:30", "12:01:00", [43200.0, 43230.0, 43260.0], 30),
+    "elapsed time": ("0:00:00.0", "0:00:00.5", "0:00:01.0", [0.0, 0.5, 1.0], 0.5),
+    "zone by name": ("2024-01-01 00:00 UTC", "2024-01-01 01:00 UTC", "2024-01-01 02:00 UTC", HOURS, 3600),
     "milliseconds since 1970, days": ("1704067200000", "1.704153600e12", "1704240000000", DAYS, 86400),
     "tenths of a second": (
         "2024-01-01 00:00:00.000",
@@ -100,6 +124,49 @@ def test_any_regular_period(tmp_path: Path, kind: str) -> None:
     assert found.dates == dates
     assert found.step == pytest.approx(step, rel=1e-12)
     assert found.values.ravel().tolist() == [0, 1, 2]
+
+
+@pytest.mark.parametrize(("first", "factor"), [("t [min]", 60), ("t [h]", 3600)])
+def test_large_numbers_of_another_unit_are_no_dates(tmp_path: Path, first: str, factor: float) -> None:
+    found = read_records(write(tmp_path, f"{first},A\n1704067200,0\n1704067201,1\n1704067202,2\n"))
+    assert found.step == factor and found.dates[0] == 1704067200 * factor
+
+
+def test_years_and_hours_by_their_name(tmp_path: Path) -> None:
+    years = read_records(write(tmp_path, "year,A\n1990,1\n1991,2\n1993,3\n"))
+    assert years.dates == [dt.date(y, 1, 1) for y in (1990, 1991, 1992, 1993)]
+    assert read_records(write(tmp_path, "hour,A\n0,1\n1,2\n2,3\n")).step == 3600
+
+
+@pytest.mark.parametrize("separator", [",", ";", " "])
+def test_dates_and_times_of_day_in_two_columns(tmp_path: Path, separator: str) -> None:
+    text = "date,time,A\n2024-01-01,00:00,1\n2024-01-01,01:00,2\n2024-01-01,02:00:00,3\n"
+    found = read_records(write(tmp_path, text.replace(",", separator)))
+    assert found.dates == HOURS and found.stations == ["A"]
+
+
+ENDS = [
+    ("1961-03", "1961-04", dt.date(1961, 3, 1), dt.date(1961, 4, 30)),
+    ("1962", "1963", dt.date(1962, 1, 1), dt.date(1963, 12, 31)),
+    ("19620301", "3 Mar 1962", dt.date(1962, 3, 1), dt.date(1962, 3, 3)),
+]
+
+
+@pytest.mark.parametrize(("start", "end", "first", "last"), ENDS)
+def test_ends_of_a_choice_may_be_months_and_years(
+    wind: Path, start: str, end: str, first: dt.date, last: dt.date
+) -> None:
+    found = read_records(wind / "irish_wind.csv").between(moment("--from", start), moment("--to", end, last=True))
+    assert (found.dates[0], found.dates[-1]) == (first, last)
+
+
+def test_a_number_that_is_no_year_is_called_a_number(wind: Path) -> None:
+    records = read_records(wind / "irish_wind.csv")
+    with pytest.raises(gr.InvalidInput, match=r"^to: got the number 12, expected a date YYYY-MM-DD, a month or a year"):
+        records.between(None, 12.0)
+    for wrong in ("1962-13", "soon", "1/2/1962", ""):
+        with pytest.raises(gr.InvalidInput, match="expected a date YYYY-MM-DD"):
+            moment("--to", wrong)
 
 
 def test_days_are_no_seconds(tmp_path: Path) -> None:
@@ -142,6 +209,31 @@ def test_quoted_decimal_commas(tmp_path: Path, kind: str) -> None:
     np.testing.assert_array_equal(found.values, [[1.5, 2], [2.5, 3], [nan, 4]])
 
 
+DECIDED = {
+    "below one": "date;A;B\n1;1,234;0,500\n2;2,345;3,000\n",
+    "other places": "date;A;B\n1;1,234;2,5\n2;2,345;3,000\n",
+    "no separator beside": "date;A;B\n1;1,234;2,500\n2;2,345;1500\n",
+}
+
+
+@pytest.mark.parametrize("kind", DECIDED)
+def test_the_whole_file_says_what_a_comma_is(tmp_path: Path, kind: str) -> None:
+    found = read_records(write(tmp_path, DECIDED[kind].replace("date", "t")))
+    assert found.values[:, 0].tolist() == [1.234, 2.345] and found.notes == []
+
+
+def test_a_comma_that_nothing_decides_is_said(tmp_path: Path) -> None:
+    found = read_records(write(tmp_path, "t;A\n1;1,234\n2;2,345\n"))
+    assert found.values.ravel().tolist() == [1.234, 2.345]
+    (note,) = found.notes
+    assert note.startswith("x.csv: 1,234 is read as 1.234, with a decimal comma; if it separates thousands")
+    notes: list[str] = []
+    path = write(tmp_path, "1,234;2,345\n1,500;2,000\n")
+    assert read_matrix(path, notes=notes)[0].tolist() == [1.234, 2.345] and len(notes) == 1
+    with pytest.raises(gr.InvalidInput, match="separates thousands"):
+        read_matrix(path)
+
+
 def test_a_matrix_with_quoted_decimal_commas(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read_matrix(write(tmp_path, '"0,9","0,1"\n"0","0,5"\n')), [[0.9, 0.1], [0, 0.5]])
 
@@ -152,11 +244,23 @@ def test_a_square_matrix_has_no_gaps(tmp_path: Path) -> None:
             read_matrix(write(tmp_path, f"1,2\n{cell},4\n"), square=True)
 
 
+HEADLESS = ["the first row", "which looks like data", "a header", "put one above"]
 REFUSED = {
     "years of two digits": ("date,A\n13/01/24,1\n14/01/24,2\n", ["line 2", "'13/01/24'", "YYYY-MM-DD"]),
     "days of a spreadsheet": ("date,A\n45292,1\n45293,2\n", ["line 2", "the date '45292'", "YYYY-MM-DD"]),
     "beyond all doubles": ("date,A\n2024-01-01,1e400\n2024-01-02,2\n", ["line 2, column A", "'1e400'"]),
     "thousands in quotes": ('date,A\n2024-01-01,"1,234"\n2024-01-02,"2,345"\n', ["'1,234'", "thousands"]),
+    "thousands, some without": ("date;A\n2024-01-01;1,234\n2024-01-02;987\n", ["'1,234'", "thousands"]),
+    "minutes or hours": ("t,A\n12:00,1\n12:05,2\n", ["line 2", "'12:00'", "YYYY-MM-DD"]),
+    "past midnight": ("t,A\n23:59:59,1\n00:00:00,2\n", ["line 3", "a time before"]),
+    "times elsewhere": ("t,A\n0,2020-01-01\n1,2020-01-02\n", ["column A", "the column of times comes first"]),
+    "blanks between thousands": ("t,A\n0,1 234\n1,2\n", ["column A", "nothing between thousands"]),
+    "commas between thousands": ("t;A\n0;1,234,567\n1;2\n", ["column A", "nothing between thousands"]),
+    "per cent": ("t,A\n0,5%\n1,2\n", ["column A", "'5%'", "units in the header"]),
+    "units": ("t,A\n0,5.1 m/s\n1,2\n", ["column A", "'5.1 m/s'", "units in the header"]),
+    "words": ("t,A\n0,broken\n1,2\n", ["column A", "'broken', expected a number or an empty cell"]),
+    "13 pm": ("t,A\n2024-01-01 13:00 pm,1\n2024-01-01 2:00 pm,2\n", ["line 2", "13:00 pm"]),
+    "no month": ("t,A\n2024-13,1\n2024-02,2\n", ["line 2", "2024-13"]),
     "twice": ("date,A,A\n2024-01-01,1,2\n2024-01-02,1,2\n", ["line 1", "'A' twice (columns 1 and 2)"]),
     "empty name": ("date,A,\n2024-01-01,1,2\n2024-01-02,1,2\n", ["line 1", "no name for column 2"]),
     "duplicate": ("date,A\n2024-01-01,1\n2024-01-01,2\n", ["line 3", "the same time", "remove the duplicate"]),
@@ -173,8 +277,15 @@ REFUSED = {
     "empty time": ("date,A\n2024-01-01,1\n,2\n", ["line 3", "no time"]),
     "not a date": ("date,A\n2024-01-01,1\nsoon,2\n", ["line 3", "'soon'"]),
     "not a day": ("date,A\n2024-02-30,1\n2024-03-01,2\n", ["line 2", "2024-02-30"]),
-    "no header, but dates": ("2024-01-01,1\n2024-01-02,1\n2024-01-03,2\n", ["header"]),
-    "no header": ("1,2\n3,4\n5,6\n", ["header"]),
+    "no header, but dates": ("2024-01-01,1\n2024-01-02,1\n2024-01-03,2\n", HEADLESS),
+    "no header": ("1,2\n3,4\n5,6\n", HEADLESS),
+    "no header, months": ("2024-01,1\n2024-02,1\n2024-03,2\n", HEADLESS),
+    "no header, compact": ("20240101T000000,1\n20240101T010000,1\n", HEADLESS),
+    "no header, 12 hours": ("1/13/2024 1:00 PM,1\n1/13/2024 2:00 PM,1\n", HEADLESS),
+    "no header, since 1970": ("1704067200,1\n1704070800,1\n", HEADLESS),
+    "no header, decimal commas": ("0,5;1,5\n1,5;2,5\n2,5;2,5\n", HEADLESS),
+    "no header, gaps": ("0,NA,1\n1,2,2\n2,3,3\n", HEADLESS),
+    "no header, words first": ("DUB,1.5,2\nCLA,2,3\nRPT,2,3\n", HEADLESS),
     "one row": ("date,A\n2024-01-01,1\n", ["1 row", "at least two"]),
     "nothing": ("", ["an empty file"]),
     "only the time": ("date\n2024-01-01\n2024-01-02\n", ["no column besides the time"]),
@@ -272,7 +383,7 @@ def test_hourly_records_have_a_year_of_hours(tmp_path: Path) -> None:
     assert gr.fit(records, factors=1, harmonics=1).model.states == 1
     cut = records.between(dt.date(2024, 1, 2), dt.date(2024, 1, 3))
     assert (cut.dates[0], cut.dates[-1]) == (dt.datetime(2024, 1, 2), dt.datetime(2024, 1, 3, 23))
-    with pytest.raises(gr.InvalidInput, match="a date, as the records have"):
+    with pytest.raises(gr.InvalidInput, match="a date YYYY-MM-DD"):
         records.between(5.0, None)
 
 

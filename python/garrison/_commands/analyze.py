@@ -4,7 +4,7 @@ import argparse
 import sys
 
 from garrison._commands.output import new_file, write_picture
-from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, tell_work
+from garrison._commands.terminal import NO, OK, Commands, console_for, number, print_json, print_table, tell_work
 from garrison.answers import Analysis, analyze
 from garrison.answers.text import limit_rows, sensor_rows, sentences
 from garrison.scenario import read_scenario
@@ -21,7 +21,7 @@ def add(commands: Commands) -> None:
         allow_abbrev=False,
     )
     command.add_argument("scenario", help="scenario file (TOML)")
-    command.add_argument("--seconds", type=float, default=30.0, help="time for all searches together (default 30)")
+    command.add_argument("--seconds", type=number, default=30.0, help="time for all searches together (default 30)")
     command.add_argument("-o", "--output", help="picture to write (.png, .svg, .pdf)")
     command.add_argument("--force", action="store_true", help="replace an existing picture")
     command.add_argument("--json", action="store_true", help="print JSON")

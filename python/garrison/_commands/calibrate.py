@@ -45,13 +45,15 @@ def do(args: argparse.Namespace) -> int:
 
 def _now(c: Calibration) -> str:
     parts = [v for v in c.by_part if v == v]  # nan: nothing was tested there
-    return f"{c.got:.3g} ({min(parts):.2g} to {max(parts):.2g})" if parts else f"{c.got:.3g}"
+    about = f"{c.got:.3g} ({min(parts):.2g} to {max(parts):.2g})" if parts else f"{c.got:.3g}"
+    return about if c.judged else f"{about}, not judged"
 
 
 def _unjudged(label: str, c: Calibration) -> str:
     return (
-        f"{label}: an alarm in {1.0 / c.asked:.0f} tests is too rare to be judged on these records; on others the rate "
-        "may be another one: calibrate on longer ones, or ask for more frequent alarms"
+        f"{label}: an alarm in {1.0 / c.asked:.0f} tests is too rare, or comes too much in clusters, to be judged on "
+        "these records; on others the rate may be another one, by a factor of 10 and more: calibrate on longer "
+        "records, or ask for more frequent alarms or a shorter window"
     )
 
 

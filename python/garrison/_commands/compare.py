@@ -5,7 +5,16 @@ import sys
 from typing import Any
 
 from garrison._commands.output import new_file, write_picture
-from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table, tell_work
+from garrison._commands.terminal import (
+    OK,
+    Commands,
+    console_for,
+    number,
+    print_json,
+    print_table,
+    tell_work,
+    whole_number,
+)
 from garrison.comparison import Comparison, compare
 from garrison.comparison.run import COLUMNS
 from garrison.scenario import read_scenario
@@ -21,11 +30,11 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("scenario", help="scenario file (TOML); the agents of its attacks lie")
     command.add_argument("--agents", help="agents that lie, by number or name, e.g. 2,5 (default: the scenario's)")
-    command.add_argument("--steps", type=int, default=100, help="samples of a trial (default 100)")
-    command.add_argument("--start", type=int, default=20, help="first sample under attack (default 20)")
-    command.add_argument("--trials", type=int, default=20, help="trials (default 20)")
+    command.add_argument("--steps", type=whole_number, default=100, help="samples of a trial (default 100)")
+    command.add_argument("--start", type=whole_number, default=20, help="first sample under attack (default 20)")
+    command.add_argument("--trials", type=whole_number, default=20, help="trials (default 20)")
     command.add_argument(
-        "--size", type=float, help="of the lies, unit of the measurement (default ten times the noise)"
+        "--size", type=number, help="of the lies, unit of the measurement (default ten times the noise)"
     )
     command.add_argument("-o", "--output", help="picture to write (.png, .svg, .pdf)")
     command.add_argument("--full", action="store_true", help="print a row per filter and attack, not one per filter")

@@ -4,7 +4,7 @@ import argparse
 import math
 
 from garrison._commands.output import new_file, write_picture
-from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table
+from garrison._commands.terminal import OK, Commands, console_for, number, print_json, print_table, whole_number
 from garrison.designing import GOALS, design
 from garrison.scenario import read_scenario
 from garrison.words import refusal
@@ -19,10 +19,12 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("scenario", help="scenario file (TOML)")
     command.add_argument("--goal", choices=GOALS, default="error", help="smallest error, fewest bytes, most liars")
-    command.add_argument("--attacked", type=int, help="liars to stand (default: the scenario's; not with --goal liars)")
-    command.add_argument("--initial-error", type=float, help="bound on the start's error (default: the scenario's)")
-    command.add_argument("--error-at-most", type=float, help="with --goal bytes: the error to certify")
-    command.add_argument("--most-rounds", type=int, default=200, help="per sample (default 200)")
+    command.add_argument(
+        "--attacked", type=whole_number, help="liars to stand (default: the scenario's; not with --goal liars)"
+    )
+    command.add_argument("--initial-error", type=number, help="bound on the start's error (default: the scenario's)")
+    command.add_argument("--error-at-most", type=number, help="with --goal bytes: the error to certify")
+    command.add_argument("--most-rounds", type=whole_number, default=200, help="per sample (default 200)")
     command.add_argument("--plain", action="store_true", help="plain rounds, not Chebyshev-filtered ones")
     command.add_argument("-o", "--output", help="picture of the trade-off to write (.png, .svg, .pdf)")
     command.add_argument("--force", action="store_true", help="replace an existing picture")

@@ -9,7 +9,6 @@ from garrison._commands.terminal import OK, Commands, console_for, number, print
 from garrison.identifying import fit
 from garrison.scenario.section import moment
 from garrison.tables import read_records
-from garrison.tables.clock import Moment
 from garrison.words import count
 
 
@@ -19,7 +18,9 @@ def add(commands: Commands) -> None:
         "fit", help="identify a model from clean regular records (CSV: date,STATION,...)", allow_abbrev=False
     )
     command.add_argument("records", help="CSV file")
-    command.add_argument("--from", dest="start", help="first record: YYYY-MM-DD, with a time, or seconds")
+    command.add_argument(
+        "--from", dest="start", help="first record: YYYY-MM-DD, with a time, a month, a year, or seconds"
+    )
     command.add_argument("--to", dest="end", help="last record, included")
     command.add_argument(
         "--factors", type=whole_number, default=2, help="number of states: common factors of all stations (default 2)"
@@ -34,11 +35,11 @@ def add(commands: Commands) -> None:
     )
     command.add_argument(
         "--attacked",
-        type=int,
+        type=whole_number,
         help="also store levels for certificates with so many stations attacked, and wider bounds",
     )
     command.add_argument(
-        "--failure", type=float, default=1e-3, help="rate at which clean records exceed these levels (default 1e-3)"
+        "--failure", type=number, default=1e-3, help="rate at which clean records exceed these levels (default 1e-3)"
     )
     command.add_argument("-o", "--output", help="model file to write (JSON); default: standard output")
     command.add_argument("--force", action="store_true", help="replace an existing model file")
@@ -48,7 +49,8 @@ def add(commands: Commands) -> None:
 
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
-    start, end = (_moment(name, text) for name, text in (("--from", args.start), ("--to", args.end)))
+    start = moment("--from", args.start) if args.start is not None else None
+    end = moment("--to", args.end, last=True) if args.end is not None else None
     records = read_records(args.records).between(start, end)
     options = {"factors": args.factors, "harmonics": args.harmonics, "root": args.root, "factor": args.scale}
     found = fit(records, **options, **({"period": args.period} if args.period is not None else {}))
@@ -78,12 +80,3 @@ def do(args: argparse.Namespace) -> int:
     console.print(str(found.whiteness()))
     console.print(f"written to {args.output}")
     return OK
-
-
-def _moment(name: str, text: str | None) -> Moment | None:
-    if text is None:
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        return moment(name, text)

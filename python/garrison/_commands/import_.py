@@ -1,7 +1,6 @@
 """`garrison import`: recordings and cases of others as a scenario."""
 
 import argparse
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,7 +8,6 @@ from typing import TYPE_CHECKING
 from garrison._commands.output import output_folder
 from garrison._commands.terminal import OK, Commands, console_for, number, print_json, print_table, whole_number
 from garrison.importers.bundle import Bundle
-from garrison.tables.clock import Moment
 
 if TYPE_CHECKING:
     from garrison.importers.robots import Assumptions
@@ -191,8 +189,6 @@ def _make_csv(args: argparse.Namespace) -> Bundle:
     from garrison.importers.records import Choice, import_csv
     from garrison.scenario.section import moment
 
-    end: Moment | None = None
-    if args.to is not None:
-        end = float(args.to) if re.fullmatch(r"[\d.]+", args.to) else moment("--to", args.to)
+    end = moment("--to", args.to, last=True) if args.to is not None else None
     rest = args.factors, args.harmonics, args.stations, args.radius, args.false_alarm
     return import_csv(args.file, Choice(end, *rest))

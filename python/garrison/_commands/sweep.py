@@ -7,7 +7,16 @@ from pathlib import Path
 from typing import Any
 
 from garrison._commands.output import write_whole
-from garrison._commands.terminal import INTERRUPTED, NO, OK, Commands, console_for, print_json, print_table
+from garrison._commands.terminal import (
+    INTERRUPTED,
+    NO,
+    OK,
+    Commands,
+    console_for,
+    print_json,
+    print_table,
+    whole_number,
+)
 from garrison.scenario import read_document
 from garrison.sweeps import Sweep, parsed, points_of, sweep
 from garrison.sweeps.grid import read_points
@@ -33,12 +42,14 @@ def add(commands: Commands) -> None:
         "--set", action="append", default=[], metavar="KEY=VALUES", help="key=a:b:n, key=log:a:b:n or key=1,5,25"
     )
     command.add_argument("--points", metavar="FILE", help="CSV file with a row per point, in place of --set")
-    command.add_argument("--trials", type=int, default=1, help="trials of every point (default 1)")
+    command.add_argument("--trials", type=whole_number, default=1, help="trials of every point (default 1)")
     command.add_argument("-o", "--output", required=True, help="folder to write to; a part of the same sweep is kept")
-    command.add_argument("--workers", type=int, default=1, help="processes on this machine (default 1)")
+    command.add_argument("--workers", type=whole_number, default=1, help="processes on this machine (default 1)")
     command.add_argument("--scheduler", metavar="ADDRESS", help="of a running Dask scheduler, e.g. tcp://host:8786")
     command.add_argument("--scheduler-file", metavar="FILE", help="file that a running Dask scheduler wrote")
-    command.add_argument("--block", type=int, help="trials of a task (default: so many that one lasts some seconds)")
+    command.add_argument(
+        "--block", type=whole_number, help="trials of a task (default: so many that one lasts some seconds)"
+    )
     command.add_argument("--independent", action="store_true", help="other noise at every point; default: the same")
     command.add_argument("--dry-run", action="store_true", help="print points, trials, seconds and bytes; run nothing")
     command.add_argument("--json", action="store_true", help="print the table of points as JSON")

@@ -30,10 +30,10 @@ def console_for(stderr: bool = False) -> Console:
 def whole_number(text: str) -> int:
     """A whole number on the command line; 3.0 is one."""
     try:
-        value = float(text)
+        value = number(text)
         if value == int(value):
             return int(value)
-    except (ValueError, OverflowError):
+    except (ValueError, OverflowError, argparse.ArgumentTypeError):
         pass
     raise argparse.ArgumentTypeError(f"got {text!r}, expected a whole number")
 
@@ -41,6 +41,8 @@ def whole_number(text: str) -> int:
 def number(text: str) -> float:
     """A number on the command line."""
     try:
+        if "_" in text:  # Python takes 1_0.5 for 10.5
+            raise ValueError
         return float(text)
     except ValueError:
         raise argparse.ArgumentTypeError(f"got {text!r}, expected a number, without its unit") from None

@@ -93,6 +93,8 @@ def import_csv(path: Path, choice: Choice | None = None) -> Bundle:
 
 def _split(records: Records, clean: Moment | None) -> tuple[Moment, Moment]:
     """Last record of the fit, first record after it."""
+    if clean is not None:
+        clean = records.of_same_kind("--to", clean, last=True)
     k = len(records.dates) // 2 if clean is None else records.index("--to", clean) + 1
     if not _FEWEST <= k <= len(records.dates) - 2:
         span = f"{records.dates[_FEWEST - 1]} to {records.dates[-3]}"

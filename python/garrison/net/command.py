@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 from garrison import _core
-from garrison._commands.terminal import NO, OK, REFUSED
+from garrison._commands.terminal import NO, OK, REFUSED, number, whole_number
 from garrison.net.accept import ROWS
 from garrison.net.accept.daemons import ATTACK
 from garrison.net.accept.load import Load
@@ -35,14 +35,16 @@ def _parser() -> argparse.ArgumentParser:
     up = commands.add_parser("up", help="run a scenario as a network of daemons, and check it", allow_abbrev=False)
     up.add_argument("file", help="network.toml: a scenario, periods, what the network loses")
     up.add_argument("-o", "--out", help="folder for keys, logs and summary.json; default: a temporary one, removed")
-    up.add_argument("--page", type=int, metavar="PORT", help="serve a live page on this port of 127.0.0.1; 0 = any")
+    up.add_argument(
+        "--page", type=whole_number, metavar="PORT", help="serve a live page on this port of 127.0.0.1; 0 = any"
+    )
     up.add_argument(
         "--attack",
         action="store_true",
         help="with somebody in between who has no key: replays, mutants and forgeries, each for a fifth of the "
         "datagrams, and a flood of 5000 a second",
     )
-    up.add_argument("--kills", type=int, default=0, help="kill a daemon, and start it again, so many times")
+    up.add_argument("--kills", type=whole_number, default=0, help="kill a daemon, and start it again, so many times")
     up.add_argument(
         "--liar", metavar="NAME", help="this agent's daemon lies to some neighbours, with its keys; see docs"
     )
@@ -50,7 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     soak = commands.add_parser(
         "soak", help="ten daemons for hours, with loss and power cuts: nothing grows", allow_abbrev=False
     )
-    soak.add_argument("--seconds", type=float, default=600.0, help="how long, 30..86400 (default 600)")
+    soak.add_argument("--seconds", type=number, default=600.0, help="how long, 30..86400 (default 600)")
     soak.add_argument("--programs", help="folder of the node's programs")
     accept = commands.add_parser(
         "accept", help="measure what a network of daemons has to meet, row by row", allow_abbrev=False
@@ -58,7 +60,7 @@ def _parser() -> argparse.ArgumentParser:
     names = ", ".join(row.name for row in ROWS)
     accept.add_argument("row", nargs="*", help=f"some of {names}, in full length; default: all, 30 s each at most")
     accept.add_argument("--list", action="store_true", help="print the rows with their bars and full lengths, and end")
-    accept.add_argument("--seconds", type=float, help="another length, for rows that have one")
+    accept.add_argument("--seconds", type=number, help="another length, for rows that have one")
     accept.add_argument("--programs", help="folder of the node's programs")
     return parser
 

@@ -45,12 +45,14 @@ def read_data(section: Section, model: _core.Model, fitted: Fit | None, names: l
         return _of_fit(section, fitted)
     path = section.file("file")
     head = read_rows(path).cells[0]
-    if all(number(cell) is not None for cell in head):
+    if all(number(cell, True) is not None for cell in head):
         if wanted:
             raise refusal(section.place("inputs"), "names", "none, because the file has no header")
         if "from" in section or "to" in section:
             raise refusal(section.where, "from or to", "none, because the file has no header and no times")
-        return _require_width(Recording(read_matrix(path)), path.name, model)
+        doubts: list[str] = []
+        values = read_matrix(path, notes=doubts)
+        return _require_width(Recording(values, notes=[f"{path.name}: {d}" for d in doubts]), path.name, model)
     table = read_table(path)
     names_of, values, known = list(table.names), table.values, None
     if wanted:

@@ -54,15 +54,15 @@ def _filter(section: Section, known: list[str]) -> tuple[str, _core.Filter | Non
     if name not in known:
         advice = near(name, known) if isinstance(name, str) else ""
         raise refusal(section.place("name"), shown(name), f"one of {', '.join(known)}", advice)
-    label = section.table.get("label", name)
-    if isinstance(label, (list, dict, bool)) or not str(label).strip():
-        raise refusal(section.place("label"), shown(label), "a string")
+    label = section.text("label", name)
+    if not label.strip():
+        raise refusal(section.place("label"), shown(label), "a string with a word in it")
     params = {k: v for k, v in section.table.items() if k not in ("name", "label")}
     if name in BASELINES:
         section.only(["name", "label", *SCREENS])
-        return str(label), None
+        return label, None
     info = next(i for i in _core.filter_infos() if i["name"] == name)
-    return str(label), filters.make_filter(name, cleaned(name, info["params"], params))
+    return label, filters.make_filter(name, cleaned(name, info["params"], params))
 
 
 def _unused(label: str, taken: list[str]) -> str:

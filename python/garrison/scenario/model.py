@@ -76,7 +76,9 @@ def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | N
 
 def between(section: Section, records: Records) -> Records:
     """The records between the section's `from` and `to`."""
-    ends = [moment(section.place(k), section.table[k]) if k in section else None for k in ("from", "to")]
+    ends = [
+        moment(section.place(k), section.table[k], last=k == "to") if k in section else None for k in ("from", "to")
+    ]
     try:
         return records.between(*ends)
     except _core.Error as error:
@@ -112,9 +114,10 @@ def _agent_names(section: Section, agents: int, noun: str) -> list[str] | None:
     if "names" not in section:
         return None
     given = section.table["names"]
-    if not isinstance(given, list) or len(given) != agents or len({str(n) for n in given}) != agents:
-        raise refusal(section.place("names"), shown(given), f"{agents} different names, one per {noun}")
-    return [str(n) for n in given]
+    texts = isinstance(given, list) and all(isinstance(name, str) for name in given)
+    if not texts or len(set(given)) != agents or len(given) != agents:
+        raise refusal(section.place("names"), shown(given), f"{agents} different names in quotes, one per {noun}")
+    return list(given)
 
 
 def _matrices(section: Section) -> _core.Model:
@@ -184,7 +187,7 @@ def _noise(section: Section, n: int, outputs: list[int]) -> dict[str, Any]:
         Q = section.numbers("process_covariance")
         if Q.ndim == 1 and len(Q) == n > 1:
             Q = np.diag(Q)
-        out["process_covariance"] = np.diag(np.full(n, Q.ravel()[0])) if Q.size == 1 else Q
+        out["process_covariance"] = np.diag(np.full(n, float(Q))) if Q.ndim == 0 else Q
     if "measurement_covariance" in section:
         out["measurement_covariance"] = _measurement_covariance(section, outputs)
     return out
@@ -200,8 +203,8 @@ def _measurement_covariance(section: Section, outputs: list[int]) -> list[Any]:
     out = []
     for k, (one, m) in enumerate(zip(given, outputs, strict=True)):
         R = np.zeros((0, 0)) if _is_empty(one) and m == 0 else numbers(f"{where}[{k}]", one)
-        if R.size == 1:
-            R = np.diag(np.full(m, R.ravel()[0]))
+        if R.ndim == 0:
+            R = np.diag(np.full(m, float(R)))
         elif R.ndim == 1 and len(R) == m:
             R = np.diag(R)
         if R.shape != (m, m):

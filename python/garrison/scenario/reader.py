@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.arguments import ONE_SPREAD, SPREADS, moderate, pair_of_levels
+from garrison.doubts import waits
 from garrison.files import contents
 from garrison.fitting import Fit
 from garrison.numeric import numbers
@@ -28,7 +29,7 @@ from garrison.tables.clock import Moment
 from garrison.tables.text import decoded
 from garrison.varying import VaryingModel
 from garrison.varying_network import VaryingNetwork
-from garrison.words import count, only, refusal, shown
+from garrison.words import count, near, only, refusal, shown
 
 Array = NDArray[np.float64]
 
@@ -177,9 +178,9 @@ def read_document(path: Path) -> dict[str, Any]:
 
 
 def _title(value: Any) -> str:
-    if isinstance(value, (dict, list)):
-        raise refusal("title", shown(value), "a string")
-    return str(value)
+    if not isinstance(value, str):
+        raise refusal("title", shown(value), "a string, in quotes")
+    return value
 
 
 def _run(section: Section, model: _core.Model, recorded: bool) -> dict[str, Any]:
@@ -228,7 +229,7 @@ def _certificate(section: Section) -> dict[str, Any]:
         return {}
     out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": section.number("failure", 1e-6)}
     if out["certificate"] not in SPREADS:
-        raise refusal(section.place("spread"), shown(out["certificate"]), ONE_SPREAD)
+        raise refusal(section.place("spread"), shown(out["certificate"]), ONE_SPREAD, near(out["certificate"], SPREADS))
     if not 0 <= out["failure"] < 1:
         raise refusal(section.place("failure"), shown(out["failure"]), "a probability in [0, 1)", "0 = deterministic")
     if "attacked" in section:
@@ -266,12 +267,13 @@ def _noise(section: Section, recording: Recording | None) -> str:
 
 
 def _require_long_enough(scenario: Scenario) -> None:
-    """Refuse filters that cannot raise an alarm before the run is over."""
+    """Refuse filters that cannot test, or raise an alarm, before the run is over."""
     for label, filter in scenario.filters:
-        needed = filter.params.get("alarm_after", 1) if filter is not None else 1
-        if needed > scenario.steps:
-            words = f"at most {scenario.steps}, the samples of the run"
-            raise refusal(f"{label}.alarm_after", str(needed), words, "no alarm could be raised before it is over")
+        for name, needed, absent in waits(filter) if filter is not None else []:
+            if filter is not None and needed > scenario.steps:
+                most = scenario.steps - needed + filter.params[name]
+                words = f"at most {most}, because the run has {count(scenario.steps, 'sample')}"
+                raise refusal(f"{label}.{name}", str(filter.params[name]), words, f"{absent} before it is over")
 
 
 def _put(scenario: Scenario, recording: Recording | None) -> None:

@@ -12,7 +12,7 @@ Schema = dict[str, Any]
 #: kinds of values; keys that are not here take several kinds, which the reader tells apart
 _WHOLE = {"steps", "trials", "threads", "seed", "delay_rounds", "factors", "harmonics", "vehicles", "range", "rows"}
 _NUMBERS = {"drop", "delay", "failure", "gate", "huber", "radius", "radius_km", "start_error", "factor", "period"}
-_WORDS = {"fit", "file", "stations", "spread", "law"}
+_WORDS = {"fit", "file", "stations", "spread", "law", "label"}
 _FLAGS = {"root", "directed"}
 
 
@@ -37,7 +37,7 @@ def schema() -> Schema:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "scenario of garrison",
         "type": "object",
-        "properties": {"title": {"type": ["string", "number", "boolean"]}} | tables,
+        "properties": {"title": {"type": "string"}} | tables,
         "required": ["model", "network", "filter"],
         "additionalProperties": False,
     }

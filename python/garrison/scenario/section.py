@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.numeric import numbers, real
+from garrison.numeric import numbers, real, whole_of
 from garrison.tables import read_matrix
+from garrison.tables.cells import number as cell_number
+from garrison.tables.moments import read_end, spelt_out
 from garrison.words import near, only, refusal, shown
 
 Array = NDArray[np.float64]
@@ -63,7 +65,7 @@ class Section:
         """A string."""
         value = self.table.get(key, default)
         if not isinstance(value, str):
-            raise refusal(self.place(key), shown(value), "a string")
+            raise refusal(self.place(key), shown(value), "a string, in quotes")
         return value
 
     def choice(self, key: str, default: str, known: Sequence[str]) -> str:
@@ -96,13 +98,12 @@ class Section:
 
 def whole(where: str, value: Any, least: int = 0, most: int = _MOST) -> int:
     """`value` as a whole number in a range."""
-    if isinstance(value, float) and math.isfinite(value) and value == int(value):
-        value = int(value)
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        above = isinstance(value, int) and value > most
+    found = whole_of(value)
+    if found is None or not least <= found <= most:
+        above = found is not None and found > most
         words = f"a whole number in {least}..{most}" if above or most < _MOST else f"a whole number >= {least}"
         raise refusal(where, shown(value), words)
-    return value
+    return found
 
 
 def number(where: str, value: Any, *, positive: bool = False) -> float:
@@ -123,19 +124,27 @@ def tables_of(where: str, value: Any, folder: Path) -> list[Section]:
     return [Section(f"[[{where}]] {k}", entry, folder) for k, entry in enumerate(entries, start=1)]
 
 
-def moment(where: str, value: Any) -> dt.date | float:
-    """A date, a date with a time (UTC where it has a zone), or seconds."""
+def moment(where: str, value: Any, *, last: bool = False) -> dt.date | float:
+    """A date, a date with a time (UTC where it has a zone), or a number: of seconds, or a year (`Records.between`).
+
+    last: as the last record; a month is meant to its end.
+    """
     if isinstance(value, dt.datetime):
         return _plain(value)
     if isinstance(value, dt.date):
         return value
     if (seconds := real(value)) is not None:
         return seconds
+    text = value.strip() if isinstance(value, str) else ""
+    if (found := cell_number(text)) is not None and math.isfinite(found) and spelt_out([text]) == [text]:
+        return found
     try:
-        found = dt.datetime.fromisoformat(value)
-    except (TypeError, ValueError):
-        raise refusal(where, shown(value), "a date YYYY-MM-DD (with a time where the records have one)") from None
-    return found.date() if len(value.strip()) <= 10 else _plain(found)
+        end = read_end(text, last)
+    except _core.Error:
+        end = None
+    if end is None:
+        raise refusal(where, shown(value), "a date YYYY-MM-DD (with a time where the records have one)")
+    return _plain(end) if ":" in text or end.time() != dt.time() else end.date()
 
 
 def _plain(value: dt.datetime) -> dt.datetime:

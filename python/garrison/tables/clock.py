@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from garrison import _core
 from garrison.tables.cells import is_missing, number
+from garrison.tables.moments import looks_like_time, moment_of, order_of, seconds_of_day, spelt_out
 from garrison.tables.text import Rows
 from garrison.words import count, refusal
 
@@ -24,8 +24,6 @@ _MONTH = 365.25 / 12 * _DAY
 _JITTER = 0.05
 #: missing rows that are filled in, per row that is there
 _MOST_FILLED = 50
-_SLASHED = re.compile(r"(\d{1,4})[./-](\d{1,2})[./-](\d{1,4})(?:[T ]+(\d{1,2}):(\d{2})(?::(\d{2})(?:[.,]\d*)?)?)?")
-_ISO = re.compile(r"\d{4}-\d{2}-\d{2}([T ]\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?\s*(Z|[+-]\d{2}:?\d{2})?)?")
 #: seconds of the units that a header may name, for plain numbers
 _UNITS = {
     **dict.fromkeys(("ns", "nanoseconds"), 1e-9),
@@ -34,14 +32,20 @@ _UNITS = {
     **dict.fromkeys(("min", "minutes"), 60.0),
     **dict.fromkeys(("h", "hr", "hours"), 3600.0),
     **dict.fromkeys(("d", "days"), _DAY),
+    **dict.fromkeys(("a", "yr", "years"), 365.25 * _DAY),
 }
 #: units that a name implies, and names of columns that hold more than a number
-_IMPLIED = {"day": "d"}
+_IMPLIED = {"minute": "min", "minutes": "min", "hour": "h", "hours": "h", "day": "d", "days": "d"} | {
+    "year": "a",
+    "jahr": "a",
+}
 _DATES = ("date", "datum")
 #: plain numbers from which on they count parts of a second since 1970 (from 1973 to the year 5138), and these parts
-_EPOCHS = ((1e17, 1e20, 1e-9), (1e14, 1e17, 1e-6), (1e11, 1e14, 1e-3))
-#: YYYYMMDD, as plain digits
-_COMPACT = re.compile(r"((?:18|19|20)\d{2})(0[1-9]|1[0-2])(0[1-9]|[12]\d|3[01])")
+_EPOCHS = ((1e17, 1e20, 1e-9), (1e14, 1e17, 1e-6), (1e11, 1e14, 1e-3), (1e8, 1e11, 1.0))
+#: units of the header that whole seconds since 1970 may have
+_SECONDS = ("", "s", "sec", "seconds", "unix", "epoch")
+#: a year, in a column of years
+_YEAR = re.compile(r"[12]\d{3}")
 
 
 @dataclass(frozen=True)
@@ -59,25 +63,22 @@ class Clock:
         return filled, len(self.moments) - len(self.at)
 
 
-def looks_like_time(cell: str) -> bool:
-    """A date, with or without a time."""
-    return bool(_ISO.fullmatch(cell.strip()) or _SLASHED.fullmatch(cell.strip()))
-
-
 def read_clock(rows: Rows, cells: list[str], name: str = "", unit: str = "") -> Clock:
     """The regular clock that the first column tells, gaps filled in. Raises InvalidInput with the line.
 
     name, unit: of the column, for plain numbers: days in a column `day`, no numbers at all in a column `date`, seconds
-    where no unit of time is said. Numbers of the size of milliseconds (or micro-, nanoseconds) since 1970 are dates
+    where no unit of time is said. Numbers of the size of seconds (or milli-, micro-, nanoseconds) since 1970 are dates
     with a time.
     """
     places = [f"{rows.path}, line {line}" for line in rows.lines[1:]]
     for place, cell in zip(places, cells, strict=True):
         if is_missing(cell):
             raise refusal(place, "no time", "a date or a number of seconds in the first column")
-    if all(_COMPACT.fullmatch(c.strip()) for c in cells):
-        cells = [_COMPACT.sub(r"\1-\2-\3", c.strip()) for c in cells]
-    plain = [number(c, True) for c in cells]
+    cells = spelt_out(cells)
+    if _IMPLIED.get(name.lower()) == "a" and all(_YEAR.fullmatch(c.strip()) for c in cells):
+        cells = [f"{c.strip()}-01-01" for c in cells]
+    alone = [seconds_of_day(c) for c in cells]
+    plain = [number(c, True) for c in cells] if None in alone else alone
     moments: list[Moment]
     if plain[0] is not None and not looks_like_time(cells[0]):
         moments = _seconds(places, cells, plain, unit or _IMPLIED.get(name.lower(), ""))
@@ -94,16 +95,33 @@ def _seconds(places: list[str], cells: list[str], plain: list[float | None], uni
         if value is None or not np.isfinite(value):
             raise refusal(place, f"the time {cell!r}", "a number of seconds, as in the rows before")
         out.append(value)
-    for least, most, part in _EPOCHS:
-        if all(least <= value < most for value in out):
-            return _plain_dates([_EPOCH + dt.timedelta(microseconds=round(value * part * 1e6)) for value in out])
-    factor = _UNITS.get(unit.strip().lower(), 1.0)
+    unit = unit.strip().lower()
+    if (part := _part_since_1970(out)) is not None and (part < 1 or unit in _SECONDS):
+        return _plain_dates([_at_epoch(value, part) for value in out])
+    factor = _UNITS.get(unit, 1.0)
     return [value * factor for value in out]
 
 
+def _part_since_1970(values: list[float]) -> float | None:
+    """The part of a second that numbers of this size count since 1970; None where they are too small or too large."""
+    return next((part for least, most, part in _EPOCHS if all(least <= value < most for value in values)), None)
+
+
+def _at_epoch(value: float, part: float) -> dt.datetime:
+    return _EPOCH + dt.timedelta(microseconds=round(value * part * 1e6))
+
+
+def of_number(value: float, last: bool) -> dt.date | None:
+    """The date that a number among dates means: a year (last: its last day), or a time since 1970; None for others."""
+    if value == int(value) and 1000 <= value <= 9999:
+        return dt.date(int(value), 12, 31) if last else dt.date(int(value), 1, 1)
+    part = _part_since_1970([value])
+    return None if part is None else _at_epoch(value, part)
+
+
 def _dates(places: list[str], cells: list[str]) -> list[Moment]:
-    order = _order(places, cells)
-    found = [_moment(place, cell, order) for place, cell in zip(places, cells, strict=True)]
+    order = order_of(places, cells)
+    found = [moment_of(place, cell, order) for place, cell in zip(places, cells, strict=True)]
     zoned = [m.tzinfo is not None for m in found]
     if any(zoned) and not all(zoned):
         raise refusal(places[zoned.index(False)], "a time without a time zone", "one with a zone, as other rows have")
@@ -114,37 +132,6 @@ def _dates(places: list[str], cells: list[str]) -> list[Moment]:
 def _plain_dates(moments: list[dt.datetime]) -> list[Moment]:
     """As dates where all of them are at midnight."""
     return [m.date() for m in moments] if all(m.time() == dt.time() for m in moments) else list(moments)
-
-
-def _order(places: list[str], cells: list[str]) -> str:
-    """Order of day and month in dates with slashes or points: the only one that fits all rows."""
-    parts = [m.groups() for c in cells if not _ISO.fullmatch(c.strip()) and (m := _SLASHED.fullmatch(c.strip()))]
-    if not parts or len(parts[0][0]) == 4:
-        return "ymd"
-    if any(int(p[0]) > 12 for p in parts) or any("." in c for c in cells[:1]):
-        return "dmy"
-    if any(int(p[1]) > 12 for p in parts):
-        return "mdy"
-    raise refusal(places[0], f"the date {cells[0]!r}, day and month in either order", "YYYY-MM-DD in the first column")
-
-
-def _moment(place: str, cell: str, order: str) -> dt.datetime:
-    text = cell.strip()
-    try:
-        if _ISO.fullmatch(text):
-            return dt.datetime.fromisoformat(text.replace(",", "."))
-        found = _SLASHED.fullmatch(text)
-        if found is None:
-            raise ValueError
-        named = dict(zip(order, found.groups()[:3], strict=True))
-        if len(named["y"]) != 4:  # of which century?
-            raise ValueError
-        hour, minute, second = (int(v or 0) for v in found.groups()[3:])
-        return dt.datetime(int(named["y"]), int(named["m"]), int(named["d"]), hour, minute, second)
-    except ValueError:
-        raise _core.InvalidInput(
-            f"{place}: got the date {cell!r}, expected YYYY-MM-DD in the first column, with HH:MM:SS if there is a time"
-        ) from None
 
 
 def seconds_of(moment: Moment) -> float:

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.tables.cells import is_missing, number
-from garrison.tables.clock import Clock, looks_like_time, read_clock
+from garrison.tables.clock import Clock, read_clock
+from garrison.tables.moments import is_time_of_day, looks_like_time
 from garrison.tables.text import Rows, decimal_comma, read_rows, require_widths
 from garrison.words import count, refusal
 
@@ -24,6 +25,15 @@ TIME_NAMES = {
     "datetime",
     "timestamp",
     "day",
+    "days",
+    "hour",
+    "hours",
+    "minute",
+    "minutes",
+    "year",
+    "jahr",
+    "unix",
+    "epoch",
     "sample",
     "second",
     "seconds",
@@ -65,11 +75,16 @@ def read_table(path: str | Path) -> Table:
     Separators (comma, semicolon, tab, bar, blanks) and decimal commas are detected; units may stand in the header as
     `name [unit]`. Raises IoError or InvalidInput with the line when something does not fit.
     """
-    rows = _with_header(read_rows(path))
+    rows = _with_joined_time(_with_header(read_rows(path)))
     head = rows.cells[0]
-    if _has_no_header(head):
+    if _starts_with_data(rows):
+        row = ", ".join(head)[:60]
+        advice = f"put one above, such as {rows.separator.join(_invented(head))}"
         raise refusal(
-            str(rows.path), f"the first line {', '.join(head)[:60]!r}", "a header with the names of the columns"
+            str(rows.path),
+            f"the first row {row!r}, which looks like data",
+            "a header with the names of the columns",
+            advice,
         )
     require_widths(rows, 1, len(head))
     if len(rows.cells) < 3:
@@ -82,8 +97,9 @@ def read_table(path: str | Path) -> Table:
     clock = read_clock(rows, [row[0] for row in body], columns[0].name, columns[0].unit) if timed else None
     named = columns[1:] if timed else columns
     _require_names(rows, named)
-    values = _numbers(rows, 1, int(timed), [c.name for c in named])
-    notes = _suspicious(named, values)
+    notes: list[str] = []
+    values = _numbers(rows, 1, int(timed), [c.name for c in named], notes)
+    notes += _suspicious(named, values)
     if clock is not None:
         values, filled = clock.fill(values)
         notes += (
@@ -96,7 +112,36 @@ def read_table(path: str | Path) -> Table:
 
 def _has_no_header(cells: list[str]) -> bool:
     """The cells are those of a row: a time first, or numbers only."""
-    return looks_like_time(cells[0]) or all(number(cell) is not None for cell in cells)
+    return looks_like_time(cells[0]) or all(number(cell, True) is not None for cell in cells)
+
+
+def _starts_with_data(rows: Rows) -> bool:
+    """The first row is one of data: like a row of a file without a header, or a word before numbers, as in the next."""
+    head, body = rows.cells[0], rows.cells[1:2]
+    words = all(number(row[0], True) is None and not looks_like_time(row[0]) for row in (head, *body) if row)
+    named = head[0].strip().lower() in TIME_NAMES or len(head) < 2 or not body
+    return _has_no_header(head) or (words and not named and all(number(c, True) is not None for c in head[1:]))
+
+
+def _invented(cells: list[str]) -> list[str]:
+    """Names for the columns of a file without a header, to show what one looks like."""
+    timed = looks_like_time(cells[0])
+    return (
+        ["time", *(f"station{k}" for k in range(1, len(cells)))]
+        if timed
+        else [f"name{k + 1}" for k, _ in enumerate(cells)]
+    )
+
+
+def _with_joined_time(rows: Rows) -> Rows:
+    """With the date and the time of day in one column, where the first two columns hold them."""
+    if any(len(row) < 2 or not looks_like_time(row[0]) or not is_time_of_day(row[1]) for row in rows.cells[1:]):
+        return rows
+    head = rows.cells[0]
+    joined = [[f"{row[0].strip()} {row[1].strip()}", *row[2:]] for row in rows.cells[1:]]
+    if len(head) < 2 or _has_no_header(head):
+        return rows
+    return Rows(rows.path, [[head[0], *head[2:]], *joined], rows.lines, rows.separator)
 
 
 def _with_header(rows: Rows) -> Rows:
@@ -133,10 +178,10 @@ def _require_names(rows: Rows, columns: list[Column]) -> None:
         seen[column.name] = k
 
 
-def _numbers(rows: Rows, first: int, skip: int, names: list[str]) -> Array:
+def _numbers(rows: Rows, first: int, skip: int, names: list[str], notes: list[str]) -> Array:
     """Numbers of all cells; everything that is none is refused at once, the first of each column by name."""
     cells = [row[skip:] for row in rows.cells[first:]]
-    comma = decimal_comma(rows, [c for row in cells for c in row])
+    comma = decimal_comma(rows, [list(column) for column in zip(*cells, strict=True)], notes)
     values = np.empty((len(cells), len(names)))
     wrong: dict[str, str] = {}
     for r, row in enumerate(cells):
@@ -150,8 +195,20 @@ def _numbers(rows: Rows, first: int, skip: int, names: list[str]) -> Array:
     if wrong:
         others = list(wrong)[1:]
         more = f"; also in column {', '.join(others[:8])}" if others else ""
-        raise _core.InvalidInput(f"{next(iter(wrong.values()))}, expected a number or an empty cell{more}")
+        first_wrong = next(cell for row in cells for cell in row if number(cell, comma) is None)
+        raise _core.InvalidInput(
+            f"{next(iter(wrong.values()))}, expected a number or an empty cell{_advice(first_wrong)}{more}"
+        )
     return values
+
+
+def _advice(cell: str) -> str:
+    """What to do with a cell that is no number but nearly one."""
+    if looks_like_time(cell):
+        return "; the column of times comes first"
+    if re.fullmatch(r"\W{0,2}\d[\d.,'_\s]*\D{0,8}\d?", cell):
+        return "; write numbers with a decimal point, nothing between thousands, and units in the header: A [unit]"
+    return ""
 
 
 def _suspicious(columns: list[Column], values: Array) -> list[str]:

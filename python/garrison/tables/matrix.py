@@ -1,6 +1,7 @@
 """Matrices of numbers, and logs of measurements without a model of their own."""
 
 import math
+from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
@@ -13,13 +14,13 @@ from garrison.tables.text import decimal_comma, read_rows, require_widths
 Array = NDArray[np.float64]
 
 
-def read_matrix(path: str | Path, *, square: bool = False) -> Array:
+def read_matrix(path: str | Path, *, square: bool = False, notes: list[str] | None = None) -> Array:
     """The numbers of a file, (rows, columns); a header is passed over. Raises IoError or InvalidInput with the line.
 
-    square: of a square matrix without missing numbers.
+    square: of a square matrix without missing numbers. notes: where doubts about decimal commas go; without, refused.
     """
     rows = read_rows(path)
-    comma = decimal_comma(rows, [c for row in rows.cells for c in row])
+    comma = decimal_comma(rows, [[c for c in column if c] for column in zip_longest(*rows.cells, fillvalue="")], notes)
     first = 0 if any(number(c, comma) is not None for c in rows.cells[0]) else 1
     if first == len(rows.cells):
         raise _core.InvalidInput(f"{rows.path}, line {rows.lines[0]}: got {rows.cells[0][0]!r}, expected numbers")

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from garrison.tables.clock import Moment, seconds_of
+from garrison.tables.clock import Moment, of_number, seconds_of
 from garrison.tables.columns import read_table
-from garrison.words import hinted_methods, refusal
+from garrison.words import Hinting, hinted_methods, refusal
 
 Array = NDArray[np.float64]
 _DAY = 86400.0
@@ -18,7 +18,7 @@ _DAYS_OF_A_YEAR = 365.25
 
 @hinted_methods
 @dataclass(frozen=True)
-class Records:
+class Records(metaclass=Hinting):
     """Regular records: times, and one column of numbers per station; nan = missing.
 
     dates: dates, dates with a time, or seconds. step: seconds between records. units: per station, "" = not said.
@@ -44,25 +44,35 @@ class Records:
 
     def index(self, where: str, moment: Moment) -> int:
         """Index of the first record at or after `moment`; len(dates) when it is after the last."""
-        self.require_same_kind(where, moment)
+        moment = self.of_same_kind(where, moment)
         return int(np.searchsorted([seconds_of(d) for d in self.dates], seconds_of(moment) - 1e-6 * self.step))
 
-    def require_same_kind(self, where: str, moment: Moment) -> None:
-        """Refuse a date for records with plain seconds, and the other way round."""
-        if isinstance(moment, dt.date) != isinstance(self.dates[0], dt.date):
-            kinds = {True: "a date", False: "a number of seconds"}
-            here = isinstance(self.dates[0], dt.date)
-            raise refusal(where, f"{kinds[not here]} ({moment})", f"{kinds[here]}, as the records have")
+    def of_same_kind(self, where: str, moment: Moment, *, last: bool = False) -> Moment:
+        """As the records have theirs: a number among dates is a year (last: its last day) or counts since 1970.
+
+        Raises InvalidInput for other numbers, and for a date where the records have plain seconds.
+        """
+        dated = isinstance(self.dates[0], dt.date)
+        if dated and not isinstance(moment, dt.date) and (meant := of_number(float(moment), last)) is not None:
+            return meant
+        if isinstance(moment, dt.date) != dated:
+            if dated:
+                raise refusal(
+                    where, f"the number {moment:g}", "a date YYYY-MM-DD, a month or a year, as the records have"
+                )
+            raise refusal(where, f"the date {moment}", "a number of seconds, as the records have")
+        return moment
 
     def between(self, start: Moment | None, end: Moment | None) -> "Records":
-        """The records from `start` to `end`, both included (a date means the whole day).
+        """The records from `start` to `end`, both included (a date means the whole day, a year all of it).
 
         Raises InvalidInput when there are less than two.
         """
+        start = None if start is None else self.of_same_kind("from", start)
         first = 0 if start is None else self.index("from", start)
         last = len(self.dates)
         if end is not None:
-            self.require_same_kind("to", end)
+            end = self.of_same_kind("to", end, last=True)
             day = isinstance(end, dt.date) and not isinstance(end, dt.datetime)
             limit = seconds_of(end) + (_DAY * (1 - 1e-9) if day else 1e-6 * self.step)
             last = int(np.searchsorted([seconds_of(d) for d in self.dates], limit, side="right"))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from garrison import _core
 from garrison.files import contents
-from garrison.tables.cells import has_decimal_comma, number
+from garrison.tables.cells import has_decimal_comma, is_missing, number
 from garrison.words import count, refusal
 
 _SEPARATORS = (";", "\t", "|", ",")
@@ -136,19 +136,40 @@ def _without_empty_end(cells: list[list[str]]) -> list[list[str]]:
     return cells
 
 
-def decimal_comma(rows: Rows, cells: list[str]) -> bool:
+#: a number with a comma that may separate thousands
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+
+
+def decimal_comma(rows: Rows, columns: list[list[str]], notes: list[str] | None = None) -> bool:
     """Whether commas in these cells are decimal ones. In a file of commas the cells were quoted.
 
-    Raises InvalidInput where these may as well separate thousands.
+    A number such as 0,5 or 1234,5 shows it, or 1500 beside 1,234. Where all have the form 1,234 nothing shows it:
+    between semicolons, with three places everywhere, they are read as decimal ones and a doubt goes to `notes`. Raises
+    InvalidInput where these may as well separate thousands, or where nobody takes notes.
     """
+    cells = [cell for column in columns for cell in column]
     if not has_decimal_comma(cells):
         return False
-    if rows.separator == ",":
-        with_comma = [cell for cell in cells if "," in cell and number(cell, True) is not None]
-        if all(re.fullmatch(r"[+-]?[1-9]\d{0,2},\d{3}", cell) for cell in with_comma):
-            got = f"{with_comma[0]!r}, in which the comma is a decimal one or separates thousands"
-            raise refusal(str(rows.path), got, "numbers with a decimal point and nothing between thousands")
+    with_comma = [cell for cell in cells if "," in cell and number(cell, True) is not None]
+    if not all(_THOUSANDS.fullmatch(cell) for cell in with_comma) or any(map(_large_without, columns)):
+        return True
+    if rows.separator == "," or notes is None or any(map(_mixed, columns)):
+        got = f"{with_comma[0]!r}, in which the comma is a decimal one or separates thousands"
+        raise refusal(str(rows.path), got, "numbers with a decimal point and nothing between thousands")
+    read = with_comma[0].replace(",", ".")
+    notes.append(f"{with_comma[0]} is read as {read}, with a decimal comma; if it separates thousands, remove it")
     return True
+
+
+def _large_without(column: list[str]) -> bool:
+    """Beside numbers with a comma there is one >= 1000 without: thousands are not separated."""
+    return any("," in c for c in column) and any(re.fullmatch(r"[+-]?[1-9]\d{3,}", c.strip()) for c in column)
+
+
+def _mixed(column: list[str]) -> bool:
+    """Beside numbers with three places there are some without, as where the comma separates thousands."""
+    plain = any("," not in c and not is_missing(c) and number(c) not in (None, 0.0) for c in column)
+    return plain and any("," in c for c in column)
 
 
 def require_widths(rows: Rows, first: int, width: int) -> None:

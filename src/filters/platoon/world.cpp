@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "garrison/core/params.hpp"
 #include "garrison/core/random.hpp"
 #include "garrison/filters/platoon/detector.hpp"
 
@@ -18,7 +19,9 @@ Law law_of(const std::string& name) {
   if (name == "uniform" || name == "auto") return Law::uniform;
   if (name == "extreme") return Law::extreme;
   if (name == "one_sided") return Law::one_sided;
-  if (name != "none") refuse("noise", "\"" + name + "\"", "one of: auto, uniform, extreme, one_sided, none");
+  if (name != "none")
+    refuse_unknown("noise", name,
+                   std::vector<std::string>{"auto", "uniform", "extreme", "one_sided", "none"});
   return Law::none;
 }
 

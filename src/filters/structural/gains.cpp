@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "blocks.hpp"
 #include "core/solvers.hpp"
@@ -16,6 +17,19 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr Index kDense = 400;  // N n up to which eigenvalues are taken from the whole matrix
+
+/// Distance of a spectral radius from 1 that may be rounding.
+double rounding_of_radius(const Setting& s) {
+  return 4.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(s.N() * s.n());
+}
+
+[[noreturn]] void refuse_unsettled(int sweeps, const std::string& method) {
+  throw DesignInfeasible("the coupled Riccati recursion still changes after " + std::to_string(sweeps) +
+                         " sweeps: its gains would not be the best ones; raise process_covariance (a mode "
+                         "that neither decays nor "
+                         "is driven by noise has no best gain)" +
+                         (method == "riccati" ? ", or try the design 'h2'" : ""));
+}
 
 }  // namespace
 
@@ -85,8 +99,9 @@ Designed design_gains(const Setting& s, const std::string& method) {
     reached = std::min(reached, d.rho);
     d.K = std::move(K);
     d.method = name;
-    return d.rho < 1.0;
+    return d.rho < 1.0 - rounding_of_radius(s);
   };
+  int unsettled = 0;  // sweeps after which the recursion still changed
   if (any || method == "riccati" || method == "h2") {
     auto g = coupled_riccati(s, 20000, 1e-11);
     const bool schur = accept(g.K, "riccati");
@@ -95,15 +110,14 @@ Designed design_gains(const Setting& s, const std::string& method) {
       if (g.converged) d.P = std::move(g.P);
       return d;
     }
-    if (schur && method == "riccati")
-      throw DesignInfeasible(
-          "the coupled Riccati recursion still changes after " + std::to_string(g.sweeps) +
-          " sweeps: its gains would not be the best ones; raise process_covariance (a mode that "
-          "neither decays nor is driven by noise has no best gain), or try the design 'h2'");
+    if (!g.converged && !g.diverged) unsettled = g.sweeps;
+    if (schur && method == "riccati") refuse_unsettled(g.sweeps, method);
   }
-  if (any || method == "kalman") {
+  if (any || method == "kalman" || (method == "h2" && unsettled > 0)) {
     const auto g = joint_kalman(s);
-    if (accept(g.K, "kalman") && (any || g.converged)) return d;
+    const bool schur = accept(g.K, "kalman");
+    if (schur && method != "h2" && (g.converged || (any && unsettled == 0))) return d;
+    if (!g.converged && unsettled > 0) refuse_unsettled(unsettled, method);
   }
   if (method == "projection" && accept(projection_gains(s), "projection")) return d;
   if (any || method == "h2") {

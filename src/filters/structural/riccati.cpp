@@ -156,6 +156,7 @@ class CoupledMap : public garrison::detail::RiccatiMap {
 /// Newton's method from the solution for more process noise: that one is an upper bound, and with enough of
 /// it the sweeps settle quickly.
 bool newton(const Setting& s, Coupled& coupled, RiccatiGains& g) {
+  if (s.E.isZero(0.0)) return false;  // more of nothing is nothing
   Setting noisy = s;
   for (double more = 1e2; more < 1e40; more *= 1e2) {
     noisy.E = more * s.E;

@@ -78,6 +78,7 @@ std::vector<std::string> Structural::warnings(const Params& params, const Model&
   if (c.longest >= long_row(params, log))
     all.push_back("more than half of the sensors were accused for " + std::to_string(c.longest) +
                   " samples in a row: more than can be told from a wrong model or a wrong estimate");
+  if (!params.isolate) return all;
   for (const int i : undetectable_agents(model))
     if (c.accused[static_cast<std::size_t>(i)] > 0)
       all.push_back("sensor " + std::to_string(i) +

@@ -168,6 +168,56 @@ TEST_CASE("within rounding of a hidden mode the answer is that one cannot tell")
   CHECK(noise.sight == Sight::unclear);
 }
 
+TEST_CASE("pairs some roundings away from a hidden mode are no sure no") {
+  // Two different eigenvalues, as exact numbers: every mode is seen, by a distance of 11 to 34 roundings.
+  for (const double d : {1e-14, 3e-14})
+    CHECK(visibility(Matrix{{1.0, 0.0}, {0.0, 1.0 + d}}, Matrix{{1.0, 1.0}}, 0.0).sight == Sight::unclear);
+  test::Rng rng(9);
+  for (int k = 0; k < 100; ++k) {
+    const Case c = Case{Matrix{{1.0, 0.0}, {0.0, 0.5}}, Matrix{{1e-14, 1.0}}}.in(rotation(rng, 2));
+    CHECK(visibility(c.A, c.C, 1.0).sight != Sight::unseen);
+  }
+}
+
+TEST_CASE("the largest and smallest units of doubles decide nothing") {
+  const Case seen{Matrix{{0.9, 0.3}, {0.1, 0.5}}, Matrix{{1.0, 0.0}}};
+  const Case hidden{Matrix{{1.4, -0.4}, {0.4, 0.6}}, Matrix{{1.0, -1.0}}};
+  const Case chained = chain(4, 1e-3);
+  for (const double state : {1e-150, 1e-30, 1.0, 1e30, 1e150})
+    for (const double output : {1e-300, 1e-150, 1.0, 1e30, 1e120}) {
+      if (state * output < 1e-290) continue;  // entries of C are no doubles any more
+      CAPTURE(state);
+      CAPTURE(output);
+      const auto in_units = [&](const Case& c) {
+        Vector d = Vector::Ones(c.A.rows());
+        d(1) = state;
+        return c.scaled(d, Vector::Constant(1, output));
+      };
+      const Case s = in_units(seen);
+      CHECK(visibility(s.A, s.C, 0.0).all_seen());
+      CHECK(observable(s.A, s.C));
+      CHECK(s_sparse_observable(s.A, s.C, 0));
+      const Case h = in_units(hidden);
+      const Visibility v = visibility(h.A, h.C, 1.0);
+      CAPTURE(v.text());
+      CHECK(v.sight == Sight::unseen);
+      CHECK(v.unseen.size() == 1);
+      if (state >= 1e-30 && state <= 1e30) {  // beyond, steps of 1e-3 may be rounding in the units given
+        const Case c = in_units(chained);
+        CHECK(visibility(c.A, c.C, 1.0).sight != Sight::unseen);
+      }
+    }
+}
+
+TEST_CASE("what is small by its units alone is no rounding") {
+  // The first state is shown through 1e-31, because the second one is told in units 1e30 times as large.
+  const Case c{Matrix{{0.9, 0.3}, {0.1, 0.5}}, Matrix{{0.0, 1.0}}};
+  const Case far = c.scaled(Vector{{1.0, 1e30}}, Vector::Ones(1));
+  CHECK(visibility(far.A, far.C, 0.0).all_seen());
+  const Case row = Case{c.A, Matrix{{1.0, 1.0}}}.scaled(Vector{{1.0, 1e-30}}, Vector::Ones(1));
+  CHECK(visibility(row.A, row.C, 0.0).all_seen());
+}
+
 TEST_CASE("one cannot tell: in all units of states and outputs, and of every question") {
   test::Rng rng(8);
   // Eigenvalues that differ by d: the distance is about d/5, far from both limits (1e-14 and 1e-11).

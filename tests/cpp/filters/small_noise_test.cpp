@@ -9,6 +9,7 @@
 #include "garrison/filters/structural/gains.hpp"
 
 using namespace garrison;
+using Index = Eigen::Index;
 
 namespace {
 
@@ -45,6 +46,44 @@ TEST_CASE("a random walk with q/r from 1e-16 to 1e16 has its closed form") {
       CHECK(std::abs(d.K[0](0, 0) - Pbar / (Pbar + r)) <= 1e-9 * Pbar / (Pbar + r));
       CHECK(d.method == "riccati");
     }
+}
+
+TEST_CASE("process noise of nothing, or next to it: no unsettled gain is passed off as the best one") {
+  const Matrix walk{{1.0}};
+  const Matrix cruise{{1.0, 0.1}, {0.0, 1.0}};
+  for (const double q : {0.0, 1e-300, 1e-200})
+    for (const char* method : {"auto", "riccati", "h2"}) {
+      CAPTURE(q);
+      CAPTURE(method);
+      for (const Index agents : {1, 3}) {
+        const Matrix R = Matrix::Identity(agents, agents);
+        const auto one = alone(walk, Matrix::Ones(agents, 1), Matrix{{q}}, R);
+        CHECK_THROWS_AS(structural::design_gains(one, method), DesignInfeasible);
+        Matrix C = Matrix::Zero(agents, 2);
+        C.col(0).setOnes();
+        const auto two = alone(cruise, C, q * Matrix::Identity(2, 2), R);
+        CHECK_THROWS_AS(structural::design_gains(two, method), DesignInfeasible);
+      }
+    }
+  // A mode that decays needs no noise: its best gain is q / (1 - a^2) / r to first order.
+  for (const double q : {1e-300, 1e-30}) {
+    const auto d = structural::design_gains(alone(Matrix{{0.9}}, walk, Matrix{{q}}, Matrix{{1.0}}), "auto");
+    CHECK(std::abs(d.K[0](0, 0) - q / 0.19) <= 1e-6 * q / 0.19);
+  }
+}
+
+TEST_CASE("measurement noise of nothing, or next to it") {
+  const Matrix cruise{{1.0, 0.1}, {0.0, 1.0}};
+  const Matrix I = Matrix::Identity(2, 2);
+  const auto exact = structural::design_gains(alone(cruise, Matrix{{1.0, 0.0}}, I, Matrix{{1e-12}}), "auto");
+  for (const double r : {0.0, 1e-300}) {
+    const auto d = structural::design_gains(alone(cruise, Matrix{{1.0, 0.0}}, I, Matrix{{r}}), "auto");
+    CHECK((d.K[0] - exact.K[0]).norm() <= 1e-6);
+    // Both at once: only their ratio counts.
+    const auto both = structural::design_gains(
+        alone(Matrix{{1.0}}, Matrix{{1.0}}, Matrix{{1e-300}}, Matrix{{1e-300}}), "auto");
+    CHECK(both.K[0](0, 0) == doctest::Approx(0.5 * (std::sqrt(5.0) - 1.0)).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("equal agents share the covariance of one: information averages") {

@@ -250,6 +250,13 @@ struct GARRISON_EXPORT Structural {
   static constexpr double kBlind = 10.0;
   /// By which P grows, per sample, while all that is measured is left out: nothing speaks for the estimate.
   static constexpr double kNobody = 1.3;
+  /// By which P grows, per sample, while a sensor is left out that the estimate followed after it had been
+  /// accused for long: who was right is open, so a second jump is followed within a minute of samples,
+  /// however far.
+  static constexpr double kHaste = 3.0;
+  /// What became of a sensor: used, left out, used again after a jump that the estimate followed, left out
+  /// once more, used again after that until the estimate has settled.
+  enum Trust : char { trusted, out, followed, out_again, returning };
   /// The most that P is taken to be, in stationary variances.
   static constexpr double kMostVariance = 1e16;
   /// Start errors that are reckoned with, in stationary variances.

@@ -114,7 +114,7 @@ struct State {
   bool broken = false;  // a gap has emptied the window, which is not full yet
   bool alarm = false;
   std::vector<double> last;    // window of residuals, a ring
-  std::vector<char> left_out;  // in the sample before, per Heard
+  std::vector<char> left_out;  // Structural::Trust after the sample before, per Heard
   std::vector<double> P;       // n x n
   std::vector<double> work;    // room for four n x n
   // What follows from the gains, and is not part of a snapshot: I - sum K_i c_j c_j', column by column, and

@@ -171,19 +171,35 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     const Heard& j = heard[e];
     char& before = s.left_out[static_cast<std::size_t>(e)];
     out = true;
-    if (carried) growth = std::max(growth, g.doubt[static_cast<std::size_t>(j.id)]);
-    if (by_level && !before && carried) {
+    const bool used_before = before != Trust::out && before != Trust::out_again;
+    const bool again = before != Trust::trusted && before != Trust::out;
+    if (carried) growth = std::max(growth, again ? kHaste : g.doubt[static_cast<std::size_t>(j.id)]);
+    if (by_level && used_before && carried) {
       const double* c = row(g, j.id, nn);
       const double spread = structural::quadratic<n>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
       if (spread > 0.0) structural::add_seen_outer<n>(prior, c, g.surprise / spread, nn, more);
     }
-    before = 1;
+    before = again ? Trust::out_again : Trust::out;
+  };
+  const auto take_back = [&](int e) {
+    char& trust = s.left_out[static_cast<std::size_t>(e)];
+    if (trust == Trust::out) {
+      const auto id = static_cast<std::size_t>(heard[e].id);
+      const double* c = row(g, heard[e].id, nn);
+      const double usual = kBlind * g.innovation_std[id];
+      const bool far = carried && structural::quadratic<n>(prior, c, nn) + g.noise[id] > usual * usual;
+      trust = far ? Trust::followed : Trust::trusted;
+    } else if (trust == Trust::out_again) {
+      trust = Trust::returning;
+    } else if (trust == Trust::returning && s.rest == 0) {
+      trust = Trust::trusted;
+    }
   };
   const auto use = [&](int e, double innovation) {
     heeded = true;
     const double* column = g.columns.data() + heard[e].first;
     for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
-    if (g.isolate) s.left_out[static_cast<std::size_t>(e)] = 0;
+    if (g.isolate) take_back(e);
   };
   const auto miss = [&](int e) { s.missing[static_cast<std::size_t>(s.gone++)] = e; };
   if (used) {

@@ -4,6 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from garrison._commands.terminal import whole_number
 from garrison.net.web.scene import Scene
 from garrison.net.web.server import Server
 from garrison.net.web.watcher import Watcher
@@ -18,7 +19,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("socket", nargs="+", type=Path, help="[socket].path of a node")
     parser.add_argument("--host", default="127.0.0.1", help="address to listen at (default 127.0.0.1)")
-    parser.add_argument("--port", type=int, default=9470, help="port to listen at (default 9470)")
+    parser.add_argument("--port", type=whole_number, default=9470, help="port to listen at (default 9470)")
     return parser
 
 

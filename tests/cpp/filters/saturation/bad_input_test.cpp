@@ -82,7 +82,7 @@ TEST_CASE("drivers refuse what does not fit") {
   CHECK_THROWS_WITH_AS(simulate(kModel, net, *filter, {5, Vector::Zero(2), 0.0, "auto"}, o),
                        doctest::Contains("x0: got 2 numbers"), InvalidInput);
   CHECK_THROWS_WITH_AS(simulate(kModel, net, *filter, {5, {}, 0.0, "loud"}, o),
-                       doctest::Contains("noise: got \"loud\""), InvalidInput);
+                       doctest::Contains("noise: got unknown name \"loud\""), InvalidInput);
   CHECK_THROWS_WITH_AS(simulate(kModel, net, *filter, {5, {}, 0.0, "normal"}, o),
                        doctest::Contains("covariances"), InvalidInput);
   CHECK_THROWS_WITH_AS(replay(kModel, net, *filter, Matrix::Zero(4, 2), Matrix(), o),

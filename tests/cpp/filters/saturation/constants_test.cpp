@@ -206,13 +206,13 @@ TEST_CASE("saturation constants: bad settings are refused by name") {
     change(bad);
     CHECK_THROWS_WITH_AS(require(bad), doctest::Contains(word), InvalidInput);
   };
-  refused([](Setting& s) { s.beta = 0.0; }, "beta: got 0");
-  refused([](Setting& s) { s.beta = kInfinity; }, "beta: got inf");
-  refused([](Setting& s) { s.eta0 = -1.0; }, "eta0: got -1");
+  refused([](Setting& s) { s.beta = 0.0; }, "threshold (beta): got 0");
+  refused([](Setting& s) { s.beta = kInfinity; }, "threshold (beta): got inf");
+  refused([](Setting& s) { s.eta0 = -1.0; }, "initial_error (eta0): got -1");
   refused([](Setting& s) { s.attacked = 9; }, "expected 0..8");
   refused([](Setting& s) { s.attacked = -1; }, "attacked (s)");
   refused([](Setting& s) { s.b_w = -0.1; }, "b_w");
-  refused([](Setting& s) { s.b_v = kNaN; }, "b_v: got nan");
+  refused([](Setting& s) { s.b_v = kNaN; }, "measurement_bound (b_v): got nan");
   refused([](Setting& s) { s.a = kInfinity; }, "||A||");
   refused([](Setting& s) { s.lambda0 = 7.5; }, "lambda0");
   refused([](Setting& s) { s.contraction = 1.5; }, "contraction");

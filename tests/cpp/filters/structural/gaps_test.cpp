@@ -160,9 +160,13 @@ TEST_CASE("a run says which sensors were hardly tested, and that too many were a
       test::known_model(Matrix::Constant(1, 1, 1.0), Matrix::Ones(1, 1), Matrix::Constant(1, 1, 0.04), 0.25);
   Matrix glitch = Matrix::Zero(60, 1);
   glitch(30) = 8.0;
-  const auto needed = replay(lone, Network(1, std::vector<Edge>{}),
-                             *make_filter("structural", {{"isolate", true}}), glitch, Matrix(), {})
-                          .warnings;
+  const auto of_lone = [&](bool isolate) {
+    return replay(lone, Network(1, std::vector<Edge>{}), *make_filter("structural", {{"isolate", isolate}}),
+                  glitch, Matrix(), {})
+        .warnings;
+  };
+  const auto needed = of_lone(true);
   REQUIRE(needed.size() == 1);
   CHECK(needed[0].find("sensor 0 was accused, but it alone sees a mode that does not decay") == 0);
+  for (const auto& other : of_lone(false)) CHECK(other.find("isolate") == std::string::npos);
 }
