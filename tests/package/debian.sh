@@ -25,6 +25,7 @@ runs() {  # PREFIX OF COMMANDS...: the command, the module, and the main job
   "$@" python3 -m garrison --version
   "$@" python3 -c 'import garrison, importlib.metadata as m; assert m.version("garrison") == garrison.__version__'
   "$@" garrison-node --version
+  "$@" garrison-mpi --version
   "$@" garrison run /usr/share/doc/garrison/examples/wind/hijacked.toml -o /tmp/garrison-out --force >"$work/run.log"
   "$@" test -s /tmp/garrison-out/report.html
 }
@@ -57,7 +58,7 @@ inside apt-get update -qq
 tools/stage.sh "install the packages in it" env LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$work/root" \
   sh -c 'apt-get install --yes --no-install-recommends python3-matplotlib /packages/*.deb'
 runs inside
-inside sh -c 'test -s /usr/share/man/man1/garrison.1.gz && test -s /usr/share/man/man1/garrison-node.1.gz'
+inside sh -c 'for page in garrison garrison-node garrison-mpi; do test -s /usr/share/man/man1/$page.1.gz || exit 1; done'
 inside sh -c 'apt-get purge --yes $(dpkg-query -W -f "\${Package} " "*garrison*")' >"$work/purge.log" 2>&1 || { cat "$work/purge.log" && exit 1; }
 left=$(inside find / -xdev -path /packages -prune -o -path /proc -prune -o -path /tmp -prune -o -path /var/log -prune -o \
   -path /var/lib/apt -prune -o -name '*garrison*' -print)
@@ -66,6 +67,8 @@ echo "debian: installed, run and removed without a trace in a clean Debian 12 (d
 
 if [[ ${1:-} == --all ]]; then
   command -v autopkgtest >/dev/null || { echo "debian: missing: apt-get install autopkgtest" >&2 && exit 1; }
+  mkdir "$work/sources"  # without what a build leaves, which tests would take for what is installed
+  git ls-files -z --cached --others --exclude-standard | xargs -0 cp --parents -t "$work/sources" --no-dereference
   # shellcheck disable=SC2046
-  autopkgtest --apt-upgrade --no-built-binaries $(debs) build/deb/garrison -- chroot "$work/root"
+  autopkgtest --apt-upgrade --no-built-binaries $(debs) "$work/sources" -- chroot "$work/root"
 fi
