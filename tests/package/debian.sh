@@ -4,13 +4,12 @@
 # says so. --all: lintian before that, and their own tests (debian/tests) after it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-base=build/debian-base.tar
 work=$(mktemp -d "$PWD/build/debian.XXXXXX")
 trap 'umount "$work/root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
 debs() { find dist -maxdepth 1 -name '*.deb' ! -name '*-dbgsym_*'; }
 [[ -n $(debs) ]] || { echo "debian: no packages in dist/: make deb" >&2 && exit 1; }
 
-library=$(find dist -name 'libgarrison[0-9]*.[0-9]_*.deb')
+library=$(find dist -maxdepth 1 -name 'libgarrison[0-9]*.[0-9]_*.deb')
 dpkg-deb -x "$library" "$work/library"
 tests/package/symbols.sh "$(find "$work/library" -name 'libgarrison.so.*' -type f)"
 
@@ -42,13 +41,7 @@ if [[ $(id -u) != 0 ]] || ! command -v debootstrap >/dev/null; then
   exit 0
 fi
 
-# The clean system is kept: only the first time fetches it.
-if [[ ! -f $base ]]; then
-  tools/stage.sh "make a clean Debian 12" debootstrap --variant=minbase bookworm "$work/root"
-  tar cf "$base.new" -C "$work/root" . && mv "$base.new" "$base"
-else
-  mkdir "$work/root" && tar xf "$base" -C "$work/root"
-fi
+tools/clean_root.sh "$work/root"
 inside() { LC_ALL=C.UTF-8 HOME=/root DEBIAN_FRONTEND=noninteractive chroot "$work/root" "$@"; }
 mkdir "$work/root/packages"
 # shellcheck disable=SC2046
@@ -67,8 +60,7 @@ echo "debian: installed, run and removed without a trace in a clean Debian 12 (d
 
 if [[ ${1:-} == --all ]]; then
   command -v autopkgtest >/dev/null || { echo "debian: missing: apt-get install autopkgtest" >&2 && exit 1; }
-  mkdir "$work/sources"  # without what a build leaves, which tests would take for what is installed
-  git ls-files -z --cached --others --exclude-standard | xargs -0 cp --parents -t "$work/sources" --no-dereference
+  tools/copy.sh "$work/sources"  # without what a build leaves, which tests would take for what is installed
   # shellcheck disable=SC2046
   autopkgtest --apt-upgrade --no-built-binaries $(debs) "$work/sources" -- chroot "$work/root"
 fi
