@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev test test-fast fuzz lint format bench deb deb-check wheel abi board docs clean
+.PHONY: help setup run dev test test-fast fuzz lint format bench deb deb-check deb-board wheel abi board docs clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
 cpp = $(shell find include src bindings tests bench examples -name '*.hpp' -o -name '*.cpp')
@@ -54,6 +54,9 @@ deb: ## Debian packages for this machine, in dist/
 
 deb-check: ## lintian, then install, run and remove the packages of dist/ in a clean Debian 12, and their own tests
 	@tests/package/debian.sh --all
+
+deb-board: ## Debian packages for a board, BOARD=arm64 or armhf, in dist/BOARD, cross-built in a clean Debian 12
+	@tools/deb_board.sh $(BOARD)
 
 wheel: ## sdist and wheels in dist/, tried in bare environments; PYTHONS="python3.11 python3.12": more than one
 	@tools/wheel.sh $(PYTHONS)

@@ -1,5 +1,6 @@
 # What `cmake --install` lays down, by component: `runtime` (shared library), `development` (headers, static libraries,
-# CMake package, pkg-config file), `python` (bindings/CMakeLists.txt). `cmake --install BUILD --component NAME` takes one.
+# CMake package, pkg-config file), `python` (bindings), `node` (src/node/programs), `mpi` (src/mpi).
+# `cmake --install BUILD --component NAME` takes one.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/garrison)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tools/board.sh arm64|armhf: cross-compiles garrison::node and a node program of every family for a board, and prints
-# their sizes without symbols. The boards' compilers are Debian packages, named where they are missing.
+# their sizes without symbols: at most 70 kB on armhf. The compilers are Debian packages, named where they are missing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1-} in
@@ -15,6 +15,8 @@ tools/stage.sh "configure $1" cmake -G Ninja -S tests/package/board -B "$build" 
 tools/stage.sh "build nodes for $1" cmake --build "$build"
 for program in "$build"/node_*; do
   "$triple-strip" -o "$program.stripped" "$program"
-  echo "$(basename "$program"): $(stat -c %s "$program.stripped") bytes stripped"
+  size=$(stat -c %s "$program.stripped")
   rm "$program.stripped"
+  echo "$(basename "$program"): $size bytes stripped"
+  [[ $1 != armhf ]] || ((size <= 70000)) || { echo "board: got $size bytes, expected at most 70000" >&2 && exit 1; }
 done

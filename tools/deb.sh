@@ -15,8 +15,8 @@ if ! { command -v dpkg-buildpackage && dpkg-checkbuilddeps; } >/dev/null 2>&1; t
 fi
 # dpkg-buildpackage writes beside its folder: it works in a copy, which has no file that git does not know.
 copy=build/deb/garrison
-rm -rf build/deb && mkdir -p "$copy" dist
-git ls-files -z --cached --others --exclude-standard | xargs -0 cp --parents -t "$copy" --no-dereference
+rm -rf build/deb && mkdir -p dist
+tools/copy.sh "$copy"
 tools/stage.sh "build packages" env -C "$copy" dpkg-buildpackage --unsigned-source --unsigned-changes --build=binary
 rm -f dist/*.deb
 mv build/deb/*.deb build/deb/*.changes build/deb/*.buildinfo dist/

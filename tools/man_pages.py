@@ -1,7 +1,7 @@
 """man_pages.py FOLDER [PROGRAMS]: manual pages, from what the commands say of themselves.
 
-Of garrison and of every command of it, of garrison-net and garrison-web from their parsers; of the programs of a node,
-which lie in PROGRAMS, from what they print for --help.
+Of garrison and of every command of it, of garrison-net and garrison-web from their parsers; of the compiled programs
+that lie in PROGRAMS, from what they print for --help.
 """
 
 import argparse
@@ -18,6 +18,7 @@ from garrison.net.web import command as web
 PROGRAMS = {
     "garrison-ctl": "ask a running node, or read what it left behind",
     "garrison-keygen": "make the key of a node",
+    "garrison-mpi": "run one network on the ranks of an MPI job",
     "garrison-node": "run one agent of a network over authenticated datagrams",
     "garrison-relay": "stand between nodes of one machine, and lose or change what they send",
 }
@@ -107,7 +108,9 @@ def main(folder: Path, programs: Path | None) -> None:
     """Write them all."""
     folder.mkdir(parents=True, exist_ok=True)
     pages = pages_of(_parser()) | pages_of(net._parser()) | pages_of(web._parser())
-    for name, summary in PROGRAMS.items() if programs else ():
+    for name, summary in PROGRAMS.items():
+        if programs is None or not (programs / name).exists():
+            continue  # not built: debian/rules misses its page
         said = subprocess.run([programs / name, "--help"], check=True, capture_output=True, text=True)
         pages[name] = program_page(name, summary, said.stdout or said.stderr)
     for name, text in pages.items():

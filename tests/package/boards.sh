@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Node programs of boards give the bits of this machine: every family, from its parts of a design. Wants what
-# `make board` built. $1: the folder of the foreign project's programs (parts); $2...: boards, arm64 or armhf.
+# Node programs of boards give the bits of this machine: every family, from its parts of a design. Builds them where the
+# board's compiler and qemu are installed. $1: the folder of the foreign project's programs (parts); $2...: boards, arm64
+# or armhf.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 programs=$1
@@ -10,13 +11,15 @@ trap 'rm -rf "$work"' EXIT
 "$programs/parts" >"$work/cases"
 for board in "$@"; do
   case $board in
-    arm64) run=(qemu-aarch64-static -L /usr/aarch64-linux-gnu) ;;
-    armhf) run=(qemu-arm-static -L /usr/arm-linux-gnueabihf) ;;
+    arm64) triple=aarch64-linux-gnu qemu=qemu-aarch64-static ;;
+    armhf) triple=arm-linux-gnueabihf qemu=qemu-arm-static ;;
   esac
-  if ! command -v "${run[0]}" >/dev/null; then
-    echo "boards: $board left out, no ${run[0]} (apt-get install qemu-user-static)"
+  if ! { command -v "$triple-g++" && command -v "$qemu"; } >/dev/null; then
+    echo "boards: $board left out, not installed (apt-get install qemu-user-static g++-$triple)"
     continue
   fi
+  run=("$qemu" -L "/usr/$triple")
+  tools/board.sh "$board"
   while read -r family name; do
     rm -rf "$work/parts" && mkdir "$work/parts"
     "$programs/parts" "$family" "$name" "$work/parts" >"$work/expected"

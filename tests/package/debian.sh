@@ -4,13 +4,12 @@
 # says so. --all: lintian before that, and their own tests (debian/tests) after it.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-base=build/debian-base.tar
 work=$(mktemp -d "$PWD/build/debian.XXXXXX")
 trap 'umount "$work/root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
 debs() { find dist -maxdepth 1 -name '*.deb' ! -name '*-dbgsym_*'; }
 [[ -n $(debs) ]] || { echo "debian: no packages in dist/: make deb" >&2 && exit 1; }
 
-library=$(find dist -name 'libgarrison[0-9]*.[0-9]_*.deb')
+library=$(find dist -maxdepth 1 -name 'libgarrison[0-9]*.[0-9]_*.deb')
 dpkg-deb -x "$library" "$work/library"
 tests/package/symbols.sh "$(find "$work/library" -name 'libgarrison.so.*' -type f)"
 
@@ -25,6 +24,7 @@ runs() {  # PREFIX OF COMMANDS...: the command, the module, and the main job
   "$@" python3 -m garrison --version
   "$@" python3 -c 'import garrison, importlib.metadata as m; assert m.version("garrison") == garrison.__version__'
   "$@" garrison-node --version
+  "$@" garrison-mpi --version
   "$@" garrison run /usr/share/doc/garrison/examples/wind/hijacked.toml -o /tmp/garrison-out --force >"$work/run.log"
   "$@" test -s /tmp/garrison-out/report.html
 }
@@ -41,13 +41,7 @@ if [[ $(id -u) != 0 ]] || ! command -v debootstrap >/dev/null; then
   exit 0
 fi
 
-# The clean system is kept: only the first time fetches it.
-if [[ ! -f $base ]]; then
-  tools/stage.sh "make a clean Debian 12" debootstrap --variant=minbase bookworm "$work/root"
-  tar cf "$base.new" -C "$work/root" . && mv "$base.new" "$base"
-else
-  mkdir "$work/root" && tar xf "$base" -C "$work/root"
-fi
+tools/clean_root.sh "$work/root"
 inside() { LC_ALL=C.UTF-8 HOME=/root DEBIAN_FRONTEND=noninteractive chroot "$work/root" "$@"; }
 mkdir "$work/root/packages"
 # shellcheck disable=SC2046
@@ -57,7 +51,7 @@ inside apt-get update -qq
 tools/stage.sh "install the packages in it" env LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$work/root" \
   sh -c 'apt-get install --yes --no-install-recommends python3-matplotlib /packages/*.deb'
 runs inside
-inside sh -c 'test -s /usr/share/man/man1/garrison.1.gz && test -s /usr/share/man/man1/garrison-node.1.gz'
+inside sh -c 'for page in garrison garrison-node garrison-mpi; do test -s /usr/share/man/man1/$page.1.gz || exit 1; done'
 inside sh -c 'apt-get purge --yes $(dpkg-query -W -f "\${Package} " "*garrison*")' >"$work/purge.log" 2>&1 || { cat "$work/purge.log" && exit 1; }
 left=$(inside find / -xdev -path /packages -prune -o -path /proc -prune -o -path /tmp -prune -o -path /var/log -prune -o \
   -path /var/lib/apt -prune -o -name '*garrison*' -print)
@@ -66,6 +60,7 @@ echo "debian: installed, run and removed without a trace in a clean Debian 12 (d
 
 if [[ ${1:-} == --all ]]; then
   command -v autopkgtest >/dev/null || { echo "debian: missing: apt-get install autopkgtest" >&2 && exit 1; }
+  tools/copy.sh "$work/sources"  # without what a build leaves, which tests would take for what is installed
   # shellcheck disable=SC2046
-  autopkgtest --apt-upgrade --no-built-binaries $(debs) build/deb/garrison -- chroot "$work/root"
+  autopkgtest --apt-upgrade --no-built-binaries $(debs) "$work/sources" -- chroot "$work/root"
 fi

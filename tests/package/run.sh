@@ -32,4 +32,5 @@ tests/package/abi.sh "$work"
 tests/package/flags.sh "$work"
 tests/package/alone.sh "$work/prefix/include"
 tests/package/processors.sh
+tests/package/boards.sh "$work/build" arm64 armhf
 echo "package: both ways build and run"

@@ -4,7 +4,9 @@ import re
 import subprocess
 import sys
 import tarfile
+import tomllib
 from pathlib import Path
+from urllib.parse import urlsplit
 
 ROOT = Path(__file__).parents[2]
 NEEDED = {"CMakeLists.txt", "LICENSE", "PKG-INFO", "README.md", "VERSION", "pyproject.toml", "tools/readme.py"}
@@ -22,6 +24,21 @@ def known() -> set[str]:
     return set(names.stdout.split("\0"))
 
 
+def home() -> str:
+    """The name of the project's address, which pyproject.toml says."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    return urlsplit(project["urls"]["Homepage"]).hostname or ""
+
+
+def strange_maintainers() -> list[str]:
+    """Maintainers of the Debian packages who are not at that address."""
+    found = []
+    for name in ("debian/control", "debian/changelog"):
+        hosts = re.findall(r"<[^<>@\s]+@([^<>\s]+)>", (ROOT / name).read_text(encoding="utf-8"))
+        found += [f"{name} has a maintainer at {host}, expected {home()}" for host in hosts if host != home()]
+    return found
+
+
 def complaints(path: Path) -> list[str]:
     """What is wrong with it; empty: nothing."""
     with tarfile.open(path) as archive:
@@ -31,6 +48,7 @@ def complaints(path: Path) -> list[str]:
     found = [f"{name} is missing" for name in sorted(NEEDED - names)]
     found += [f"{name} is junk" for name in sorted(names - known() - {"PKG-INFO"})]
     found += [f"{name} is for a checkout only" for name in sorted(names) if name.startswith((".", "debian/"))]
+    found += strange_maintainers()
     found += [f"the page points to {target}" for target in re.findall(r"\]\((?![a-z]+:|#)([^)]*)\)", page)]
     return found
 
@@ -38,4 +56,6 @@ def complaints(path: Path) -> list[str]:
 if __name__ == "__main__":
     wrong = complaints(Path(sys.argv[1]))
     print("\n".join(f"sdist: {line}" for line in wrong) or f"sdist: {Path(sys.argv[1]).name} is whole and has no junk")
+    if home().endswith(".invalid"):
+        print(f"sdist: the project has no address yet, {home()} is a reserved name: pyproject.toml, [project.urls]")
     sys.exit(bool(wrong))

@@ -98,10 +98,10 @@ class PartialSharing::SideBySide {
   /// What everybody shares at sample t, so many entries further on than at k = 0.
   void begin(const Gains& g, std::int64_t t) noexcept {
     const int offset = g.selection.offset(t - 1);
-    const std::uint8_t* const first = shares_.data();
-    std::uint8_t* const now = now_.data();
+    // Bytes might be anything, also each other.
+    const std::uint8_t* const __restrict__ first = shares_.data();
+    std::uint8_t* const __restrict__ now = now_.data();
     const std::size_t count = shares_.size();
-#pragma GCC ivdep  // bytes might be anything, also each other
     for (std::size_t k = 0; k < count; ++k) now[k] = partial_sharing::shifted<n>(first[k], offset);
   }
 

@@ -94,7 +94,7 @@ GARRISON_INLINE bool is_covariance(const double* S, double most, double limit, i
   for (int i = 0; i < size; ++i) diagonal[i] = S[static_cast<std::ptrdiff_t>(i) * (size + 1)];
   for (int j = 0; j < size; j += W) {
     const V d = *Block<W>::of(diagonal + j);
-    bad += (d >= -1e-9 * most) & (d <= limit * most) ? V{} : V{} + 1.0;
+    bad += ((d >= -1e-9 * most) & (d <= limit * most)) ? V{} : V{} + 1.0;
     for (int i = 0; i < size; ++i) {
       const V entry = *Block<W>::of(S + static_cast<std::ptrdiff_t>(i) * size + j);
       const V largest = diagonal[i] * d;
