@@ -35,9 +35,12 @@ void require_network(const Setting& s) {
 }
 
 void require_start_and_noise(const Setting& s) {
-  require_positive("initial_error (eta0)", s.eta0, "bound the distance of the common initial estimate from the state");
-  require_range("process_bound (b_w)", s.b_w, 0.0, kInfinity, "a finite number >= 0", "bound the process noise");
-  require_range("measurement_bound (b_v)", s.b_v, 0.0, kInfinity, "a finite number >= 0", "bound the measurement noise");
+  require_positive("initial_error (eta0)", s.eta0,
+                   "bound the distance of the common initial estimate from the state");
+  require_range("process_bound (b_w)", s.b_w, 0.0, kInfinity, "a finite number >= 0",
+                "bound the process noise");
+  require_range("measurement_bound (b_v)", s.b_v, 0.0, kInfinity, "a finite number >= 0",
+                "bound the measurement noise");
 }
 
 void require_threshold(const Setting& s) {
