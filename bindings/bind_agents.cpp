@@ -57,11 +57,8 @@ PyAgent agent_kept(const std::vector<std::byte>& all) {
 }
 
 Letter letter_of(const PyAgent& a, const std::vector<std::byte>& body, int round) {
-  return {std::string(a->family()),
-          {a->id(), a->sample(), round},
-          a->agents(),
-          a->fields(a->id(), a->sample()),
-          body};
+  return {std::string(a->family()),        a->design(), {a->id(), a->sample(), round}, a->agents(),
+          a->fields(a->id(), a->sample()), body};
 }
 
 /// Delivers one message, with the reason in words where that is the caller's slip. A message that is late, or
@@ -74,8 +71,8 @@ void deliver(PyAgent& a, const Letter& letter) {
   const auto heard = a->neighbours();
   if (!std::binary_search(heard.begin(), heard.end(), e.sender))
     refuse("inbox", from, "messages from neighbours of agent " + std::to_string(a->id()));
-  if (letter.fields != a->fields(e.sender, e.sample))
-    refuse("inbox", from + " with other fields", "messages of the same design",
+  if (letter.design != a->design() || letter.fields != a->fields(e.sender, e.sample))
+    refuse("inbox", from + " of another design", "messages of the same design",
            "its agent was made for another model, network or filter");
   switch (const Refusal why = a->deliver(e, letter.body); why) {
     case Refusal::none:

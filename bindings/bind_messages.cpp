@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages between agents.
 #include "bytes.hpp"
+#include "convert.hpp"
 #include "garrison/wire/letter.hpp"
 
 using namespace garrison;
@@ -22,29 +23,44 @@ py::object value_of(const wire::FieldInfo& info, const wire::FieldValue& value) 
   return py::make_tuple(labels.ids, labels.complement);
 }
 
+std::vector<double> numbers_of(const std::string& which, const py::object& given, bool may_be_absent) {
+  const auto array = convert::array(which, given, "a list of numbers");
+  for (py::ssize_t k = 0; k < array.size(); ++k)
+    if (const double x = array.data()[k]; !(std::abs(x) < kHuge) && !(may_be_absent && std::isnan(x)))
+      refuse(which, text(x), "finite numbers of size below " + text(kHuge),
+             "an agent does not send others, and refuses them");
+  return {array.data(), array.data() + array.size()};
+}
+
+std::vector<int> ids_of(const std::string& which, const py::object& given) {
+  std::vector<int> ids;
+  for (const py::handle one : given) ids.push_back(convert::small(which, one));
+  return ids;
+}
+
 wire::FieldValue field_value(const wire::FieldInfo& info, const py::object& given) {
-  try {
-    switch (info.kind) {
-      case FieldKind::numbers:
-      case FieldKind::sparse:
-        return given.cast<std::vector<double>>();
-      case FieldKind::optional:
-        return given.cast<double>();
-      case FieldKind::flag:
-        return given.cast<bool>();
-      case FieldKind::count:
-        return given.cast<int>();
-      case FieldKind::set:
-        return wire::Labels{given.cast<std::vector<int>>(), false};
-      case FieldKind::labels:
-        break;
-    }
-    const auto pair = given.cast<std::pair<std::vector<int>, bool>>();
-    return wire::Labels{pair.first, pair.second};
-  } catch (const py::cast_error&) {
-    refuse("message field " + info.name, py::repr(given).cast<std::string>(),
-           "a value like the one it has now");
+  const std::string which = "message field " + info.name;
+  const bool list = py::hasattr(given, "__iter__") && !py::isinstance<py::str>(given);
+  switch (info.kind) {
+    case FieldKind::numbers:
+    case FieldKind::sparse:
+      return numbers_of(which, given, info.kind == FieldKind::sparse);
+    case FieldKind::optional:
+      return convert::number(which, given);
+    case FieldKind::flag:
+      return convert::flag(which, given);
+    case FieldKind::count:
+      return convert::small(which, given);
+    case FieldKind::set:
+      if (!list) refuse(which, convert::shown(given), "a list of agents");
+      return wire::Labels{ids_of(which, given), false};
+    case FieldKind::labels:
+      break;
   }
+  if (!py::isinstance<py::tuple>(given) || py::len(given) != 2)
+    refuse(which, convert::shown(given), "(ids, complement)");
+  const auto pair = py::reinterpret_borrow<py::tuple>(given);
+  return wire::Labels{ids_of(which, pair[0]), convert::flag(which, pair[1])};
 }
 
 }  // namespace

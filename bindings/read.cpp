@@ -84,12 +84,6 @@ py::object read_tuple(const ArgumentType& type, const std::string& which, py::ha
   return all;
 }
 
-/// Whether no constructor has run: pybind11 would make room for the content and leave it as it is.
-bool empty(py::handle object) {
-  auto* instance = reinterpret_cast<py::detail::instance*>(object.ptr());
-  return instance->get_value_and_holder().value_ptr() == nullptr;
-}
-
 py::object read_wholes(const std::string& which, py::handle given) {
   const auto numbers = convert::array(which, given, "a list of whole numbers");
   const double* end = numbers.data() + numbers.size();
@@ -99,9 +93,20 @@ py::object read_wholes(const std::string& which, py::handle given) {
   return numbers.attr("astype")("int32");
 }
 
+/// Whether it is one of ours of which no constructor has run: pybind11 would make room for the content and
+/// leave it as it is.
+bool empty(py::handle object) {
+  auto* const base = reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base);
+  if (PyObject_TypeCheck(object.ptr(), base) == 0) return false;
+  return reinterpret_cast<py::detail::instance*>(object.ptr())->get_value_and_holder().value_ptr() == nullptr;
+}
+
 }  // namespace
 
 py::object read(const ArgumentType& type, const std::string& which, py::handle given) {
+  if (empty(given))
+    refuse(which, "an object without its content, as __new__ alone leaves it", type.expected(),
+           "make it by calling the class, or the function that returns it");
   if (given.is_none()) {
     if (type.optional) return py::none();
     refuse(which, "None", type.expected());
@@ -138,9 +143,6 @@ py::object read(const ArgumentType& type, const std::string& which, py::handle g
       return py::dict(py::reinterpret_borrow<py::object>(given));
     case Kind::instance:
       if (!py::isinstance(given, type.instance)) refuse(which, convert::shown(given), type.expected());
-      if (empty(given))
-        refuse(which, "an object without its content, as __new__ alone leaves it", type.expected(),
-               "make it by calling the class, or the function that returns it");
       return py::reinterpret_borrow<py::object>(given);
     case Kind::anything:
       break;

@@ -37,7 +37,8 @@ class BoundKind(IntEnum, metaclass=HintingEnum):
 
 
 _WHY = {
-    BoundKind.NONE: "no certificate was asked for, and the filter promises nothing at this sample",
+    BoundKind.NONE: "no certificate was asked for, and the filter promises nothing at this sample: a condition of its "
+    "theorem is not met, or what the theorem needs was lost, such as a message",
     BoundKind.TOO_FEW: "too few measurements have reached this agent, at this sample and all before: without those of "
     "the attackers the rest does not determine the state",
     BoundKind.REFUTED: "the measurements contradict the assumption that at most so many are attacked (or the rare "

@@ -7,11 +7,14 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.checks import check
+from garrison.verdict import Verdict
 from garrison.words import count
 
 Array = NDArray[np.float64]
 #: growth of the error over half a run, beyond that of the plant, from which on it is called divergence
 _GROWTH = 1e3
+#: samples without a bound, or a test, at the end of a run from which on that is told
+_OVER = 10
 #: names shown in one line
 _NAMES = 5
 #: most samples of which a median is taken
@@ -100,6 +103,32 @@ def of_silence(names: list[str] | None, measurements: Array) -> list[str]:
     return [
         f"the recording holds no measurement of {shown}: nothing can be said of {'it' if len(which) == 1 else 'them'}"
     ]
+
+
+def of_losses(bound: Array | None, verdict: NDArray[np.uint8] | None, counters: dict[str, int]) -> list[str]:
+    """Lines where bounds or tests were there and then end, for everybody and to the end of the run.
+
+    bound, verdict: (trial, time, agent). Only where something was lost: that is why, and not visible otherwise.
+    """
+    if not any(counters.get(name, 0) for name in ("lost", "late", "refused", "missing", "nonfinite")):
+        return []
+    found = []
+    why = "rests on a message that did not come in time, or on more measurements at once than came"
+    if bound is not None and (last := _end(np.isfinite(bound))) is not None:
+        cure = 'a certificate ("local", "flooded") does not need every message'
+        found.append(f"no agent has a bound after sample {last}: it {why}; {cure}")
+    if verdict is not None:
+        tested = (verdict != Verdict.NOT_TESTED) & (verdict != Verdict.SILENT)
+        if (last := _end(tested)) is not None:
+            found.append(f"no sensor is tested after sample {last}: the test {why}")
+    return found
+
+
+def _end(there: NDArray[np.bool_]) -> int | None:
+    """Last time at which somebody has it, where that is in the run and long before its end."""
+    times = np.flatnonzero(there.any(axis=(0, 2)))
+    left = there.shape[1] - 1 - (times[-1] if len(times) else 0)
+    return int(times[-1]) if len(times) and times[-1] > 0 and left >= _OVER else None
 
 
 def of_divergence(model: _core.Model, estimate: Array | None, error: Array | None, quiet_from: int) -> list[str]:

@@ -75,6 +75,7 @@ def _run(
         run.warnings.append("the plant changes in time: no theorem and no condition of a filter covers it")
     run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
     run.warnings += doubts.of_alarms(filter, run.shape[1] - 1)
+    run.warnings += doubts.of_losses(run.bound, run.verdict, run.counters)
     quiet = max((a.start for a in attacks), default=0)
     if "C" not in series:
         constant = not series and not model.inputs

@@ -7,7 +7,7 @@ from garrison import _core, arguments, drivers
 from garrison.arguments import read, whole, write
 from garrison.checks import Check, check
 from garrison.record import Run
-from garrison.words import Hinting, hinted, hinted_methods, refusal, require_order
+from garrison.words import Hinting, hinted, hinted_methods, refusal, require_order, shown
 
 
 @hinted_methods
@@ -19,6 +19,8 @@ class Prepared(metaclass=Hinting):
     """
 
     def __init__(self, design: _core.Design) -> None:
+        if not isinstance(design, _core.Design):
+            raise refusal("Prepared.design", shown(design), "a design", "garrison.prepare makes it")
         self._design = design
 
     @property

@@ -12,7 +12,7 @@
 namespace garrison::wire {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x31474d47;  // "GMG1"
+constexpr std::uint32_t kMagic = 0x32474d47;  // "GMG2"
 constexpr std::size_t kFrame = 4 + 8;         // magic, checksum
 
 /// A message whose fields are known at run time only: the visitors of real messages read and write it.

@@ -129,6 +129,48 @@ def test_a_snapshot_knows_whether_the_agent_has_heard_anybody(filter: gr.Filter)
     assert alone.sense(51, [0.0]) is None and kept.sense(51, [0.0]) is None
 
 
+def design_of(agents: int, states: int, complete: bool = False) -> gr.Prepared:
+    eye = np.eye(states)
+    model = gr.Model(
+        0.9 * eye, [eye] * agents, process_covariance=0.1 * eye, measurement_covariance=[0.1 * eye] * agents
+    )
+    network = gr.Network.complete(agents) if complete else gr.Network.ring(agents)
+    return gr.prepare(model, network, gr.filters.PartialSharing(gain=0.1, shared=1))
+
+
+@pytest.mark.parametrize("foreign", [design_of(5, 3), design_of(9, 2), design_of(5, 2, complete=True)])
+def test_messages_of_another_design_are_refused(foreign: gr.Prepared) -> None:
+    """Also where their bodies have the same fields: another dimension, size or network."""
+    agent, other = design_of(5, 2).agent(0), foreign.agent(1)
+    agent.sense(1, [0.0, 0.0])
+    said = other.sense(1, [7.0] * foreign.model.states)
+    before = agent.estimate.copy()
+    with pytest.raises(
+        gr.InvalidInput, match="a message from agent 1 of another design, expected messages of the same"
+    ):
+        agent.fuse([said])
+    assert np.array_equal(agent.estimate, before)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("intact", None),
+        ("intact", 0.3),
+        ("estimate", [float("nan"), 0.0]),
+        ("estimate", [1e308, 0.0]),
+        ("estimate", np.array([1j, 0.0])),
+        ("proved", [1.5]),
+        ("proved", 3),
+    ],
+)
+def test_values_of_lies_are_read_strictly(field: str, value: object) -> None:
+    message = gr.Agent(*problem(), FILTERS[0], 1).sense(1, [1e9])
+    assert message is not None
+    with pytest.raises(gr.InvalidInput, match=f"^message field {field}: got "):
+        message.replace(field, value)
+
+
 def test_messages_have_fields_can_be_kept_and_be_lied_in() -> None:
     model, net = problem()
     message = gr.Agent(model, net, FILTERS[0], 1).sense(1, [1e9])
@@ -177,7 +219,7 @@ def test_what_an_agent_cannot_use_is_refused_by_name_or_counted() -> None:
         agent.fuse([other])
     wide = gr.Model(np.eye(9), [np.eye(9)[:1]] * AGENTS, process_bound=0.1, measurement_bound=0.1)
     nine = gr.Agent(wide, net, gr.filters.Saturation(threshold=1.0), 1).sense(2, [0.0])
-    with pytest.raises(gr.InvalidInput, match="other fields"):
+    with pytest.raises(gr.InvalidInput, match="of another design"):
         agent.fuse([nine])
     many = gr.Agent(
         gr.Model(model.A, [[[1.0, 0.0]]] * 130, process_bound=0.02, measurement_bound=0.05),
@@ -185,7 +227,7 @@ def test_what_an_agent_cannot_use_is_refused_by_name_or_counted() -> None:
         filt,
         1,
     ).sense(2, [0.0])
-    with pytest.raises(gr.InvalidInput, match="other fields"):
+    with pytest.raises(gr.InvalidInput, match="of another design"):
         agent.fuse([many])
     for junk in (b"", b"abc", bytes(300), old.to_bytes()[:-1] if old is not None else b""):
         with pytest.raises(gr.InvalidInput):

@@ -78,6 +78,16 @@ def test_every_filter_has_a_page_with_its_parameters() -> None:
         assert f"generated/parameters_{info['name']}.md" in text, f"docs/filters: no page shows {info['name']}"
 
 
+def test_every_field_of_a_message_is_on_a_page_of_the_filters() -> None:
+    """What an agent can lie in."""
+    headers = (path.read_text(encoding="utf-8") for path in (ROOT / "include/garrison/filters").rglob("*.hpp"))
+    listed = re.compile(r"""v\.(?:numbers|optional|sparse|flag|count|set|labels)\("(\w+)""")
+    fields = {name for text in headers for name in listed.findall(text)}
+    assert {"estimate", "proved", "information", "shared", "rest", "attacked"} <= fields
+    pages = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "docs/filters").glob("*.md"))
+    assert [name for name in sorted(fields) if f"`{name}`" not in pages] == []
+
+
 def test_every_class_of_the_headers_says_how_threads_may_use_it() -> None:
     # Not the specialisations of a template, nor the classes inside of one.
     template = r"(?:template <.*\n(?:  requires .*\n)?)?"

@@ -103,3 +103,14 @@ def test_a_necessary_sensor_is_back_within_sixty_samples_of_a_jump(positions: in
     assert not accused[530:].any()
     assert error[560:].max() < 10.0
     assert any("alone sees a mode" in w for w in run.warnings) == (positions == 1)
+
+
+@pytest.mark.parametrize(
+    ("link", "told"), [({}, False), ({"delay": 0.3, "delay_rounds": 4}, True), ({"drop": 0.5}, True)]
+)
+def test_bounds_and_tests_that_end_with_a_lost_message_are_told(link: dict[str, float], told: bool) -> None:
+    C = [np.eye(2)[[i % 2]] for i in range(8)]
+    model = gr.Model(0.95 * np.eye(2), C, process_bound=0.01, measurement_bound=0.01)
+    filt = gr.filters.Saturation(threshold=1.0, rounds=12, attacked=1, initial_error=2.0, detector=True)
+    run = gr.simulate(model, gr.Network.complete(8), filt, steps=60, link=link)
+    assert any("no sensor is tested after sample" in line for line in run.warnings) == told

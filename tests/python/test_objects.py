@@ -241,6 +241,20 @@ def test_objects_without_content_are_refused() -> None:
                 assert ": got " in str(error)
 
 
+def test_objects_without_content_are_refused_as_arguments() -> None:
+    model, network = full_model(), full_network()
+    for whole in (model, network, FILTERS[0][0], ATTACKS[0][0], small_agent()):
+        empty = type(whole).__new__(type(whole))
+        for call in (lambda: whole == empty, lambda: empty == whole, lambda: whole in [empty]):
+            with pytest.raises(gr.InvalidInput, match="an object without its content"):
+                call()
+
+
+def small_agent() -> gr.Agent:
+    run = small_run()
+    return gr.Agent(run.model, run.network, run.filter, 0)
+
+
 def test_what_is_worked_with_says_that_it_is_not_kept() -> None:
     window = gr.certificate.Window(2, 2, 3, 3, 9)
     for keep in (pickle.dumps, copy.copy, copy.deepcopy):

@@ -111,6 +111,7 @@ inline void next_measurement(const Local& local, const double* x, double* out) n
 ///   `most_missing(gains)`: sensors that may lack a measurement at once; where there are more, drivers that
 ///   see all of them uncover everybody before the sample;
 ///   `part(gains, id, neighbours)`: what one agent needs of the gains, the rest left empty;
+///   `sound(state)`: whether a state that was read from a snapshot may be gone on from;
 ///   `runs(gains)`: whether this build has all that they ask for (a solver, say).
 /// - What is not inline of all this is in src/filters/<family>/runtime, which nodes link without design,
 ///   analysis and exceptions.

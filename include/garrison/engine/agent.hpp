@@ -36,6 +36,8 @@ class GARRISON_EXPORT Agent {
 
   virtual ~Agent() = default;
   virtual std::string_view family() const = 0;
+  /// Fingerprint of the design that this is an agent of: messages of another are not for it.
+  virtual std::uint64_t design() const = 0;
   virtual int id() const = 0;
   virtual int agents() const = 0;  ///< of the whole network
   virtual int states() const = 0;

@@ -51,6 +51,7 @@ class AgentOf final : public Agent {
   AgentOf& operator=(const AgentOf&) = delete;
 
   std::string_view family() const override { return F::name; }
+  std::uint64_t design() const override { return part_.design; }
   int id() const override { return local_.id; }
   int agents() const override { return local_.agents; }
   int states() const override { return local_.states; }
@@ -190,7 +191,8 @@ class AgentOf final : public Agent {
     reader("", state_);
     if (evidence_) reader("certificate", evidence_->memory());
     const bool certified = !evidence_ || (evidence_->usable() && evidence_->memory().t == head.t);
-    const bool sound = certified && usable<n>(F::template estimate<n>(state_));
+    bool sound = certified && usable<n>(F::template estimate<n>(state_));
+    if constexpr (requires { F::template sound<n>(state_); }) sound = sound && F::template sound<n>(state_);
     if (reader.end() != Refusal::none || head.t < start() || head.t > kLatest || !sound) {
       // Somebody forged a checksum: nothing of it may stay.
       Vec<n> zero = Vec<n>::Zero(local_.states);

@@ -50,6 +50,7 @@ using FieldValue = std::variant<std::vector<double>, double, bool, int, Labels>;
 /// Value-typed; compares by value.
 struct GARRISON_EXPORT Letter {
   std::string family;
+  std::uint64_t design = 0;  ///< fingerprint of the design whose agent said it
   Envelope envelope;
   int agents = 0;
   std::vector<FieldInfo> fields;
@@ -69,6 +70,7 @@ struct GARRISON_EXPORT Letter {
   template <class V>
   void visit(V& v) {
     v("family", family);
+    v("design", design);
     v.range("sender", envelope.sender, 0, INT32_MAX);
     v("sample", envelope.sample);
     v.range("round", envelope.round, 0, INT32_MAX);

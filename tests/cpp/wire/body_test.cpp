@@ -32,6 +32,7 @@ Speech listen(const AnyFilter& filter, const Model& model, const Network& networ
     const auto sent = speaker->sense(t, {y.data(), static_cast<std::size_t>(y.size())}, body);
     REQUIRE(sent.bytes > 0);
     speech.letters.push_back({filter.name(),
+                              speaker->design(),
                               {1, t, 0},
                               model.agents(),
                               speaker->fields(1, t),

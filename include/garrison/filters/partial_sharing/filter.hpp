@@ -206,6 +206,20 @@ struct GARRISON_EXPORT PartialSharing {
     for (int i = 0; i < s.group->m; ++i) z[i] = s.group->at(s.group->z, i, s.lane);
     return z;
   }
+  /// Whether nothing in it is so large that no sample and no gain could have made it.
+  template <int n>
+  static bool sound(const State<n>& s) noexcept {
+    partial_sharing::Group<n>& g = *s.group;
+    bool all = true;
+    const auto look = [&](double* array, int count) {
+      for (int k = 0; k < count; ++k) all = all && std::abs(g.at(array, k, s.lane)) < kHuge;
+    };
+    look(g.P, packed(g.m));
+    look(g.G, packed(g.m));
+    look(g.K, g.q * g.m);
+    for (int k = 0; k < g.m; ++k) all = all && std::abs(g.prediction(s.lane)[k]) < kHuge;
+    return all;
+  }
   template <int n>
   static const AgentSet* accused(const State<n>& s) noexcept {
     return &s.nobody;
