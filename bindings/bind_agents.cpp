@@ -219,8 +219,9 @@ void bind_agents(py::module_& m) {
           "a running network: its next sample is t + 1.")
       .def(
           "uncover", [](PyAgent& a) { a->uncover(); },
-          "Something was missed that only the caller knows of: no bound and no test rests on the past any "
-          "more.")
+          "Something was missed that only the caller knows of, such as more than `attacked` measurements of "
+          "the "
+          "whole network in\none sample: no bound and no test rests on the past any more.")
       .def_property_readonly(
           "estimate",
           [](const PyAgent& a) {

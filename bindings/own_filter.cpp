@@ -260,7 +260,9 @@ bool is_own(const AnyFilter& filter) { return dynamic_cast<const OwnFilter*>(&fi
 py::object object_of(const AnyFilter& filter) { return dynamic_cast<const OwnFilter&>(filter).object(); }
 
 py::dict attributes_of(const AnyFilter& filter) {
-  return py::dict(object_of(filter).attr("__dict__").attr("copy")());
+  const py::object object = object_of(filter);
+  // The base class itself has no attributes of its own.
+  return py::hasattr(object, "__dict__") ? py::dict(object.attr("__dict__").attr("copy")()) : py::dict();
 }
 
 }  // namespace own

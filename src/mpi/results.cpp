@@ -4,6 +4,8 @@
 #include <pnetcdf.h>
 
 #include <array>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "garrison/version.hpp"
@@ -125,9 +127,24 @@ void Results::write(std::int64_t t, std::span<const double> truth, const Summary
   if (estimates_)
     check(ncmpi_iput_vara_double(file_, estimate_, from.data(), count.data(), estimates.data(), nullptr),
           "write into it");
-  // Everything at once: the header counts a record when all of it is there.
+  if (first) make_room(record);
   check(ncmpi_wait_all(file_, NC_REQ_ALL, nullptr, nullptr), "write into it");
   settle();
+}
+
+/// Rank 0 counts the record in the header, and others may be killed before their part of it is written: the
+/// file is as long as the header says even then, with zeros in place of what is missing, and can be read.
+void Results::make_room(MPI_Offset record) {
+  MPI_Offset begin = 0;
+  MPI_Offset size = 0;
+  check(ncmpi_inq_varoffset(file_, time_, &begin), "find its records");
+  check(ncmpi_inq_recsize(file_, &size), "find its records");
+  const auto needed = static_cast<std::uintmax_t>(begin + (record + 1) * size);
+  std::error_code failed;
+  if (std::filesystem::file_size(path_, failed) < needed && !failed)
+    std::filesystem::resize_file(path_, needed, failed);
+  if (failed && failure_.empty())
+    failure_ = path_ + ": got " + failed.message() + ", expected to make room in it; free the disk";
 }
 
 void Results::sync() {

@@ -32,6 +32,7 @@ class Results {
  private:
   void create(const Scenario& scenario);
   void open(const Scenario& scenario);
+  void make_room(MPI_Offset record);
   /// Keeps the first failure of this rank for `agree`.
   void check(int code, const char* what);
   void settle();

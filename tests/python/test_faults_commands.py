@@ -5,7 +5,7 @@ from pathlib import Path
 
 import garrison as gr
 import pytest
-from conftest import RING
+from conftest import RING, ROOT
 from garrison.cli import main
 
 SCENARIO = """
@@ -319,3 +319,11 @@ def test_packed_files_are_called_so(
         capsys.readouterr()
         assert main([command, str(tmp_path / "x.csv")]) == 2
         assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("key", ["data.from", "data.to", "model.from", "model.to"])
+@pytest.mark.parametrize("value", ["inf", "-inf", "nan"])
+def test_ends_of_records_that_are_no_time_are_refused(key: str, value: str, capsys: pytest.CaptureFixture[str]) -> None:
+    scenario = str(ROOT / "examples/wind/hijacked.toml")
+    assert main(["check", scenario, "--set", f"{key}={value}"]) == 2
+    assert key.split(".")[1] in capsys.readouterr().err

@@ -126,3 +126,10 @@ def test_models_that_do_not_fit() -> None:
     with pytest.raises(gr.InvalidInput, match="another plant"):
         lie = gr.attacks.Coordinated(agents=[0], covariance=np.eye(3).ravel().tolist())
         gr.simulate(model, net, filt, steps=2, attack=lie)
+
+
+def test_no_sensor_is_called_cleared() -> None:
+    """It tests nothing, also before the first sample."""
+    model = gr.Model(0.9, [1.0, 1.0, 1.0], process_covariance=0.1, measurement_covariance=0.2)
+    run = gr.simulate(model, gr.Network.ring(3), gr.filters.PartialSharing(gain=0.1), steps=3)
+    assert run.verdict is not None and not (run.verdict == gr.Verdict.CLEARED).any()

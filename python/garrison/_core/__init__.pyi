@@ -641,7 +641,8 @@ class Agent:
         """
     def uncover(self) -> None:
         """
-        Something was missed that only the caller knows of: no bound and no test rests on the past any more.
+        Something was missed that only the caller knows of, such as more than `attacked` measurements of the whole network in
+        one sample: no bound and no test rests on the past any more.
         """
     @property
     def accused(self) -> list[int]:

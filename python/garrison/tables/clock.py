@@ -2,6 +2,7 @@
 
 import calendar
 import datetime as dt
+import math
 import re
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -113,6 +114,8 @@ def _at_epoch(value: float, part: float) -> dt.datetime:
 
 def of_number(value: float, last: bool) -> dt.date | None:
     """The date that a number among dates means: a year (last: its last day), or a time since 1970; None for others."""
+    if not math.isfinite(value):
+        return None
     if value == int(value) and 1000 <= value <= 9999:
         return dt.date(int(value), 12, 31) if last else dt.date(int(value), 1, 1)
     part = _part_since_1970([value])

@@ -93,6 +93,7 @@ void PartialSharing::rejoin(const Local& l, const Gains&, const Inbox<Message<n>
 template <int n>
 Report PartialSharing::report(const Local& l, const Gains&, const State<n>& s) noexcept {
   Report report;
+  report.verdict = Verdict::not_tested;  // before the first sample, too
   partial_sharing::Group<n>& group = *s.group;
   if (!group.started) return report;
   double largest = 0.0;
@@ -106,7 +107,7 @@ Report PartialSharing::report(const Local& l, const Gains&, const State<n>& s) n
     largest = std::max(largest, std::abs(e));
     used += std::isnan(group.at(group.y, r, s.lane)) ? 0 : 1;
   }
-  report.verdict = used == 0 ? Verdict::silent : Verdict::not_tested;
+  if (used == 0) report.verdict = Verdict::silent;
   if (used > 0) report.statistic = largest;
   return report;
 }
