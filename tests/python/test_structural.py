@@ -168,3 +168,14 @@ def test_a_residual_that_a_projection_makes_vanish_is_not_tested() -> None:
         filter = gr.filters.Structural(design="projection", window=window)
         run = gr.replay(one, gr.Network([], agents=1), filter, measurements=lie)
         assert (run.verdict[:, 1:] == gr.Verdict.NOT_TESTED).all()  # type: ignore[index]
+
+
+@pytest.mark.parametrize(("isolate", "missing", "told"), [(False, 0.0, False), (False, 0.02, True), (True, 0.0, True)])
+def test_windows_that_gaps_cut_short_are_told(isolate: bool, missing: float, told: bool) -> None:
+    model = gr.Model(0.9, [1.0] * 6, process_covariance=0.1, measurement_covariance=0.3)
+    network, rng = gr.Network.complete(6), np.random.default_rng(5)
+    y = gr.simulate(model, network, gr.filters.Dkf(), steps=200, seed=5).measurements[0].copy()  # type: ignore[index]
+    y[rng.random(y.shape) < missing] = np.nan
+    filt = gr.filters.Structural(false_alarm=1e-3, window=40, isolate=isolate)
+    run = gr.replay(model, network, filt, start=[0.0], measurements=y)
+    assert any("uses the last sample alone" in line for line in run.warnings) == told

@@ -40,6 +40,14 @@ Counts count(const VerdictLog& log, int sensors) {
   return c;
 }
 
+/// Whether a sensor lacks a measurement.
+bool misses_some(const Model& model, const Counts& c, const VerdictLog& log) {
+  const std::int64_t samples = static_cast<std::int64_t>(log.trials) * (log.times - 1);
+  for (std::size_t i = 0; i < c.measured.size(); ++i)
+    if (model.outputs(static_cast<int>(i)) > 0 && c.measured[i] < samples) return true;
+  return false;
+}
+
 std::string percent(std::int64_t part, std::int64_t whole) {
   char word[32];
   std::snprintf(word, sizeof word, "%.0f %%", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
@@ -78,6 +86,11 @@ std::vector<std::string> Structural::warnings(const Params& params, const Model&
   if (c.longest >= long_row(params, log))
     all.push_back("more than half of the sensors were accused for " + std::to_string(c.longest) +
                   " samples in a row: more than can be told from a wrong model or a wrong estimate");
+  if (params.window > 1 && (params.isolate || misses_some(model, c, log)))
+    all.push_back(
+        "window = " + std::to_string(params.window) +
+        ": a test that looks back over a missing measurement, a lost message or an isolated sensor uses "
+        "the last sample alone; lies that only the window shows are then called cleared");
   if (!params.isolate) return all;
   for (const int i : undetectable_agents(model))
     if (c.accused[static_cast<std::size_t>(i)] > 0)
