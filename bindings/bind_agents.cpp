@@ -124,9 +124,8 @@ void bind_agents(py::module_& m) {
             return a;
           },
           py::arg("data"), py::arg("snapshot") = py::none(),
-          "The agent whose part of a design Prepared.part(id) wrote; nothing is designed. snapshot: of "
-          "`save`; it "
-          "goes on from there.")
+          "The agent whose part of a design Prepared.part(id) wrote; nothing is designed.\n"
+          "snapshot: of `save`; it goes on from there.")
       .def_property_readonly("id", [](const PyAgent& a) { return a->id(); })
       .def_property_readonly("family", [](const PyAgent& a) { return std::string(a->family()); })
       .def_property_readonly(
@@ -219,9 +218,8 @@ void bind_agents(py::module_& m) {
           "a running network: its next sample is t + 1.")
       .def(
           "uncover", [](PyAgent& a) { a->uncover(); },
-          "Something was missed that only the caller knows of, such as more than `attacked` measurements of "
-          "the "
-          "whole network in\none sample: no bound and no test rests on the past any more.")
+          "Something was missed that only the caller knows of, such as more than `attacked` measurements of\n"
+          "the whole network in one sample: no bound and no test rests on the past any more.")
       .def_property_readonly(
           "estimate",
           [](const PyAgent& a) {

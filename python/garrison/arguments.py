@@ -74,7 +74,7 @@ def chance(which: str, value: Any) -> float:
     """A probability that may be 0."""
     found = number(which, value)
     if not 0.0 <= found < 1.0:
-        raise refusal(which, f"{found:g}", "a probability in [0, 1)", "0 = never")
+        raise refusal(which, f"{found:g}", "a probability in [0, 1)", "0 = deterministic")
     return found
 
 

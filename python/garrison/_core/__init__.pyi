@@ -587,7 +587,8 @@ class Agent:
     @staticmethod
     def from_part(data: typing.Any, snapshot: typing.Any = None) -> Agent:
         """
-        The agent whose part of a design Prepared.part(id) wrote; nothing is designed. snapshot: of `save`; it goes on from there.
+        The agent whose part of a design Prepared.part(id) wrote; nothing is designed.
+        snapshot: of `save`; it goes on from there.
         """
     def __eq__(self, other: typing.Any) -> bool: ...
     def __getstate__(self) -> bytes: ...
@@ -641,8 +642,8 @@ class Agent:
         """
     def uncover(self) -> None:
         """
-        Something was missed that only the caller knows of, such as more than `attacked` measurements of the whole network in
-        one sample: no bound and no test rests on the past any more.
+        Something was missed that only the caller knows of, such as more than `attacked` measurements of
+        the whole network in one sample: no bound and no test rests on the past any more.
         """
     @property
     def accused(self) -> list[int]:

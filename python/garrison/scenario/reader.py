@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.arguments import ONE_SPREAD, SPREADS, moderate, pair_of_levels
+from garrison.arguments import ONE_SPREAD, SPREADS, chance, moderate, pair_of_levels
 from garrison.doubts import waits
 from garrison.files import contents
 from garrison.fitting import Fit
@@ -227,11 +227,10 @@ def _certificate(section: Section) -> dict[str, Any]:
     section.only(CERTIFICATE_KEYS)
     if not section.table:
         return {}
-    out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": section.number("failure", 1e-6)}
+    failure = chance(section.place("failure"), section.number("failure", 1e-6))
+    out: dict[str, Any] = {"certificate": section.text("spread", "flooded"), "failure": failure}
     if out["certificate"] not in SPREADS:
         raise refusal(section.place("spread"), shown(out["certificate"]), ONE_SPREAD, near(out["certificate"], SPREADS))
-    if not 0 <= out["failure"] < 1:
-        raise refusal(section.place("failure"), shown(out["failure"]), "a probability in [0, 1)", "0 = deterministic")
     if "attacked" in section:
         out["attacked"] = section.whole("attacked", 0, 0)
     if "levels" in section:

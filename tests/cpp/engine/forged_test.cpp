@@ -62,6 +62,15 @@ void drive(Agent& agent) {
   }
 }
 
+/// Of agent 0, some samples after the start.
+Bytes driven_snapshot(const Prepared& prepared) {
+  const auto agent = prepared.agent(0);
+  drive(*agent);
+  Bytes snapshot(agent->snapshot_bytes());
+  REQUIRE(agent->save(snapshot) == snapshot.size());
+  return snapshot;
+}
+
 /// A changed snapshot with the checksum that belongs to it.
 template <class Change>
 Bytes forged_snapshot(Bytes snapshot, const Change& change_it) {
@@ -161,10 +170,7 @@ TEST_CASE("forged snapshots of every family are refused or harmless") {
   for (const Design& d : designs()) {
     CAPTURE(d.filter->name());
     const auto prepared = d.filter->prepare(d.model, d.network);
-    const auto agent = prepared->agent(0);
-    drive(*agent);
-    Bytes snapshot(agent->snapshot_bytes());
-    REQUIRE(agent->save(snapshot) == snapshot.size());
+    const Bytes snapshot = driven_snapshot(*prepared);
     for (int k = 0; k < 100; ++k) {
       const auto other = prepared->agent(0);
       const Bytes changed =
@@ -182,10 +188,7 @@ TEST_CASE("a huge number in a snapshot is refused, or gone after some samples") 
   for (const Design& d : designs()) {
     CAPTURE(d.filter->name());
     const auto prepared = d.filter->prepare(d.model, d.network);
-    const auto agent = prepared->agent(0);
-    drive(*agent);
-    Bytes snapshot(agent->snapshot_bytes());
-    REQUIRE(agent->save(snapshot) == snapshot.size());
+    const Bytes snapshot = driven_snapshot(*prepared);
     for (std::size_t at = SnapshotHead::kBytes; at + 16 <= snapshot.size(); ++at) {
       const auto other = prepared->agent(0);
       const Bytes changed =
@@ -209,10 +212,7 @@ TEST_CASE("a snapshot of a sample before the first is refused") {
                                                  {"initial_error", 2.0},
                                                  {"table", true}});
   const auto prepared = filter->prepare(test::scalar_model(rng, 2, 5, 1.02, 0.02, 0.1), complete);
-  const auto agent = prepared->agent(0);
-  drive(*agent);
-  Bytes snapshot(agent->snapshot_bytes());
-  REQUIRE(agent->save(snapshot) == snapshot.size());
+  const Bytes snapshot = driven_snapshot(*prepared);
   int refused = 0;
   // the state's own sample is one of these
   for (std::size_t at = SnapshotHead::kBytes; at + 16 <= snapshot.size(); ++at) {
