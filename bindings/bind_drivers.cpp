@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drivers: simulate, replay.
 #include "bindings.hpp"
+#include "garrison/drivers/exceedances.hpp"
 #include "garrison/drivers/simulate.hpp"
 #include "known.hpp"
 
@@ -171,6 +172,21 @@ Log log_of(const Model& model, const AnyFilter& filter, const Array& y, const st
 }  // namespace
 
 void bind_drivers(py::module_& m) {
+  m.def(
+      "exceedances",
+      [](const Array& statistic, const Array& threshold) {
+        if (statistic.ndim() < 1 || shape_of(statistic) != shape_of(threshold))
+          refuse("threshold", shape_of(threshold), "the shape of statistic, " + shape_of(statistic));
+        const py::ssize_t N = statistic.shape(statistic.ndim() - 1);
+        const auto numbers = [](const Array& a) {
+          return std::span<const double>(a.data(), static_cast<std::size_t>(a.size()));
+        };
+        Exceedances found = exceedances(numbers(statistic), numbers(threshold), static_cast<int>(N));
+        return py::make_tuple(owned(std::move(found.tests), {N}), owned(std::move(found.above), {N}));
+      },
+      py::arg("statistic"), py::arg("threshold"),
+      "(tests, above) per agent, the last axis: samples with a test (no nan), and those above its "
+      "threshold.");
   m.def(
       "simulate",
       [](const std::shared_ptr<Prepared>& prepared, int steps, const Vector& x0, double start_error,

@@ -72,6 +72,19 @@ void set_process_covariance(Noise& noise, const py::object& given, Eigen::Index 
   }
 }
 
+/// Refuses one matrix for the noises of all agents together.
+void require_blocks(const char* which, const py::object& given, const std::vector<Matrix>& C) {
+  py::ssize_t total = 0;
+  for (const Matrix& rows : C) total += rows.rows();
+  if (C.size() < 2 || !py::isinstance<py::array>(given)) return;
+  const auto joint = py::reinterpret_borrow<py::array>(given);
+  if (joint.ndim() != 2 || joint.shape(0) != total || joint.shape(1) != total) return;
+  refuse(which, std::to_string(total) + " x " + std::to_string(total) + " numbers",
+         std::to_string(C.size()) + " matrices, one per agent",
+         "noises of different agents are independent: give the block of each agent, or numbers of the "
+         "diagonal");
+}
+
 /// One entry for each agent: a matrix, or a number (times the identity), or the numbers of its diagonal.
 std::vector<Matrix> measurement_covariances(const py::object& given, const std::vector<Matrix>& C) {
   const char* which = "measurement_covariance";
@@ -81,6 +94,7 @@ std::vector<Matrix> measurement_covariances(const py::object& given, const std::
     for (const Matrix& rows : C) all.push_back(variance * Matrix::Identity(rows.rows(), rows.rows()));
     return all;
   }
+  require_blocks(which, given, C);
   for (const auto& one : per_agent(which, given, "a number, or one matrix per agent")) {
     const std::string name = at(which, all.size());
     const auto array = convert::array(name, one, "a number, or m x m numbers");

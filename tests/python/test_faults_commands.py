@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 import garrison as gr
+import numpy as np
 import pytest
 from conftest import RING, ROOT
 from garrison.cli import main
@@ -327,3 +328,33 @@ def test_ends_of_records_that_are_no_time_are_refused(key: str, value: str, caps
     scenario = str(ROOT / "examples/wind/hijacked.toml")
     assert main(["check", scenario, "--set", f"{key}={value}"]) == 2
     assert key.split(".")[1] in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--scale", "nan"], "--scale: got nan"),
+        (["--scale", "-1"], "--scale: got -1"),
+        (["--failure", "0.1"], "--failure: got 0.1 without --attacked"),
+        (["--failure", "2", "--attacked", "1"], "--failure: got 2, expected a rate"),
+        (["--period", "0.5"], "fit.period: got 0.5, expected more than 4 samples"),
+    ],
+)
+def test_options_of_fit_are_refused_by_their_names(
+    wind: Path, words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["fit", str(wind / "irish_wind.csv"), *words]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_an_index_that_a_scenario_does_not_have(capsys: pytest.CaptureFixture[str]) -> None:
+    scenario = str(ROOT / "examples/wind/hijacked.toml")
+    assert main(["check", scenario, "--set", "attack[3].value=1"]) == 2
+    assert "expected an index below 1, as the scenario has 1" in capsys.readouterr().err
+
+
+def test_one_covariance_for_the_noises_of_all_agents() -> None:
+    with pytest.raises(gr.InvalidInput, match="got 3 x 3 numbers, expected 3 matrices, one per agent; noises of diff"):
+        gr.Model(0.9, [1.0] * 3, measurement_covariance=np.eye(3))
+    with pytest.raises(gr.InvalidInput, match="give the block of each agent"):
+        gr.Model(0.9 * np.eye(2), [np.eye(2)] * 3, measurement_covariance=np.eye(6))

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import garrison as gr
 import numpy as np
@@ -179,3 +180,34 @@ def test_windows_that_gaps_cut_short_are_told(isolate: bool, missing: float, tol
     filt = gr.filters.Structural(false_alarm=1e-3, window=40, isolate=isolate)
     run = gr.replay(model, network, filt, start=[0.0], measurements=y)
     assert any("uses the last sample alone" in line for line in run.warnings) == told
+
+
+@pytest.mark.parametrize("share", ["neighbours", "none"])
+@pytest.mark.parametrize(("window", "missing"), [(2, 0.02), (8, 0.02), (40, 0.002), (40, 0.02), (40, 0.2)])
+def test_a_window_that_a_gap_cuts_short_clears_nobody(window: int, missing: float, share: str) -> None:
+    """A lie of 1.2 deviations, which one sample does not show, is called "not tested" where the window is cut."""
+    model = gr.Model(0.9, [1.0] * 6, process_covariance=0.1, measurement_covariance=0.3)
+    network, rng = gr.Network.complete(6), np.random.default_rng(window)
+    y = gr.simulate(model, network, gr.filters.Dkf(), steps=600, seed=5).measurements[0].copy()  # type: ignore[index]
+    y[:, 0] += 1.2 * np.sqrt(0.3)
+    gone = rng.random(y.shape) < missing
+    gone[:, 1:] &= share == "neighbours"  # otherwise only the own ones are used
+    y[gone] = np.nan
+    filt = gr.filters.Structural(false_alarm=1e-3, window=window, share=share)
+    run = gr.replay(model, network, filt, start=[0.0], measurements=y)
+    cleared = run.verdict[0, 1:, 0] == gr.Verdict.CLEARED  # type: ignore[index]
+    since = np.convolve(gone.any(axis=1), np.ones(window), "full")[: len(y)] > 0
+    assert not cleared[since].any()
+    assert window > 8 or cleared[~since].any()  # whole windows are tested
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-14, 1e-4])
+@pytest.mark.parametrize("test", [{"test": "residual"}, {"test": "innovation"}, {"isolate": True}])
+def test_measurements_without_noise_alarm_as_rarely_as_asked(noise: float, test: dict[str, Any]) -> None:
+    model = gr.Model(0.9 * np.eye(2), [[1, 0], [0, 1], [1, 1]], process_covariance=0.1, measurement_covariance=noise)
+    filt = gr.filters.Structural(false_alarm=0.01, **test)
+    run = gr.simulate(model, gr.Network.complete(3), filt, steps=4000)
+    over = np.nan_to_num(run.statistic) > np.nan_to_num(run.threshold, nan=np.inf)
+    assert over[0, 100:].mean() < 0.015
+    if noise < 1e-9 and "test" in test and test["test"] == "residual":  # zero up to rounding: says nothing
+        assert not (run.verdict == gr.Verdict.CLEARED).any()

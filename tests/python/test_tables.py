@@ -320,6 +320,35 @@ def test_suspicious_constants_are_named(tmp_path: Path, value: float, words: str
     assert read_records(write(tmp_path, f"t,A\n{plain}")).notes == []
 
 
+def test_a_constant_within_the_spread_of_a_column_is_named(tmp_path: Path) -> None:
+    cells = [f"{-999 if k % 9 == 5 else 700 * np.sin(7.3 * k):g}" for k in range(60)]
+    (note,) = read_records(write(tmp_path, "t,A\n" + "".join(f"{k},{c}\n" for k, c in enumerate(cells)))).notes
+    assert "column A: 7 values of exactly -999" in note and "make the cells empty" in note
+    once = ["-999" if k == 5 else f"{700 * np.sin(7.3 * k):g}" for k in range(60)]
+    assert read_records(write(tmp_path, "t,A\n" + "".join(f"{k},{c}\n" for k, c in enumerate(once)))).notes == []
+
+
+@pytest.mark.parametrize(
+    ("name", "first", "step", "doubted"),
+    [
+        ("time", 44197, 1, True),
+        ("time", 44197.5, 1 / 24, True),
+        ("time [s]", 44197, 1, False),
+        ("time [d]", 44197, 1, False),
+        ("time", 0, 1, False),
+        ("day", 44197, 1, False),
+    ],
+)
+def test_day_numbers_of_spreadsheets_are_doubted(
+    tmp_path: Path, name: str, first: float, step: float, doubted: bool
+) -> None:
+    rows = "".join(f"{first + step * k:.10g},{k % 5}\n" for k in range(30))
+    notes = read_records(write(tmp_path, f"{name},A\n{rows}")).notes
+    assert any("day numbers of a spreadsheet" in note for note in notes) == doubted
+    with pytest.raises(gr.InvalidInput, match="format the column as a date"):
+        read_records(write(tmp_path, "date,A\n44197,1\n44198,2\n44199,3\n"))
+
+
 def test_fit_says_so(tmp_path: Path, wind: Path, capsys: pytest.CaptureFixture[str]) -> None:
     from garrison.cli import main
 

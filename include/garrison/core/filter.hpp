@@ -53,7 +53,7 @@ struct Report {
   CertificateKind kind = CertificateKind::none;  ///< of `bound`; drivers fill it in
   double statistic = kNaN;                       ///< what is tested, e.g. |innovation|
   double threshold = kNaN;                       ///< what it is tested against
-  Verdict verdict = Verdict::cleared;
+  Verdict verdict = Verdict::not_tested;
 };
 
 /// The compile-time dimension where there is one, else the run-time one.

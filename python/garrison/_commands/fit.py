@@ -9,7 +9,7 @@ from garrison._commands.terminal import OK, Commands, console_for, number, print
 from garrison.identifying import fit
 from garrison.scenario.section import moment
 from garrison.tables import read_records
-from garrison.words import count
+from garrison.words import count, refusal
 
 
 def add(commands: Commands) -> None:
@@ -39,7 +39,7 @@ def add(commands: Commands) -> None:
         help="also store levels for certificates with so many stations attacked, and wider bounds",
     )
     command.add_argument(
-        "--failure", type=number, default=1e-3, help="rate at which clean records exceed these levels (default 1e-3)"
+        "--failure", type=number, help="rate at which clean records exceed these levels (default 1e-3)"
     )
     command.add_argument("-o", "--output", help="model file to write (JSON); default: standard output")
     command.add_argument("--force", action="store_true", help="replace an existing model file")
@@ -49,13 +49,14 @@ def add(commands: Commands) -> None:
 
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
+    _require_options(args)
     start = moment("--from", args.start) if args.start is not None else None
     end = moment("--to", args.end, last=True) if args.end is not None else None
     records = read_records(args.records).between(start, end)
     options = {"factors": args.factors, "harmonics": args.harmonics, "root": args.root, "factor": args.scale}
     found = fit(records, **options, **({"period": args.period} if args.period is not None else {}))
     print_warnings(records.notes, stderr=True)
-    text = found.to_json(args.attacked, args.failure)
+    text = found.to_json(args.attacked, *([] if args.failure is None else [args.failure]))
     if args.output:
         write_whole(new_file(args.output, args.force), lambda path: path.write_text(text + "\n", encoding="utf-8"))
     if args.json or not args.output:
@@ -80,3 +81,15 @@ def do(args: argparse.Namespace) -> int:
     console.print(str(found.whiteness()))
     console.print(f"written to {args.output}")
     return OK
+
+
+def _require_options(args: argparse.Namespace) -> None:
+    """Refuse what the records need not be read for, by the names of the command line."""
+    if not 0.0 < args.scale < np.inf:
+        raise refusal("--scale", f"{args.scale:g}", "a finite number > 0", "it multiplies all records")
+    if args.failure is None:
+        return
+    if args.attacked is None:
+        raise refusal("--failure", f"{args.failure:g} without --attacked", "both", "it is a rate of the levels")
+    if not 0.0 < args.failure < 1.0:
+        raise refusal("--failure", f"{args.failure:g}", "a rate in (0, 1)")

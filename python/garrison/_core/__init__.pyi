@@ -48,6 +48,7 @@ __all__: list[str] = [
     "design_summary",
     "discretise",
     "driven",
+    "exceedances",
     "extended_kalman",
     "filter_infos",
     "filters",
@@ -1121,6 +1122,14 @@ def driven(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
     A x + B u.
+    """
+
+def exceedances(
+    statistic: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    threshold: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> tuple[numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.int64]]:
+    """
+    (tests, above) per agent, the last axis: samples with a test (no nan), and those above its threshold.
     """
 
 def extended_kalman(

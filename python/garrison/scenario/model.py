@@ -198,6 +198,10 @@ def _measurement_covariance(section: Section, outputs: list[int]) -> list[Any]:
     where, given = section.place("measurement_covariance"), section.array("measurement_covariance")
     if not isinstance(given, (list, np.ndarray)):
         return [np.diag(np.full(m, number(where, given))) for m in outputs]
+    total = sum(outputs)
+    if len(outputs) > 1 and len(given) == total and all(np.shape(row) == (total,) for row in given):
+        advice = "noises of different agents are independent: give the block of each agent, or numbers of the diagonal"
+        raise refusal(where, f"{total} x {total} numbers", f"{len(outputs)} matrices, one per agent", advice)
     if len(given) != len(outputs):
         raise refusal(where, f"{len(given)} entries", f"{len(outputs)}, one per agent (or one number for all)")
     out = []

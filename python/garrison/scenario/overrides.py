@@ -57,7 +57,9 @@ def _inside(key: str, place: Any, name: str, indices: list[int]) -> Any:
         if isinstance(found, dict) and index == 0:  # a single [attack]
             continue
         if not isinstance(found, list) or index >= len(found):
-            raise refusal(key, f"{name}[{index}]", f"an entry that the scenario has, from 0, of {shown(found)}")
+            has = len(found) if isinstance(found, list) else int(found != {})
+            expected = f"an index below {has}, as the scenario has {has}, counted from 0"
+            raise refusal(key, f"{name}[{index}]", expected, f"write another [[{name}]] into the scenario")
         found = found[index]
     return found
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.tables.cells import is_missing, number
-from garrison.tables.clock import Clock, read_clock
+from garrison.tables.clock import Clock, doubt, read_clock
 from garrison.tables.moments import is_time_of_day, looks_like_time
 from garrison.tables.text import Rows, decimal_comma, read_rows, require_widths
 from garrison.words import count, refusal
@@ -43,6 +43,7 @@ TIME_NAMES = {
 #: constants that many instruments write for "no value"
 _SENTINELS = (-999.0, -9999.0, -99999.0, -999.9, -999.99, -99.99, 9999.0, 99999.0, 999.9)
 _FAR = 100.0  # robust deviations from which on a value is suspicious
+_OFTEN = 3  # times as often as any other value, from which on such a constant is suspicious
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,7 @@ def read_table(path: str | Path) -> Table:
     notes: list[str] = []
     values = _numbers(rows, 1, int(timed), [c.name for c in named], notes)
     notes += _suspicious(named, values)
+    notes += doubt([row[0] for row in body], columns[0].name, columns[0].unit) if timed else []
     if clock is not None:
         values, filled = clock.fill(values)
         notes += (
@@ -221,6 +223,12 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
         middle = np.median(known)
         spread = 1.4826 * np.median(np.abs(known - middle))
         far = known[np.abs(known - middle) > _FAR * spread] if spread > 0 else known[np.isin(known, _SENTINELS)]
+        if not len(far) and (constant := _constant(known)) is not None:
+            often = count(int(np.sum(known == constant)), "value")
+            notes.append(
+                f"column {column.name}: {often} of exactly {constant:g}, which many instruments write where there is "
+                "none; if they mean that, make the cells empty"
+            )
         if len(far) and len(far) < len(known) / 2:
             kinds, counts = np.unique(far, return_counts=True)
             worst = kinds[np.argmax(counts)]
@@ -232,3 +240,13 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
                 "if they mean that there is none, make the cells empty"
             )
     return notes
+
+
+def _constant(known: Array) -> float | None:
+    """A constant for "no value" that is the least or largest one, and there far more often than any other value."""
+    kinds, counts = np.unique(known, return_counts=True)
+    for k in (0, len(kinds) - 1):
+        others = np.delete(counts, k)
+        if kinds[k] in _SENTINELS and counts[k] >= _OFTEN * max(1, int(others.max(initial=0))):
+            return float(kinds[k])
+    return None

@@ -132,7 +132,9 @@ void add_test(Structural::Gains& g, const Setting& s, const GainMatrices& K, con
     }
   }
   for (Index i = 0; i < N; ++i) {
-    const auto known = [&](double std) { return structural::varies(std, s.R(i, i)) ? std : kNaN; };
+    const auto known = [&](double std) {
+      return structural::varies(std, s.R(i, i), innovation(i)) ? std : kNaN;
+    };
     g.std.push_back(known(g.innovation ? innovation(i) : residual(i)));
     g.innovation_std.push_back(known(innovation(i)));
   }

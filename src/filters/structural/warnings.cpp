@@ -90,7 +90,7 @@ std::vector<std::string> Structural::warnings(const Params& params, const Model&
     all.push_back(
         "window = " + std::to_string(params.window) +
         ": a test that looks back over a missing measurement, a lost message or an isolated sensor uses "
-        "the last sample alone; lies that only the window shows are then called cleared");
+        "the last sample alone, which does not show what the window would: it accuses or says not tested");
   if (!params.isolate) return all;
   for (const int i : undetectable_agents(model))
     if (c.accused[static_cast<std::size_t>(i)] > 0)

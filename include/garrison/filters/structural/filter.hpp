@@ -37,7 +37,8 @@ namespace garrison {
 /// (docs/adr/0008). Messages tell P_i and how long their sender is off. Nothing is tested for `settle`
 /// samples after the start (threshold NaN, verdict "not tested"). Where the bounded deviation is above 10
 /// times the stationary one, a measurement beyond even that is an alarm, and one within says nothing: the
-/// verdict stays "not tested" and no alarm ends.
+/// verdict stays "not tested" and no alarm ends. Where a gap has cut a window short the last sample alone is
+/// tested, which can accuse and end an alarm, but not clear: the verdict is "not tested" there, too.
 ///
 /// With `isolate` innovations are tested before they are used: an agent leaves out every measurement, its own
 /// or one it hears, that is over its level, and withholds its own while its alarm lasts. P_i grows meanwhile,
@@ -207,7 +208,7 @@ struct GARRISON_EXPORT Structural {
       r.verdict = Verdict::attacked;
     else if (l.outputs == 0 || (missing && !g.accuse_missing))
       r.verdict = Verdict::silent;
-    else if ((std::isnan(s.threshold) || (s.coarse && s.above == 0)) && !missing)
+    else if ((std::isnan(s.threshold) || ((s.coarse || s.broken) && s.above == 0)) && !missing)
       r.verdict = Verdict::not_tested;
     else
       r.verdict = s.above > 0 ? Verdict::suspected : Verdict::cleared;
@@ -300,7 +301,13 @@ struct GARRISON_EXPORT Structural {
   /// P of an estimate of which nothing is known: a diagonal, `factor` times the stationary variances.
   template <int n>
   static void begin(const Local& l, const Gains& g, State<n>& s, double factor) noexcept;
-  /// The largest variance of the stationary error.
+  /// The variance of state k in the stationary error. One that is zero up to rounding, as where measurements
+  /// have no noise, is no measure of what a gap does: then it is a small part of what one step adds.
+  static double variance(const Gains& g, const double* settled, int k, int nn) noexcept {
+    const std::size_t at = static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1);
+    return std::max(settled[at], 1e-9 * g.process[at]);
+  }
+  /// The largest of them.
   template <int n>
   static double largest_settled(const Local& l, const Gains& g) noexcept;
   /// P = the covariance of the stationary error.
@@ -323,7 +330,11 @@ struct GARRISON_EXPORT Structural {
   template <int B, int n>
   static void predict_spread(const Local& l, const Gains& g, State<n>& s,
                              const Inbox<Message<n>>& inbox) noexcept;
-  /// (4): own measurement, then those of the others in order of id; false when one of them was left out.
+  /// (4) where all that came is used: own measurement, then those of the others in order of id.
+  template <int n>
+  static void update_estimate(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
+                              bool used) noexcept;
+  /// (4); false when a measurement was left out.
   /// Whose is not used is missing from then on. With `carried` also the bound of the error.
   template <int n>
   static bool update(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, bool used,

@@ -23,7 +23,7 @@ bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double val
   if (s.start > 0 || std::isnan(s.statistic)) return false;
   if (window) {
     if (exact && !std::isnan(g.std[id])) s.threshold = g.level;
-  } else if (exact || (carries(g) && structural::varies(std, g.noise[id]))) {
+  } else if (exact || (carries(g) && structural::varies(std, g.noise[id], g.innovation_std[id]))) {
     const double usual = g.innovation ? g.innovation_std[id] : g.std[id];
     // What a sensor left out may be up to is in `std`: it must be able to come back.
     s.coarse = !(std <= kBlind * usual || (g.isolate && s.alarm));

@@ -20,10 +20,11 @@ inline constexpr int kMostRest = 65535;
 inline constexpr int kCarried = 16;
 
 /// Whether what is tested varies by more than rounding: a residual that a gain makes vanish (a projection)
-/// says nothing of its sensor. `std`: its deviation, `noise`: R_ii.
-inline bool varies(double std, double noise) noexcept {
+/// says nothing of its sensor. `std`: its deviation, `noise`: R_ii, `innovation`: the innovation's deviation
+/// (NaN: not known).
+inline bool varies(double std, double noise, double innovation) noexcept {
   constexpr double kRounding = 1e-12;  // of a variance
-  return std > 0.0 && std * std > kRounding * noise;
+  return std > 0.0 && std * std > kRounding * std::max(noise, innovation * innovation);
 }
 
 /// What agent i needs of an agent it hears (or of itself).

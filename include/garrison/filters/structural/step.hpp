@@ -28,10 +28,13 @@ void Structural::begin(const Local& l, const Gains& g, State<n>& s, double facto
   if (!carries(g)) return;
   const int nn = dimension<n>(l);
   const double* settled = stationary(g, l.id, nn);
-  const std::size_t next = static_cast<std::size_t>(nn) + 1;
   const double most = largest_settled<n>(l, g);
   std::fill(s.P.begin(), s.P.end(), 0.0);
-  for (std::size_t k = 0; k < s.P.size(); k += next) s.P[k] = factor * (settled[k] > 0.0 ? settled[k] : most);
+  for (int k = 0; k < nn; ++k) {
+    const double usual = variance(g, settled, k, nn);
+    s.P[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] =
+        factor * (usual > 0.0 ? usual : most);
+  }
 }
 
 template <int n>
@@ -39,7 +42,7 @@ double Structural::largest_settled(const Local& l, const Gains& g) noexcept {
   const int nn = dimension<n>(l);
   const double* settled = stationary(g, l.id, nn);
   double most = 0.0;
-  for (int k = 0; k < nn; ++k) most = std::max(most, settled[static_cast<std::ptrdiff_t>(k) * (nn + 1)]);
+  for (int k = 0; k < nn; ++k) most = std::max(most, variance(g, settled, k, nn));
   return most;
 }
 
@@ -274,8 +277,9 @@ void Structural::pass(const Local& l, const Gains& g, State<n>& s, bool whole) n
     double ratio = 1.0;
     const double* settled = carries(g) ? stationary(g, l.id, nn) : nullptr;
     for (int k = 0; k < nn && settled != nullptr; ++k) {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * (nn + 1);
-      if (settled[at] > 0.0) ratio = std::max(ratio, s.P[static_cast<std::size_t>(at)] / settled[at]);
+      const double usual = variance(g, settled, k, nn);
+      const std::size_t at = static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1);
+      if (usual > 0.0) ratio = std::max(ratio, s.P[at] / usual);
     }
     const double more = ratio > 1.0 ? std::ceil(0.5 * std::log(ratio) * s.pace) : 0.0;
     const double most = std::min<double>(structural::kMostRest, std::max(1, g.recover) + more);
