@@ -34,4 +34,17 @@ auto dispatch(int states, const Action& action) {
   }
 }
 
+/// The same with n = 2, 4 and Dynamic: for what runs once a sample on one agent. The bits are those of every n.
+template <class Action>
+auto dispatch_few(int states, const Action& action) {
+  switch (states) {
+    case 2:
+      return action.template operator()<2>();
+    case 4:
+      return action.template operator()<4>();
+    default:
+      return action.template operator()<Dynamic>();
+  }
+}
+
 }  // namespace garrison

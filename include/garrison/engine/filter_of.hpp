@@ -30,9 +30,13 @@ template <class F>
 std::unique_ptr<Agent> agent_of(Part<F> part) {
   auto certifier = certifier_of(part.certificate, part.who, F::rounds(part.gains));
   auto gains = std::make_shared<const typename F::Gains>(std::move(part.gains));
-  return dispatched<F>(static_cast<int>(part.who.A.rows()), [&]<int n>() -> std::unique_ptr<Agent> {
+  const auto make = [&]<int n>() -> std::unique_ptr<Agent> {
     return std::make_unique<AgentOf<F, n>>(std::move(gains), std::move(part.who), std::move(certifier));
-  });
+  };
+  if constexpr (requires { F::only_states; })
+    return make.template operator()<F::only_states>();
+  else
+    return dispatch_few(static_cast<int>(part.who.A.rows()), make);
 }
 
 /// Threads: constant once made; any number may share it.
