@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, arguments, doubts, refuted
-from garrison.numeric import matched, numbers
+from garrison.numeric import matched, numbers, output_names
 from garrison.objects import described_attack, plain_data
 from garrison.recipe import recipe
 from garrison.record import Run
@@ -253,14 +253,6 @@ def _shared(
     made = {"trials": trials, "first_trial": first_trial, "seed": int(seed), "start": plain_data(start), "link": links}
     made["conditions"] = conditions
     return made | {"keep": kept, "attack": [described_attack(a) for a in attacks]} | dict(design.certificate or {})
-
-
-def output_names(model: _core.Model, network: _core.Network | None = None) -> list[str] | None:
-    """Names of the columns of measurements: the outputs', or the agents' where each has one output; else None."""
-    if names := getattr(model, "output_names", None):
-        return [str(n) for n in names]
-    names = getattr(network, "names", None)
-    return [str(n) for n in names] if names and model.outputs == model.agents else None
 
 
 @hinted

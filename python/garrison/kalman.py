@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, arguments
-from garrison.drivers import output_names
-from garrison.numeric import matched, numbers
+from garrison.numeric import matched, numbers, output_names
 from garrison.varying import Inputs, VaryingModel, inputs_of, parted
 from garrison.words import hinted, refusal, require_plant
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from garrison import _core
 from garrison.words import refusal, shown
 
 Array = NDArray[np.float64]
@@ -115,3 +116,11 @@ def matched(which: str, value: Any, names: list[str] | None) -> Any:
     if sorted(found) != sorted(names):
         raise refusal(f"{which}: columns", ", ".join(found), ", ".join(names), "columns are matched by name")
     return value[[columns[found.index(name)] for name in names]]
+
+
+def output_names(model: _core.Model, network: _core.Network | None = None) -> list[str] | None:
+    """Names of the columns of measurements: the outputs', or the agents' where each has one output; else None."""
+    if names := getattr(model, "output_names", None):
+        return [str(n) for n in names]
+    names = getattr(network, "names", None)
+    return [str(n) for n in names] if names and model.outputs == model.agents else None

@@ -13,8 +13,7 @@ from garrison import _core, arguments
 from garrison.certifying.certified import Certified
 from garrison.certifying.methods import by_bank, by_window, steady
 from garrison.certifying.plant import Plant
-from garrison.drivers import output_names
-from garrison.numeric import matched, numbers
+from garrison.numeric import matched, numbers, output_names
 from garrison.varying import Inputs, inputs_of
 from garrison.words import hinted, refusal, shown
 
