@@ -3,7 +3,7 @@
 import argparse
 
 from garrison._commands.setting import add_set, settings
-from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, print_warnings
+from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, print_warnings, working
 from garrison.checks import check, verdict
 from garrison.jobs import certificate_of, rehearse
 from garrison.scenario import read_scenario
@@ -27,8 +27,9 @@ def do(args: argparse.Namespace) -> int:
     scenario = read_scenario(args.scenario, settings(args.set))
     label, filter = scenario.filters[0]
     assert filter is not None  # the main filter is never the central one
-    found = check(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
-    rehearse(scenario)
+    with working(f"checking the conditions of {label}"):
+        found = check(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
+        rehearse(scenario)
     code = OK if found.holds else NO
     if args.json:
         facts = {"conditions": found.conditions, "quantities": found.quantities, "notes": scenario.notes}

@@ -6,7 +6,8 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
@@ -90,6 +91,17 @@ def print_warnings(lines: Iterable[str], stderr: bool = False) -> None:
     """Doubts, one a line."""
     for line in lines:
         print(f"warning: {line}", file=sys.stderr if stderr else sys.stdout)
+
+
+@contextmanager
+def working(words: str) -> Iterator[None]:
+    """Say on the terminal what is being done, as long as it lasts; nothing where stderr is a file."""
+    console = console_for(stderr=True)
+    if not console.is_terminal:
+        yield
+        return
+    with console.status(f"{words} (Ctrl-C ends it)"):
+        yield
 
 
 def tell_work(words: str, done: int, total: int) -> None:
