@@ -74,7 +74,7 @@ def dataset(run: Run, arrays: dict[str, Any]) -> Any:
         import xarray as xr
     except ImportError:
         raise refusal("to_xarray", "no xarray", 'it installed: pip install "garrison[xarray]"') from None
-    dims, unit = dimensions(run), common_unit(run)
+    dims, unit = dimensions(run), common_unit(run.model)
     variables: dict[str, Any] = {}
     for name, values in arrays.items():
         about: dict[str, Any] = {"units": unit} if unit and name in ("truth", "estimate", "error", "bound") else {}

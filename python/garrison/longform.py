@@ -12,6 +12,7 @@ from garrison.verdict import Verdict
 from garrison.words import refusal
 
 if TYPE_CHECKING:
+    from garrison import _core
     from garrison.record import Run
 
 
@@ -27,16 +28,16 @@ def state_names(run: Run) -> list[str]:
     return [str(n) for n in names] if names else [f"x{k}" for k in range(run.model.states)]
 
 
-def common_unit(run: Run) -> str:
+def common_unit(model: _core.Model) -> str:
     """The unit of all states, where they have one and the same: then errors and bounds have it too."""
-    found = {run.model.units.get(s, "") for s in state_names(run)}
+    found = {model.units.get(s, "") for s in model.state_names}
     return found.pop() if len(found) == 1 else ""
 
 
 def units(run: Run) -> dict[str, str]:
     """Unit by the name of a column, where it is known."""
     found = {name: unit for s, unit in run.model.units.items() for name in (s, f"true_{s}")}
-    if unit := common_unit(run):
+    if unit := common_unit(run.model):
         found |= dict.fromkeys(("error", "bound", "published"), unit)
     return found
 

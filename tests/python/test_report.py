@@ -9,8 +9,10 @@ import garrison as gr
 import numpy as np
 import pytest
 from garrison.cli import main
+from garrison.figures import error_figure
 from garrison.jobs import Row, run_scenario
 from garrison.report import table_rows
+from garrison.report.page import write_report
 from garrison.report.table import at_time, detections, warnings_of
 from garrison.scenario import Scenario, read_scenario
 from scipy.optimize import linprog
@@ -257,3 +259,29 @@ def test_estimates_of_all_filters_have_names_and_dates(faulty: Path) -> None:
         assert lines[0].startswith("trial,time,date,agent,x0")
         assert lines[1].startswith("0,0,,RPT,") and lines[13].startswith("0,1,1963-01-01,RPT,")
         assert len(lines) == 1 + 366 * 12
+
+
+def test_the_unit_of_the_states_is_said(tmp_path: Path) -> None:
+    text = """title = "tank"
+    [model]
+    A = [[0.9]]
+    C = [[1], [1], [1]]
+    states = ["depth"]
+    units = {depth = "m"}
+    process_covariance = 0.1
+    measurement_covariance = 0.2
+    [network]
+    kind = "complete"
+    agents = 3
+    [filter]
+    name = "structural"
+    [run]
+    steps = 30
+    """
+    path = tmp_path / "tank.toml"
+    path.write_text(text)
+    scenario = read_scenario(path)
+    rows = run_scenario(scenario)
+    assert error_figure(scenario, rows, None).axes[0].get_ylabel() == "mean error (m), log scale"
+    write_report(tmp_path / "report.html", scenario, rows)
+    assert "distances to its true state, in m." in (tmp_path / "report.html").read_text()

@@ -243,7 +243,7 @@ def test_check_says_what_to_expect() -> None:
     plain = gr.check(*parts())
     found = gr.check(*parts(), certificate="flooded", attacked=1)
     assert len(found.quantities) == len(plain.quantities) + 2 + parts()[0].states
-    assert all(0 < found[f"certify_{name}"] < np.inf for name in parts()[0].state_names)  # a bank of filters: theorem B2
+    assert all(0 < found[f"certify_{name}"] < np.inf for name in parts()[0].state_names)  # theorem B2
     assert 0 < found["certificate_expected"] < 0.2 and found["certificate_agents"] == 1
     wider = gr.check(*parts(), certificate="flooded", attacked=2)
     assert wider["certificate_expected"] > found["certificate_expected"]

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from garrison.figures.style import LINES, axes, label_ends, log_scale, plain, time_label, times
 from garrison.jobs import Row
+from garrison.longform import common_unit
 from garrison.scenario import Scenario
 
 
@@ -35,7 +36,8 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figu
         ax.axvline(start, color="black", linewidth=0.8, linestyle=(0, (2, 2)), label=label)
     if ax.get_lines():
         log_scale(ax, np.concatenate([np.ravel(np.asarray(row.error)) for row in shown]))
-    ax.set_ylabel("mean error, log scale")
+    unit = common_unit(scenario.model)
+    ax.set_ylabel(f"mean error ({plain(unit)}), log scale" if unit else "mean error, log scale")
     ax.set_xlabel(time_label(scenario))
     label_ends(ax)
     return figure

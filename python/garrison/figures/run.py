@@ -76,7 +76,7 @@ def _errors(run: Run, trial: int, ax: Any, agents: Any) -> bool:
             published = _drawn(run.published[trial][:, agents])
             ax.plot(published, color="#666666", linestyle=":", label="published bound, where it holds")
     log_scale(ax, error)
-    unit = common_unit(run)
+    unit = common_unit(run.model)
     ax.set_ylabel(f"error ({plain(unit)})" if unit else "error")
     return True
 

@@ -10,6 +10,7 @@ from garrison.families import family_of
 from garrison.figures import error_figure, innovation_figure, map_figure
 from garrison.figures.errors import smoothing_width
 from garrison.jobs import Row, certificate_of, signal_size
+from garrison.longform import common_unit
 from garrison.record import Run
 from garrison.report.html import figure, image, page, table
 from garrison.report.table import accusation_note, at_time, error_note, table_rows, warnings_of
@@ -85,7 +86,8 @@ def _lead(scenario: Scenario, rows: list[Row]) -> str:
 def _model_text(scenario: Scenario) -> str:
     fit = scenario.fitted
     if fit is None and scenario.measurements is None:
-        return "The plant is simulated; errors are distances to its true state."
+        unit = common_unit(scenario.model)
+        return f"The plant is simulated; errors are distances to its true state{f', in {unit}' if unit else ''}."
     if fit is None:
         return "The measurements are replayed from a log; the true state is not known."
     first, last = fit.records.dates[0], fit.records.dates[-1]
