@@ -38,6 +38,13 @@ void Places::constant() {
   sight(model_.stacked());
 }
 
+bool Places::measures_below(double limit, const double* y) const noexcept {
+  bool all = true;
+  const int M = model_.total_outputs();
+  for (int r = 0; r < M; ++r) all &= !(std::abs(y[r]) >= limit);
+  return all;
+}
+
 bool Places::miss_more_than(int most, const double* y) const noexcept {
   std::ptrdiff_t numbers = 0;
   for (int r = 0; r < model_.total_outputs(); ++r) numbers += y[r] != y[r] ? 1 : 0;

@@ -163,9 +163,9 @@ void shape(const Local& local, const typename F::Gains& gains, int sender, std::
 }
 /// Whether an estimate can be worked with: an agent whose cannot is made to rejoin at the end of the sample.
 template <int n>
-bool usable(const Vec<n>& x) noexcept {
+bool usable(const Vec<n>& x, double limit = kHuge) noexcept {
   bool all = true;
-  for (Eigen::Index k = 0; k < x.size(); ++k) all &= std::abs(x[k]) < kHuge;
+  for (Eigen::Index k = 0; k < x.size(); ++k) all &= std::abs(x[k]) < limit;
   return all;
 }
 /// Entrywise median of the vectors `of(k)` of `count` messages into x; x stays where there is none, or

@@ -75,7 +75,7 @@ class AgentOf final : public Agent {
   Sent sense(std::int64_t t, std::span<const double> y, std::span<std::byte> out) noexcept override {
     if (round_ < rounds_) return {Refusal::order};
     if (t <= t_) return {Refusal::late};
-    if (t - t_ > kMostGap + 1) return {Refusal::early};
+    if (t > t_ + kMostGap + 1) return {Refusal::early};
     if (y.size() != static_cast<std::size_t>(local_.outputs) || out.size() < most_bytes_)
       return {Refusal::size};
     while (t_ + 1 < t) miss_one();
@@ -125,16 +125,16 @@ class AgentOf final : public Agent {
   }
   Refusal join() noexcept override {
     if (!listening_) return Refusal::order;
-    const Inbox<Message> heard = inbox();
+    const Inbox<Message> heard = rounds_ > 0 ? inbox() : nobody();
     F::template rejoin<n>(local_, *gains_, heard, t_, state_);
     if (evidence_) {
-      evidence_.hear(round_, mail_.slots(), mail_.senders());
+      if (rounds_ > 0) evidence_.hear(round_, mail_.slots(), mail_.senders());
       evidence_->end_sample();
     }
     uncover();
     round_ = rounds_;
     listening_ = false;
-    fresh_ = heard.size() == 0;
+    fresh_ = unheard(heard);
     return Refusal::none;
   }
   void uncover() noexcept override { garrison::uncover<F, n>(*gains_, state_); }
@@ -248,7 +248,7 @@ class AgentOf final : public Agent {
     F::template sense<n>(local_, *gains_, state_, y, t, outgoing_);
     if (evidence_) evidence_->begin(t, y);
     lost_ = fresh_ || !usable<n>(F::template estimate<n>(state_));
-    if (rounds_ == 0 && lost_) rejoin({nullptr, {}, nullptr, 0});
+    if (rounds_ == 0 && lost_) rejoin(nobody());
   }
   void miss_one() noexcept {
     begin(t_ + 1, silence_.data());
@@ -267,8 +267,13 @@ class AgentOf final : public Agent {
   void rejoin(const Inbox<Message>& inbox) noexcept {
     F::template rejoin<n>(local_, *gains_, inbox, t_, state_);
     resets_ += fresh_ ? 0 : 1;
-    fresh_ = false;
+    fresh_ = fresh_ && unheard(inbox);
   }
+  /// Nothing has come from others, though there are some: what an agent started with is still all it knows.
+  bool unheard(const Inbox<Message>& inbox) const noexcept {
+    return rounds_ > 0 && local_.degree > 0 && inbox.size() == 0;
+  }
+  static Inbox<Message> nobody() noexcept { return {nullptr, {}, nullptr, 0}; }
   Inbox<Message> inbox() noexcept {
     mail_.open(t_, round_);
     return opened();

@@ -146,7 +146,7 @@ class Engine final : public Runner {
     return bits;
   }
   std::int64_t bytes_per_step() const override {
-    return (variable_ && samples_ > 0 ? bytes_ / samples_ : bytes_) +
+    return (variable_ && samples_ > 0 ? (bytes_ + samples_ / 2) / samples_ : bytes_) +
            (certified_ ? certified_->bytes_per_step() : 0);
   }
 
@@ -167,7 +167,8 @@ class Engine final : public Runner {
   }
 
   void filter(std::int64_t t, const double* y) {
-    if (mail_.routes().perfect()) {
+    const bool plain = places_.measures_below(kPlain, y);
+    if (plain && mail_.routes().perfect()) {
       const BatchStep taken = batch_.step(
           BatchSample{*gains_, plan_, mail_.routes().wiring(), workers_, t, locals(), measured(y)});
       if (taken.done == BatchStep::everything) return;
@@ -180,11 +181,12 @@ class Engine final : public Runner {
     each([&, y = measured(y)](std::size_t k, Message* out) {
       F::template sense<n>(local(k), *gains_, states_[k], y(k), t, out[k]);
     });
-    rounds(t, all_usable());
+    rounds(t, plain && all_plain());
   }
 
-  /// `plain`: every estimate can be worked with. Agents whose cannot send nothing that is delivered, and
-  /// rejoin after the last round.
+  /// `plain`: every estimate and measurement is so small that every number of a message surely is below
+  /// kHuge. Agents whose estimate cannot be worked with send nothing that is delivered, and rejoin after the
+  /// last round.
   void rounds(std::int64_t t, bool plain) {
     if (!plain) note_lost();
     const int L = F::rounds(*gains_);
@@ -209,10 +211,10 @@ class Engine final : public Runner {
   }
 
   void note_lost() {
-    ++overflows_;
     lost_.clear();
     for (std::size_t k = 0; k < states_.size(); ++k)
       if (!usable<n>(F::template estimate<n>(states_[k]))) lost_.push_back(k);
+    overflows_ += lost_.empty() ? 0 : 1;
   }
   void rejoin(std::int64_t t) {
     const Inbox<Message> nobody(nullptr, {}, nullptr, 0);  // of a filter without rounds
@@ -239,11 +241,14 @@ class Engine final : public Runner {
     mail_.post();
   }
 
-  bool all_usable() const {
+  bool all_plain() const {
     for (const State& s : states_)
-      if (!usable<n>(F::template estimate<n>(s))) return false;
+      if (!usable<n>(F::template estimate<n>(s), kPlain)) return false;
     return true;
   }
+
+  /// Gains and covariances are far below kHuge / kPlain.
+  static constexpr double kPlain = 1e100;
 
   std::shared_ptr<const typename F::Gains> gains_;
   ConsensusPlan plan_;

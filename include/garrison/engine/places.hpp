@@ -29,6 +29,8 @@ class GARRISON_EXPORT Places {
   }
   /// Measurements of agent k among those of all agents.
   const double* measured(std::size_t k, const double* y) const { return y + first_output_[k]; }
+  /// Whether no measurement is as large as `limit`; what is missing is not.
+  bool measures_below(double limit, const double* y) const noexcept;
   /// Whether more than `most` sensors miss numbers in y.
   bool miss_more_than(int most, const double* y) const noexcept;
 

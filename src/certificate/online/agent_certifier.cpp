@@ -301,10 +301,10 @@ void AgentCertifier::shape_evidence(int sender, Evidence& out) const {
 
 bool AgentCertifier::usable() const noexcept {
   const auto finite = [](const std::vector<double>& all) {
-    return std::all_of(all.begin(), all.end(), [](double v) { return std::abs(v) < kHuge; });
+    return std::all_of(all.begin(), all.end(), [](double v) { return std::isfinite(v); });
   };
   return finite(memory_.center) && finite(memory_.box) && finite(memory_.ball) && !(memory_.radius < 0.0) &&
-         memory_.ball_radius >= 0.0 && memory_.ball_radius < kHuge &&
+         memory_.ball_radius >= 0.0 && std::isfinite(memory_.ball_radius) &&
          memory_.age <= std::max(0, plan_->ages()) &&
          (memory_.age < 0 || (memory_.fresh <= memory_.age && eligible(memory_.age, memory_.fresh)));
 }

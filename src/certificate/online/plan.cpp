@@ -175,13 +175,15 @@ Plan part_of(const Plan& plan, int id, std::span<const int> neighbours) {
 
 bool consistent(const Plan& plan) {
   const auto m = static_cast<Eigen::Index>(plan.source.size());
+  int rows = 0;  // that are not zero
+  for (Eigen::Index r = 0; r < plan.rows.cols(); ++r) rows += plan.rows.col(r).isZero(0.0) ? 0 : 1;
   bool fine =
       plan.first.size() == plan.ids.size() + 1 && plan.first.front() == 0 && plan.first.back() == m &&
       std::is_sorted(plan.first.begin(), plan.first.end()) &&
       std::adjacent_find(plan.ids.begin(), plan.ids.end(), std::greater_equal<>()) == plan.ids.end() &&
       plan.rows.cols() == m && plan.rows.rows() == plan.states() && plan.states() >= 1 &&
       plan.A.cols() == plan.states() && plan.variance.size() == m && plan.width.size() == m &&
-      plan.norm.size() == plan.added.size() && plan.ages() <= kMostAge && plan.all_rows >= m;
+      plan.norm.size() == plan.added.size() && plan.ages() <= kMostAge && plan.all_rows >= rows;
   for (const int source : plan.source) fine = fine && source >= 0 && source < plan.sources;
   return fine && !plan.ids.empty() && plan.ids.front() >= 0 && plan.ids.back() < plan.agents;
 }

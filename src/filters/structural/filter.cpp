@@ -246,7 +246,10 @@ Structural::Gains Structural::part(const Gains& all, int id, std::span<const int
   g.std.assign(N, kNaN);
   g.std[i] = all.std[i];
   g.innovation_std.assign(N, kNaN);
-  g.innovation_std[i] = all.innovation_std[i];
+  for (const Heard& j : g.heard) {  // itself, and whose measurements it may take back
+    const auto k = static_cast<std::size_t>(j.id);
+    g.innovation_std[k] = all.innovation_std[k];
+  }
   if (!all.covariance.empty()) {
     const auto first = static_cast<std::ptrdiff_t>(n * n * i);
     g.covariance.assign(all.covariance.begin() + first,

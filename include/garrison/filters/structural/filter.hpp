@@ -46,8 +46,8 @@ namespace garrison {
 /// ever.
 ///
 /// One agent that lies in its messages moves its neighbours' estimates in proportion to its lie and its
-/// weight, and can blind their tests by claiming a large bound; it accuses nobody else, as every agent judges
-/// itself.
+/// weight, can blind their tests by claiming a large bound, and can have them accuse their own honest
+/// sensors.
 struct GARRISON_EXPORT Structural {
   static constexpr std::string_view name = "structural";
   static constexpr std::string_view title = "Single-time-scale estimator with exact residual tests";
