@@ -12,6 +12,7 @@ from garrison.answers.removals import Removal
 from garrison.answers.sensors import Sensors
 from garrison.checks import check
 from garrison.filters import make_filter
+from garrison.result import Result
 
 Array = NDArray[np.float64]
 
@@ -23,8 +24,8 @@ LATE = "the time was up"
 _NAMES = {"a": "||A||", "gamma": "gamma", "lambda0": "lambda_0"}
 
 
-@dataclass(frozen=True)
-class Limit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Limit(Result):
     """A guarantee, with what it needs.
 
     holds: for any so many liars, for certain. fails: for some so many it does not; None: not known. why: what stands in
