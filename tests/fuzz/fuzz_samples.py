@@ -132,7 +132,7 @@ def certificates() -> list[Any]:
     ]
 
 
-#: parameters of families that need some; the others run as they come
+#: parameters of families that have some without a default; the others run as they come
 GOOD_FILTERS: dict[str, dict[str, Any]] = {
     "saturation": {"threshold": 1.0, "attacked": 1},
     "lfre": {"faulty": 0},
