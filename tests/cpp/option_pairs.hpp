@@ -20,7 +20,9 @@ using OptionValues = std::map<std::string, std::vector<ParamValue>>;
 /// A number in the range of a parameter that is not its default.
 inline double beside_default(const ParamInfo& info, double initial) {
   const double more = (std::isnan(initial) ? std::max(info.least, 0.0) : initial) + 1.0;
-  return more <= info.most ? more : (std::max(info.least, info.most - 1.0) + info.most) / 2.0;
+  if (more <= info.most) return more;
+  const double middle = (std::max(info.least, info.most - 1.0) + info.most) / 2.0;
+  return middle != initial ? middle : (middle + info.most) / 2.0;
 }
 
 inline std::vector<ParamValue> values_of(const ParamInfo& info, const OptionValues& known) {
