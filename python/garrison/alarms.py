@@ -25,6 +25,9 @@ class Alarm(NamedTuple):
     stop: int
     verdict: Verdict
 
+    def __repr__(self) -> str:
+        return f"garrison.alarms.Alarm({', '.join(f'{key}={value!r}' for key, value in self._asdict().items())})"
+
 
 def intervals(verdict: NDArray[np.uint8], names: list[str]) -> Iterator[Alarm]:
     """Alarms of verdicts (trial, time, agent), by trial, start and agent."""

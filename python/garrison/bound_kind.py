@@ -1,14 +1,12 @@
 """Where a bound comes from, or why there is none."""
 
-from enum import IntEnum
-
 import numpy as np
 from numpy.typing import NDArray
 
-from garrison.words import HintingEnum, missing
+from garrison.words import Word
 
 
-class BoundKind(IntEnum, metaclass=HintingEnum):
+class BoundKind(Word):
     """The values of `Run.bound_kind`. Proofs: docs/certificates.md."""
 
     NONE = 0  #: no certificate was asked for, and the filter promises nothing here
@@ -22,13 +20,6 @@ class BoundKind(IntEnum, metaclass=HintingEnum):
     REFUTED = 8  #: none (nan): the data contradict "at most so many are attacked"
     LIARS = 9  #: none (nan): agents lie in their messages, and bounds rest on what they say
     VARYING = 10  #: none (nan): A or C changes in time, and the filter's theorem needs a constant plant
-
-    __getattr__ = missing
-
-    @property
-    def word(self) -> str:
-        """For people: `too few`."""
-        return self.name.lower().replace("_", " ")
 
     @property
     def why(self) -> str:

@@ -12,6 +12,7 @@ from garrison import _core
 from garrison.families import family_of
 from garrison.longform import agent_names, common_unit, state_names
 from garrison.objects import described
+from garrison.storage import digest, require_digest
 from garrison.verdict import Verdict
 from garrison.words import refusal
 
@@ -98,24 +99,26 @@ def dataset(run: Run, arrays: dict[str, Any]) -> Any:
     return xr.Dataset(variables, coordinates, about)
 
 
-#: attribute of a file that holds everything but the arrays
-_DOCUMENT = "run"
-#: what cannot be read as a run
-_NOT_ONE = (OSError, ValueError, KeyError, TypeError)
+#: attributes of a file: everything but the arrays, and a digest of it and them
+_DOCUMENT, _DIGEST = "run", "run_digest"
+#: arrays of small numbers, which older netCDF holds with a sign only
+_BYTES = ("verdict", "bound_kind")
 
 
 def _marked(run: Run, document: dict[str, Any], arrays: dict[str, Any]) -> Any:
     """The dataset of a run, with everything that makes the run again in an attribute."""
-    return dataset(run, arrays).assign_attrs({_DOCUMENT: json.dumps(document | {"arrays": list(arrays)})})
+    text = json.dumps(document | {"arrays": list(arrays)})
+    return dataset(run, arrays).assign_attrs({_DOCUMENT: text, _DIGEST: digest(text, arrays)})
 
 
 def to_netcdf(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, Any]) -> None:
     """Write the dataset of a run, with everything that makes the run again, as netCDF."""
     data = _marked(run, document, arrays)
     # What older netCDF cannot hold: unsigned bytes, and attributes of 64 bits.
-    if "verdict" in data:
-        data["verdict"] = data.verdict.astype(np.int8)
-        data.verdict.attrs["flag_values"] = np.array(data.verdict.attrs["flag_values"], dtype=np.int8)
+    for name in set(_BYTES) & set(data):
+        about = data[name].attrs
+        data[name] = data[name].astype(np.int8)
+        data[name].attrs = {k: np.array(v, dtype=np.int8) if k == "flag_values" else v for k, v in about.items()}
     data.attrs = {k: str(v) for k, v in data.attrs.items()}
     data.to_netcdf(path)
 
@@ -153,10 +156,11 @@ def _read(path: Path, how: dict[str, Any]) -> tuple[dict[str, Any], dict[str, An
         raise refusal("load", f"{path.name} and no xarray", 'it installed: pip install "garrison[xarray]"') from None
     try:
         with xr.open_dataset(path, **how) as data:
-            document = json.loads(data.attrs[_DOCUMENT])
+            text, given = data.attrs[_DOCUMENT], data.attrs[_DIGEST]
+            document = json.loads(text)
             arrays = {name: np.array(data[name].values) for name in document.pop("arrays")}
-    except _NOT_ONE as error:
+    except Exception as error:  # each backend has its own for what is damaged
         raise _core.IoError(f"{path}: got {error}, expected a run written by Run.save") from None
-    if "verdict" in arrays:
-        arrays["verdict"] = arrays["verdict"].astype(np.uint8)
+    arrays |= {name: arrays[name].astype(np.uint8) for name in _BYTES if name in arrays}
+    require_digest(given, text, arrays, str(path))
     return document, arrays

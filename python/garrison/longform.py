@@ -16,6 +16,11 @@ if TYPE_CHECKING:
     from garrison.record import Run
 
 
+#: columns that every table begins with, and numbers of reports
+_OWN = ("trial", "time", "agent")
+_REPORTED = ("error", "bound", "published", "statistic", "threshold")
+
+
 def agent_names(run: Run) -> list[str] | None:
     """Names of the agents, where the network has them."""
     names = getattr(run.network, "names", None)
@@ -36,10 +41,14 @@ def common_unit(model: _core.Model) -> str:
 
 def units(run: Run) -> dict[str, str]:
     """Unit by the name of a column, where it is known."""
-    found = {name: unit for s, unit in run.model.units.items() for name in (s, f"true_{s}")}
+    found = {name: unit for state, unit in run.model.units.items() for name in (_column(state), f"true_{state}")}
     if unit := common_unit(run.model):
         found |= dict.fromkeys(("error", "bound", "published"), unit)
     return found
+
+
+def _column(state: str) -> str:
+    return f"state_{state}" if state in (*_OWN, *_REPORTED, "bound_kind", "verdict") else state
 
 
 def columns(run: Run) -> dict[str, Any]:
@@ -53,12 +62,12 @@ def columns(run: Run) -> dict[str, Any]:
     out["agent"] = index[2] if names is None else np.array(names, dtype=object)[index[2]]
     states = state_names(run)
     if run.estimate is not None:
-        out |= {name: run.estimate[..., k].ravel() for k, name in enumerate(states)}
+        out |= {_column(name): run.estimate[..., k].ravel() for k, name in enumerate(states)}
     if run.truth is not None:
         truth = run.truth if family_of(run.filter).own_plants else run.truth[:, :, None]
         whole = np.broadcast_to(truth, (trials, times, agents, truth.shape[-1]))
         out |= {f"true_{name}": whole[..., k].ravel() for k, name in enumerate(states)}
-    for name in ("error", "bound", "published", "statistic", "threshold"):
+    for name in _REPORTED:
         if getattr(run, name) is not None:
             out[name] = getattr(run, name).ravel()
     if run.bound_kind is not None:
@@ -66,7 +75,7 @@ def columns(run: Run) -> dict[str, Any]:
     if run.verdict is not None:
         words = np.array([v.word for v in Verdict], dtype=object)
         out["verdict"] = words[run.verdict.ravel()]
-    return out | {name: values.ravel() for name, values in run.signals.items() if name not in out}
+    return out | {f"signal_{name}" if name in out else name: v.ravel() for name, v in run.signals.items()}
 
 
 def frame(run: Run) -> Any:

@@ -81,7 +81,11 @@ class Prepared(metaclass=Hinting):
     @classmethod
     def load(cls, path: str | Path) -> "Prepared":
         """The design in a file. Raises InvalidInput when it is damaged, of another version or no design."""
-        return cls.from_bytes(read("load", path, "a file that `save` of a prepared filter wrote"))
+        data = read("load", path, "a file that `save` of a prepared filter wrote")
+        try:
+            return cls.from_bytes(data)
+        except _core.InvalidInput as error:
+            raise _core.InvalidInput(f"{path}: {error}") from None
 
     @property
     def outline(self) -> list[str]:

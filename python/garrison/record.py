@@ -47,6 +47,9 @@ _LISTS = ("accusations", "details", "counters", "warnings", "bytes_per_step")
 _SIGNAL = "signal_"
 #: and of what changed of the plant
 _VARYING = "varying_"
+#: names that a dataset of the run has for other things than signals
+_TAKEN = {*ARRAYS, "trial", "time", "agent", "state", "sample", "output", "input", "step"}
+_TAKEN |= {"state_unit", "output_unit", "input_unit"}
 
 
 @hinted_methods
@@ -182,8 +185,7 @@ class Run(metaclass=Hinting):
 
             read_file = from_netcdf if path_of("path", path).suffix == ".nc" else from_zarr
             document, found = read_file(path_of("path", path))
-            signals = {n if n.startswith(_VARYING) else f"{_SIGNAL}{n}": v for n, v in found.items() if n not in ARRAYS}
-            return _assembled(document, {n: v for n, v in found.items() if n in ARRAYS} | signals, str(path))
+            return _assembled(document, {_unlabelled(name): value for name, value in found.items()}, str(path))
         return _restored(read("path", path, "a run written by Run.save"), str(path))
 
     def _document(self) -> dict[str, Any]:
@@ -197,8 +199,8 @@ class Run(metaclass=Hinting):
         return arrays | {f"{_SIGNAL}{name}": value for name, value in self.signals.items()}
 
     def _labelled(self) -> dict[str, NDArray[Any]]:
-        """Arrays as a dataset holds them: signals by their own names."""
-        return {name.removeprefix(_SIGNAL): value for name, value in self._arrays().items()}
+        """Arrays as a dataset holds them: signals by their own names where these are free."""
+        return {_label(name): value for name, value in self._arrays().items()}
 
     def _packed(self) -> bytes:
         from garrison.storage import pack
@@ -266,7 +268,8 @@ class Run(metaclass=Hinting):
         """An xarray.Dataset of all arrays and signals (extra: xarray).
 
         Coordinates: trial, time, agent, state and output by name where they have names, state_unit and output_unit,
-        sample (the time of a measurement). Attributes: model, network and filter as JSON, counters and warnings.
+        sample (the time of a measurement). Attributes: model, network and filter as JSON, counters and warnings. A
+        signal whose name is that of another array or coordinate is called signal_<name>.
         """
         from garrison.labelled import dataset
 
@@ -277,7 +280,8 @@ class Run(metaclass=Hinting):
 
         Columns trial, time, agent (its name where the network has names), the estimate x0, x1, ... and the truth
         true_x0, ... (state names where the model has them), error, bound, statistic, threshold, verdict (as a word),
-        and the signals that were kept. `attrs["units"]`: units of columns by name, where the model has them.
+        and the signals that were kept; a signal or state whose name another column has is called signal_<name> or
+        state_<name>. `attrs["units"]`: units of columns by name, where the model has them.
         """
         from garrison.longform import frame
 
@@ -295,6 +299,16 @@ class Run(metaclass=Hinting):
         return f"<Run of {self.filter.name}: {', '.join(sizes)}>"
 
 
+def _label(name: str) -> str:
+    """What a dataset calls an array of a saved run."""
+    own = name.removeprefix(_SIGNAL)
+    return name if own in _TAKEN or own.startswith((_SIGNAL, _VARYING)) else own
+
+
+def _unlabelled(label: str) -> str:
+    return label if label in ARRAYS or label.startswith((_SIGNAL, _VARYING)) else f"{_SIGNAL}{label}"
+
+
 def _restored(data: bytes, name: str) -> Run:
     """The run of an archive that `save` wrote."""
     from garrison.storage import unpack
@@ -310,9 +324,9 @@ def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: s
         content["accusations"] = [(k, t, sets) for k, t, sets in content["accusations"]]
         content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
         parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
+        changed = {key.removeprefix(_VARYING): value for key, value in found.items() if key.startswith(_VARYING)}
+        run = Run(content | {key: found[key] for key in ARRAYS if key in found}, *parts, changed)
     except (KeyError, TypeError, ValueError) as error:
         raise _core.IoError(f"{name}: got {error!r}, expected a run written by Run.save") from None
-    changed = {key.removeprefix(_VARYING): value for key, value in found.items() if key.startswith(_VARYING)}
-    run = Run(content | {key: found[key] for key in ARRAYS if key in found}, *parts, changed)
     run.signals = {key.removeprefix(_SIGNAL): value for key, value in found.items() if key.startswith(_SIGNAL)}
     return run

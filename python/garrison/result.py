@@ -3,13 +3,14 @@
 import sys
 from collections.abc import Mapping
 from dataclasses import fields
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
 
 from garrison.words import Hinting
 
-#: larger arrays are not shown as code, as in numpy
+#: larger arrays and longer lists are not shown as code, as in numpy
 MOST_SHOWN = 1000
 
 
@@ -26,14 +27,21 @@ def same(a: Any, b: Any) -> bool:
 
 
 def code(value: Any) -> str:
-    """The value as code, with `array`, nan and inf as numpy's; large arrays by their shape only."""
+    """The value as code, with `array`, nan and inf as numpy's, Path and datetime; what is large by its size only."""
     if isinstance(value, np.ndarray):
-        return f"array({value.tolist()!r})" if value.size <= MOST_SHOWN else f"<array of shape {value.shape}>"
+        if value.size > MOST_SHOWN:
+            return f"<array of shape {value.shape}>"
+        shaped = f".reshape({value.shape})" if value.size == 0 else ""  # lists do not say how wide nothing is
+        return f"array({value.tolist()!r}){shaped}"
     if isinstance(value, np.generic):
         return repr(value.item())
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{key!r}: {code(one)}" for key, one in value.items()) + "}"
+    if isinstance(value, PurePath):
+        return f"Path({str(value)!r})"
     if isinstance(value, list):
+        if len(value) > MOST_SHOWN:
+            return f"<list of {len(value)}>"
         return "[" + ", ".join(map(code, value)) + "]"
     if isinstance(value, tuple):
         return "(" + "".join(code(one) + "," for one in value) + ")"
@@ -50,8 +58,8 @@ class Result(metaclass=Hinting):
         return type(other) is type(self) and same(self._fields(), other._fields())
 
     def __hash__(self) -> int:
-        plain = (value for value in self._fields().values() if isinstance(value, (str, int)))
-        return hash((type(self).__name__, *plain))
+        words = (value for value in self._fields().values() if isinstance(value, str))
+        return hash((type(self).__name__, *words))
 
     def __repr__(self) -> str:
         kind = type(self)

@@ -1,5 +1,6 @@
 """Arrays and a JSON document in one .npz archive, without pickles; and back."""
 
+import hashlib
 import io
 import json
 import tokenize
@@ -12,15 +13,35 @@ from numpy.typing import NDArray
 
 from garrison import _core
 
-_VERSION = 1
+_VERSION = 2
 _DOCUMENT = "run_json"
+_DIGEST = "run_digest"
+
+
+def digest(text: str, arrays: dict[str, NDArray[Any]]) -> str:
+    """What belongs to these words and arrays alone: a file with another one is damaged."""
+    made = hashlib.blake2b(text.encode(), digest_size=16)
+    for name in sorted(arrays):
+        values = np.ascontiguousarray(arrays[name], dtype=arrays[name].dtype.newbyteorder("<"))
+        made.update(f"{name} {values.dtype.str} {arrays[name].shape}".encode())
+        made.update(values.tobytes())
+    return made.hexdigest()
+
+
+def require_digest(given: str, text: str, arrays: dict[str, NDArray[Any]], name: str) -> None:
+    """Refuse words and arrays of which one is not what was written."""
+    if given != digest(text, arrays):
+        raise _core.IoError(
+            f"{name}: got a damaged file: its digest does not match, expected a run written by Run.save; copy it again"
+        )
 
 
 def pack(document: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> bytes:
     """The archive as bytes."""
     buffer = io.BytesIO()
     text = json.dumps({"version": _VERSION, **document})
-    np.savez_compressed(buffer, **{_DOCUMENT: np.array(text)}, **arrays)  # type: ignore[arg-type]
+    words = {_DOCUMENT: np.array(text), _DIGEST: np.array(digest(text, arrays))}
+    np.savez_compressed(buffer, **words, **arrays)  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
@@ -31,8 +52,10 @@ def unpack(data: bytes, name: str) -> tuple[dict[str, Any], dict[str, NDArray[An
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
             found = {key: archive[key] for key in archive.files}
-        document = json.loads(str(found.pop(_DOCUMENT)))
+        text = str(found.pop(_DOCUMENT))
+        document = json.loads(text)
         version = document.pop("version")
+        given = str(found.pop(_DIGEST, ""))
     except (
         OSError,
         ValueError,
@@ -49,4 +72,5 @@ def unpack(data: bytes, name: str) -> tuple[dict[str, Any], dict[str, NDArray[An
         raise _core.IoError(f"{name}: got {error}, expected a run written by Run.save") from None
     if version != _VERSION:
         raise _core.IoError(f"{name}: got format {version}, expected {_VERSION}; another version of garrison wrote it")
+    require_digest(given, text, found, name)
     return document, found

@@ -1,11 +1,9 @@
 """What a filter says of a sensor at a sample."""
 
-from enum import IntEnum
-
-from garrison.words import HintingEnum, missing
+from garrison.words import Word
 
 
-class Verdict(IntEnum, metaclass=HintingEnum):
+class Verdict(Word):
     """The values of `Run.verdict`. NOT_TESTED never means cleared."""
 
     CLEARED = 0  #: its measurement was used as it is
@@ -13,10 +11,3 @@ class Verdict(IntEnum, metaclass=HintingEnum):
     ATTACKED = 2  #: the filter takes it for attacked and isolates it, or raises an alarm
     SILENT = 3  #: it had no measurement: a relay, or lost
     NOT_TESTED = 4  #: the filter could not, or does not, test it
-
-    __getattr__ = missing
-
-    @property
-    def word(self) -> str:
-        """For people: `not tested`."""
-        return self.name.lower().replace("_", " ")

@@ -3,7 +3,7 @@
 import functools
 import inspect
 from collections.abc import Callable, Iterable
-from enum import EnumType
+from enum import EnumType, IntEnum
 from types import BuiltinFunctionType, FunctionType
 from typing import Any, NoReturn, ParamSpec, TypeVar
 
@@ -61,6 +61,21 @@ class HintingEnum(EnumType):
         if name in members:  # in Python 3.11 members are found here
             return members[name]
         refuse_unknown(f"the class {cls.__name__}", name, [*members, *_names(cls)])
+
+
+class Word(IntEnum, metaclass=HintingEnum):
+    """Base of our enumerations: their values have words, and print as the code that makes them."""
+
+    @property
+    def word(self) -> str:
+        """For people: `not tested`."""
+        return self.name.lower().replace("_", " ")
+
+    def __getattr__(self, name: str) -> Any:
+        return missing(self, name)
+
+    def __repr__(self) -> str:
+        return f"garrison.{type(self).__name__}.{self.name}"
 
 
 def refuse_unknown(owner: str, name: str, known: Iterable[str]) -> NoReturn:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The whole library's side: designs every family, writes each agent's part into a folder, and prints what the
 // agents of these parts estimate.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <garrison/core/model.hpp>
@@ -8,7 +9,6 @@
 #include <garrison/engine/design_file.hpp>
 #include <garrison/filters/platoon/world.hpp>
 #include <iostream>
-#include <set>
 
 #include "agents.hpp"
 
@@ -35,6 +35,7 @@ Model plant() {
   return {A, C, noise};
 }
 
+/// A family that is not named here runs as it comes.
 std::vector<Case> cases() {
   const ParamMap string{
       {"reference", std::vector<double>{120.0, 10.0}}, {"spacing", 20.0}, {"gs", 2.0}, {"gv", 4.0}};
@@ -47,30 +48,30 @@ std::vector<Case> cases() {
   pairs.insert({{"pairs", true}, {"median", true}});
   ParamMap pbe = string;
   pbe["kind"] = "pbe";
-  return {
+  std::vector<Case> all{
       {"saturation", "plain", {{"threshold", 0.5}, {"rounds", std::int64_t{3}}}},
       {"scalar_gain", "plain", {{"rounds", std::int64_t{2}}}},
-      {"lfre", "plain", {}},
       {"rdkf", "norm", {{"weight", 0.5}}},
       {"rdkf", "l1", {{"weight", 0.5}, {"penalty", "l1"}}},
       {"rdkf", "group", {{"weight", 0.5}, {"penalty", "group"}}},
-      {"dkf", "plain", {}},
       {"partial_sharing", "frozen", {{"gain", 0.1}, {"shared", std::int64_t{2}}}},
       {"partial_sharing", "steady", {{"gain", 0.1}, {"gains", "steady"}}},
-      {"structural", "plain", {}},
       {"platoon", "plain", vehicles},
       {"platoon", "pairs", pairs},
       {"platoon_baseline", "pbe", pbe},
   };
+  for (const FamilyInfo& family : families())
+    if (std::none_of(all.begin(), all.end(), [&](const Case& one) { return one.family == family.name; }))
+      all.push_back({family.name, "plain", {}});
+  return all;
 }
 
-bool own_states(const std::string& family) { return family.starts_with("platoon"); }
-
 int run(const std::filesystem::path& folder, const Case& one) {
-  const bool vehicles = own_states(one.family);
+  const auto filter = make_filter(one.family, one.params);
+  const bool vehicles = filter->own_states();
   const Model model = vehicles ? platoon::model(7, 0.05) : plant();
   const Network network = vehicles ? Network::band(7, 2) : Network::ring(5);
-  const auto prepared = make_filter(one.family, one.params)->prepare(model, network);
+  const auto prepared = filter->prepare(model, network);
   std::vector<std::unique_ptr<Agent>> agents;
   for (int i = 0; i < model.agents(); ++i) {
     const auto part = write_part(*prepared, i);
@@ -90,14 +91,5 @@ int main(int count, char** words) {
       if (one.family == words[1] && one.name == words[2]) return run(words[3], one);
     return 2;
   }
-  std::set<std::string> covered;
-  for (const Case& one : cases()) {
-    covered.insert(one.family);
-    std::cout << one.family << ' ' << one.name << '\n';
-  }
-  for (const FamilyInfo& family : families())
-    if (covered.count(family.name) == 0) {
-      std::cerr << "tests/package/parts.cpp has no case for the family " << family.name << '\n';
-      return 1;
-    }
+  for (const Case& one : cases()) std::cout << one.family << ' ' << one.name << '\n';
 }

@@ -3,9 +3,10 @@
 import ast
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from conftest import ROOT
+from garrison import _core
 
 PACKAGE = ROOT / "python" / "garrison"
 #: bottom first; a module imports modules of its own layer or below. Packages stand for all that is in them.
@@ -132,8 +133,12 @@ def test_nobody_chooses_the_matplotlib_backend_or_uses_pyplot() -> None:
 
 
 def test_only_families_ask_for_a_family() -> None:
-    """Names and parameters of families are asked for in families/ (and where a function is about one family)."""
+    """Names and parameters of families are asked for in families/ (and where a function is about one family).
+
+    Nor does anybody else keep a table or list of several of them.
+    """
     about_one = {"attacks", "objects"}
+    families = {info["name"] for info in _core.filter_infos()}
     for name, tree in modules().items():
         if name.split(".")[0] in ("families", "verify") or name in about_one:
             continue
@@ -142,6 +147,14 @@ def test_only_families_ask_for_a_family() -> None:
                 asked = ast.unparse(node.value).endswith(".params") and isinstance(node.slice.value, str)
                 assert not asked, f"{name}: {ast.unparse(node)}"
             if isinstance(node, ast.Compare):
-                words = [c.value for c in node.comparators if isinstance(c, ast.Constant)]
-                families = {"saturation", "structural", "platoon", "partial_sharing", "rdkf"}
-                assert not (families & {w for w in words if isinstance(w, str)}), f"{name}: {ast.unparse(node)}"
+                assert not families & set(constants(node.comparators)), f"{name}: {ast.unparse(node)}"
+            if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("name.startswith"):
+                starts = constants(node.args)
+                assert not any(f.startswith(w) for f in families for w in starts), f"{name}: {ast.unparse(node)}"
+            listed = node.keys if isinstance(node, ast.Dict) else getattr(node, "elts", [])
+            assert len(families & set(constants(listed))) < 2, f"{name}: {ast.unparse(node)}"
+
+
+def constants(nodes: Iterable[ast.expr | None]) -> list[str]:
+    """The words among nodes."""
+    return [n.value for n in nodes if isinstance(n, ast.Constant) and isinstance(n.value, str)]

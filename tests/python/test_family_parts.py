@@ -33,4 +33,6 @@ def test_a_family_with_a_page_has_cases_their_reader_and_its_paper_gone_through(
     assert list((ROOT / "tests" / "cases" / family).glob("*.json")), f"tests/cases/{family} holds no case"
     for part in (f"python/garrison/verify/{family}.py", f"examples/papers/{family}.py"):
         assert (ROOT / part).is_file(), f"{part} is missing"
+    own = list((ROOT / "tests" / "cpp" / "filters" / family).glob("*_test.cpp"))
+    assert own, f"tests/cpp/filters/{family} holds no test: a search for a violated promise on random systems"
     assert f"]({family}.md)" in (PAGES / "index.md").read_text(), f"docs/filters/index.md does not lead to {family}.md"

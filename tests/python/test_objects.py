@@ -1,10 +1,12 @@
 """What is public can be kept: pickled, copied, compared, printed as code; bad arguments are refused in our words."""
 
 import copy
+import datetime
 import pickle
 import types
 from collections.abc import Callable, Iterator
 from math import inf, nan
+from pathlib import Path
 from typing import Any
 
 import garrison as gr
@@ -13,7 +15,7 @@ import numpy as np
 import pytest
 from garrison import _core
 
-CODE = {"garrison": gr, "gr": gr, "nan": nan, "inf": inf, "array": np.array}
+CODE = {"garrison": gr, "nan": nan, "inf": inf, "array": np.array, "datetime": datetime, "Path": Path}
 
 
 def keeps(x: Any) -> None:

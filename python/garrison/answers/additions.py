@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.answers.removals import smallest_removal, unseen
+from garrison.result import Result
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Candidate:
+@dataclass(frozen=True, eq=False, repr=False)
+class Candidate(Result):
     """A sensor that could be added: what it measures, its row (n,), and its cost > 0."""
 
     name: str
@@ -23,8 +24,8 @@ class Candidate:
     cost: float = 1.0
 
 
-@dataclass(frozen=True)
-class Addition:
+@dataclass(frozen=True, eq=False, repr=False)
+class Addition(Result):
     """goal: what becomes true. sensors: names of what to add, one may stand there twice. cost: of all together.
 
     cheapest: nothing cheaper among the candidates does it, for certain. sensors None: nothing was found.

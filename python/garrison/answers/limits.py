@@ -11,7 +11,9 @@ from garrison._core import saturation
 from garrison.answers.removals import Removal
 from garrison.answers.sensors import Sensors
 from garrison.checks import check
+from garrison.families import family_of
 from garrison.filters import make_filter
+from garrison.result import Result
 
 Array = NDArray[np.float64]
 
@@ -23,8 +25,8 @@ LATE = "the time was up"
 _NAMES = {"a": "||A||", "gamma": "gamma", "lambda0": "lambda_0"}
 
 
-@dataclass(frozen=True)
-class Limit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Limit(Result):
     """A guarantee, with what it needs.
 
     holds: for any so many liars, for certain. fails: for some so many it does not; None: not known. why: what stands in
@@ -120,21 +122,18 @@ def of_filter(model: _core.Model, network: _core.Network, filter: _core.Filter, 
     if "attacked" not in filter.params:
         return None
     needs = "all required conditions of `garrison check`, with the parameters given"
-    last, failed = -1, ""
-    for attacked in range(model.agents + 1):
+    least, last, failed = family_of(filter).least_attacked, -1, ""
+    for attacked in range(least, model.agents + 1):
         if budget.over:
             return Limit(_titled(filter), max(last, 0), None, needs, LATE)
         try:
             found = check(model, network, make_filter(filter.name, filter.params | {"attacked": attacked}))
         except _core.InvalidInput as refused:
-            if attacked == 0 and filter.name.startswith("platoon"):
-                continue  # its b starts at 1
             failed = str(refused)
             break
         if not found.holds:
             failed = "; ".join(c["name"] for c in found.failed)
-            if attacked > 0 or not filter.name.startswith("platoon"):
-                break
+            break
         last = attacked
     return Limit(_titled(filter), max(last, 0), last + 1 if last >= 0 else 0, needs, f"not met: {failed}")
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison._core import certificate, structure
+from garrison.result import Result
 
 Array = NDArray[np.float64]
 
@@ -16,8 +17,8 @@ Array = NDArray[np.float64]
 _MOST_SETS = 200_000
 
 
-@dataclass(frozen=True)
-class Removal:
+@dataclass(frozen=True, eq=False, repr=False)
+class Removal(Result):
     """The fewest sensors whose loss breaks something are between fewest and most; example: a set of `most` of them.
 
     fewest == most: exact, and the example is a smallest one. Nothing to break: 0 of both, and an empty example.

@@ -6,29 +6,28 @@ import numpy as np
 
 from garrison import _core
 from garrison.drivers import simulate
+from garrison.families import family_called
 from garrison.filters import make_filter
 
-#: families whose agents drive plants of their own
-_OWN_PLANTS = ("platoon", "platoon_baseline")
 #: attacks that need something only the user can give: a field of a family's message, the width of a message
 _SPECIAL = ("falsify", "perturb")
 
 
 def filters_for(model: _core.Model, network: _core.Network, liars: int, size: float) -> dict[str, _core.Filter]:
-    """Label -> filter. The saturation filter's threshold covers what a clean run's innovations are."""
+    """Label -> filter, of every family that watches one plant and says what it runs with where it needs parameters."""
     threshold = _threshold(model, network, size)
-    params: dict[str, dict[str, Any]] = {
-        "saturation": {"threshold": threshold, "rounds": 6, "attacked": liars},
-        "scalar_gain": {"rounds": 6},
-        "lfre": {"faulty": liars},
-        "partial_sharing": {"gain": 0.1},
-        "structural": {"isolate": True},
-    }
-    names = [info["name"] for info in _core.filter_infos() if info["name"] not in _OWN_PLANTS]
-    return {name: make_filter(name, params.get(name, {})) for name in names}
+    found = {}
+    for info in _core.filter_infos():
+        family = family_called(info["name"])
+        params = family.contest(liars, threshold)
+        needed = {p["name"] for p in info["params"] if p["required"]}
+        if not family.own_plants and needed <= params.keys():
+            found[info["name"]] = make_filter(info["name"], params)
+    return found
 
 
 def _threshold(model: _core.Model, network: _core.Network, size: float) -> float:
+    """What the innovations of a clean run stay below, with an unprotected filter."""
     try:
         filter = make_filter("scalar_gain", {"rounds": 6})
         clean = simulate(model, network, filter, steps=50, conditions=False, keep=("estimate",))

@@ -41,5 +41,6 @@ PLATOON = Family(
     proves=True,
     own_plants=True,
     picture="string",
+    least_attacked=1,
 )
 PLATOON_BASELINE = Family(own_plants=True, picture="string")

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from garrison.result import Result
 from garrison.tables.clock import Moment, of_number, seconds_of
 from garrison.tables.columns import read_table
-from garrison.words import Hinting, hinted_methods, refusal
+from garrison.words import hinted_methods, refusal
 
 Array = NDArray[np.float64]
 _DAY = 86400.0
@@ -17,8 +18,8 @@ _DAYS_OF_A_YEAR = 365.25
 
 
 @hinted_methods
-@dataclass(frozen=True)
-class Records(metaclass=Hinting):
+@dataclass(frozen=True, eq=False, repr=False)
+class Records(Result):
     """Regular records: times, and one column of numbers per station; nan = missing.
 
     dates: dates, dates with a time, or seconds. step: seconds between records. units: per station, "" = not said.

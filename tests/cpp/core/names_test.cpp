@@ -83,7 +83,10 @@ TEST_CASE("sizes that do not fit into memory are refused before anything is allo
 TEST_CASE("the registry is the list of families") {
   std::size_t k = 0;
   REQUIRE(families().size() == Families::size);
-  Families::each([&]<class F> { CHECK(families()[k++].name == F::name); });
+  Families::each([&]<class F> {
+    CHECK(families()[k++].name == F::name);
+    CHECK(F::signal_names().size() == F::signal_count);  // engines keep room for so many
+  });
 }
 
 TEST_CASE("an attack remembers its schedule and its parameters") {

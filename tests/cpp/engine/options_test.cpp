@@ -10,6 +10,7 @@
 #include "../option_pairs.hpp"
 #include "../random_system.hpp"
 #include "garrison/drivers/simulate.hpp"
+#include "garrison/engine/design_file.hpp"
 
 using namespace garrison;
 using namespace garrison::test;
@@ -72,7 +73,8 @@ void check_bits(const Prepared& p, const Record& r, const Matrix& y) {
   CHECK(std::memcmp(out.data(), r.estimate.data(), out.size() * sizeof(double)) == 0);
 }
 
-/// Honest sensors: bounds hold, nobody is accused, the agents alone have the same bits. Then one bad sample
+/// Honest sensors: bounds hold, nobody is accused, the agents alone have the same bits, of a design that went
+/// through a file: what the gains do not list in `visit` would be lost there. Then one bad sample
 /// of one sensor: at the end the estimate is back.
 std::size_t check_promises(const Prepared& p) {
   PlantOptions plant;
@@ -91,7 +93,7 @@ std::size_t check_promises(const Prepared& p) {
     for (const auto& set : accusation.sets) CHECK(set.empty());
   const Matrix y = Eigen::Map<const Eigen::Matrix<double, Dynamic, Dynamic, Eigen::RowMajor>>(
       r.measurements.data(), kSteps, kAgents);
-  check_bits(p, r, y);
+  check_bits(*read_design(write_design(p)), r, y);
   Matrix glitch = y;
   glitch(kBad, 2) += 50.0;
   const Record bad = replay(p.model(), p.network(), p.filter(), glitch, Matrix(), o);
@@ -109,6 +111,7 @@ TEST_CASE("every pair of option values keeps the promises of its family") {
   const std::map<std::string, ParamMap> without_default{
       {"saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{12}}, {"initial_error", 2.0}}},
       {"partial_sharing", {{"gain", 0.1}}}};
+  const std::set<std::string> bounded{"saturation", "rdkf"};  // bounds must have been there to be looked at
   const std::set<std::string> elsewhere{"structural", "platoon", "platoon_baseline"};  // tables of their own
   for (const FamilyInfo& family : families()) {
     if (elsewhere.count(family.name) != 0) continue;
@@ -132,7 +135,7 @@ TEST_CASE("every pair of option values keeps the promises of its family") {
     }
     MESSAGE(family.name << ": " << ran << " combinations ran, " << refused << " were refused, " << bounds
                         << " bounds were looked at");
-    CHECK(ran > refused);
-    CHECK((bounds > 0) == (family.name == "saturation" || family.name == "rdkf"));
+    CHECK_MESSAGE(ran > refused, "values that run belong into `without_default` and `numbers` above");
+    if (bounded.count(family.name) != 0) CHECK(bounds > 0);
   }
 }

@@ -117,6 +117,8 @@ TEST_CASE("an agent that joins takes over what its neighbours say, at once") {
     test::AgentsByHand agents(*prepared, p.network);
     for (const auto& agent : agents.all()) agent->reset(p.x[0]);
     for (int t = 1; t <= 20; ++t) agents.step(t, [&](int i) { return measured(p, t, i); });
+    std::vector<Vector> before;
+    for (int i = 0; i < kAgents; ++i) before.push_back(estimate(agents[i]));
     const auto late = prepared->agent(2);
     REQUIRE(late->listen(21) == Refusal::none);
     std::vector<std::byte> body(late->most_bytes());
@@ -127,7 +129,10 @@ TEST_CASE("an agent that joins takes over what its neighbours say, at once") {
     }
     CHECK(late->join() == Refusal::none);
     CHECK(late->sample() == 21);
-    CHECK((estimate(*late) - p.x[21]).norm() < 0.5);  // it is 7.8 from zero
+    double theirs = 0.0;  // of a filter that is slow they are off themselves
+    for (const int j : {1, 3})
+      theirs = std::max(theirs, (before[static_cast<std::size_t>(j)] - p.x[20]).norm());
+    CHECK((estimate(*late) - p.x[21]).norm() < std::max(0.5, 1.2 * theirs));  // it is 7.8 from zero
     CHECK(std::isnan(late->report().bound));
   }
 }
