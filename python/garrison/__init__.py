@@ -6,7 +6,6 @@ results, plots and the command line.
 
 from typing import TYPE_CHECKING, Any
 
-from garrison import attacks, filters
 from garrison._core import (
     Agent,
     AgentInfo,
@@ -36,23 +35,19 @@ from garrison._core import (
     structure,
 )
 from garrison.bound_kind import BoundKind
-from garrison.checks import Check, check
-from garrison.drivers import again, replay, simulate
-from garrison.kalman import central_kalman, extended_kalman, local_kalman
-from garrison.notebook import of_model, of_network
-from garrison.prepared import Prepared, prepare
-from garrison.record import Run
-from garrison.varying import VaryingModel
-from garrison.varying_network import VaryingNetwork
 from garrison.verdict import Verdict
 from garrison.words import refuse_attribute
 
 
 def _model_html(self: Any) -> str:
+    from garrison.notebook import of_model
+
     return of_model(self)
 
 
 def _network_html(self: Any) -> str:
+    from garrison.notebook import of_network
+
     return of_network(self)
 
 
@@ -61,17 +56,27 @@ setattr(Model, "_repr_html_", _model_html)  # noqa: B010
 setattr(Network, "_repr_html_", _network_html)  # noqa: B010
 
 if TYPE_CHECKING:
+    from garrison import attacks, filters
     from garrison.answers import Analysis, analyze
     from garrison.calibration import Calibration, calibrate
     from garrison.certifying import Certified, certify
+    from garrison.checks import Check, check
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
+    from garrison.drivers import again, replay, simulate
     from garrison.exposing import Exposed, expose
+    from garrison.kalman import central_kalman, extended_kalman, local_kalman
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
+    from garrison.prepared import Prepared, prepare
+    from garrison.record import Run
     from garrison.resilience import Resilience, resilience_per_byte
     from garrison.sweeps import Sweep, sweep
+    from garrison.varying import VaryingModel
+    from garrison.varying_network import VaryingNetwork
 
+#: modules that are attributes
+_MODULES = ("attacks", "filters")
 #: what is imported when it is asked for -> its module
 _LATER = {
     "Analysis": "answers",
@@ -80,6 +85,19 @@ _LATER = {
     "calibrate": "calibration",
     "Certified": "certifying",
     "certify": "certifying",
+    "Check": "checks",
+    "check": "checks",
+    "Prepared": "prepared",
+    "prepare": "prepared",
+    "Run": "record",
+    "again": "drivers",
+    "replay": "drivers",
+    "simulate": "drivers",
+    "central_kalman": "kalman",
+    "extended_kalman": "kalman",
+    "local_kalman": "kalman",
+    "VaryingModel": "varying",
+    "VaryingNetwork": "varying_network",
     "Exposed": "exposing",
     "expose": "exposing",
     "Fit": "fitting",
@@ -166,10 +184,12 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _LATER:
+    if name not in _LATER and name not in _MODULES:
         refuse_attribute("garrison", name, __all__)
     from importlib import import_module
 
+    if name in _MODULES:
+        return import_module(f"garrison.{name}")
     value = getattr(import_module(f"garrison.{_LATER[name]}"), name)
     globals()[name] = value
     return value

@@ -235,3 +235,12 @@ def test_a_budget_ends_what_is_computed_inside():
         gr.budget(0.0)
     with gr.budget() as endless:
         assert not endless.over
+
+
+def test_a_filter_that_requires_nothing_of_liars_promises_nothing_about_them() -> None:
+    model = gr.Model(0.9 * np.eye(2), [[1, 0], [0, 1]] * 4, process_bound=0.02, measurement_bound=0.05)
+    vague = gr.filters.Saturation(threshold=1.0, rounds=30, attacked=1)  # no initial_error: no theorem
+    network, words = gr.Network.complete(8), "keeps its theorem"
+    assert words not in str(gr.analyze(model, network, filter=vague))
+    sure = gr.filters.Saturation(threshold=1.0, rounds=30, attacked=1, initial_error=2.0)
+    assert words in str(gr.analyze(model, network, filter=sure))

@@ -118,7 +118,10 @@ def contraction(sensors: Sensors) -> float:
 
 
 def of_filter(model: _core.Model, network: _core.Network, filter: _core.Filter, budget: Any) -> Limit | None:
-    """The largest `attacked` with which the filter, otherwise as it is, meets all its required conditions."""
+    """The largest `attacked` with which the filter, otherwise as it is, meets all its required conditions.
+
+    None where nothing that it requires depends on `attacked`: then it promises nothing about liars.
+    """
     if "attacked" not in filter.params:
         return None
     needs = "all required conditions of `garrison check`, with the parameters given"
@@ -135,6 +138,8 @@ def of_filter(model: _core.Model, network: _core.Network, filter: _core.Filter, 
             failed = "; ".join(c["name"] for c in found.failed)
             break
         last = attacked
+    else:
+        return None
     return Limit(_titled(filter), max(last, 0), last + 1 if last >= 0 else 0, needs, f"not met: {failed}")
 
 
