@@ -73,9 +73,9 @@ const std::map<std::string, Setting, std::less<>> settings{
        {"initial_error", 2.0},
        {"detector", true}},
       264}},
-    {"rdkf", {{{"weight", 2.0}}, 900}},
-    {"partial_sharing", {{{"gain", 0.03}, {"shared", std::int64_t{2}}}, 2500}},
-    {"structural", {{}, 232}},
+    {"rdkf", {{{"weight", 2.0}}, 1400}},
+    {"partial_sharing", {{{"gain", 0.03}, {"shared", std::int64_t{2}}}, 2600}},
+    {"structural", {{}, 1600}},
     {"platoon",
      {{{"attacked", std::int64_t{1}},
        {"process_noise", 0.05},
@@ -84,7 +84,7 @@ const std::map<std::string, Setting, std::less<>> settings{
        {"gs", 0.5},
        {"gv", 1.0},
        {"reference", std::vector<double>{0.0, 10.0}}},
-      1400}},
+      1500}},
 };
 
 template <class F>
