@@ -18,6 +18,6 @@ copy=build/deb/garrison
 rm -rf build/deb && mkdir -p dist
 tools/copy.sh "$copy"
 tools/stage.sh "build packages" env -C "$copy" dpkg-buildpackage --unsigned-source --unsigned-changes --build=binary
-rm -f dist/*.deb
+rm -f dist/*.deb dist/*.changes dist/*.buildinfo
 mv build/deb/*.deb build/deb/*.changes build/deb/*.buildinfo dist/
 ls -1 dist/*.deb

@@ -98,7 +98,7 @@ def plot(path: Path, title: str, curves: dict[str, Any], label: str, x: Any = No
     ax.set(xlabel=xlabel, ylabel=label, title=title)
     ax.grid(True, color="#dddddd", linewidth=0.6)
     ax.spines[["top", "right"]].set_visible(False)
-    figure.legend(frameon=False, fontsize=8, loc="outside right upper")
+    ax.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))  # as matplotlib 3.6 has it
     figure.savefig(path, dpi=120)
 
 

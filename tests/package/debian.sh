@@ -5,13 +5,16 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d "$PWD/build/debian.XXXXXX")
-trap 'umount "$work/root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
+trap 'umount "$work"/root/{proc,sys,dev/shm} 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
 debs() { find dist -maxdepth 1 -name '*.deb' ! -name '*-dbgsym_*'; }
 [[ -n $(debs) ]] || { echo "debian: no packages in dist/: make deb" >&2 && exit 1; }
 
 library=$(find dist -maxdepth 1 -name 'libgarrison[0-9]*.[0-9]_*.deb')
 dpkg-deb -x "$library" "$work/library"
 tests/package/symbols.sh "$(find "$work/library" -name 'libgarrison.so.*' -type f)"
+for deb in $(debs | sort); do
+  echo "debian: $(dpkg-deb -W --showformat '${Package}: ${Installed-Size} kB installed' "$deb"), $(($(stat -c %s "$deb") / 1000)) kB"
+done
 
 if [[ ${1:-} == --all ]]; then
   lintian --version >/dev/null || { echo "debian: missing: apt-get install lintian" >&2 && exit 1; }
@@ -47,13 +50,16 @@ mkdir "$work/root/packages"
 # shellcheck disable=SC2046
 cp $(debs) "$work/root/packages"
 mount -t proc proc "$work/root/proc" 2>/dev/null || true
+mount -t sysfs sysfs "$work/root/sys" 2>/dev/null || true  # processors, as MPI sees them
+mkdir -p "$work/root/dev/shm"  # semaphores of Python, ranks of MPI
+mount -t tmpfs tmpfs "$work/root/dev/shm" 2>/dev/null || true
 inside apt-get update -qq
 tools/stage.sh "install the packages in it" env LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$work/root" \
   sh -c 'apt-get install --yes --no-install-recommends python3-matplotlib /packages/*.deb'
 runs inside
 inside sh -c 'for page in garrison garrison-node garrison-mpi; do test -s /usr/share/man/man1/$page.1.gz || exit 1; done'
 inside sh -c 'apt-get purge --yes $(dpkg-query -W -f "\${Package} " "*garrison*")' >"$work/purge.log" 2>&1 || { cat "$work/purge.log" && exit 1; }
-left=$(inside find / -xdev -path /packages -prune -o -path /proc -prune -o -path /tmp -prune -o -path /var/log -prune -o \
+left=$(inside find / -xdev -path /packages -prune -o -path /proc -prune -o -path /sys -prune -o -path /tmp -prune -o -path /var/log -prune -o \
   -path /var/lib/apt -prune -o -name '*garrison*' -print)
 [[ -z $left ]] || { printf 'debian: left after purge: %s\n' "$left" >&2 && exit 1; }
 echo "debian: installed, run and removed without a trace in a clean Debian 12 (debootstrap)"

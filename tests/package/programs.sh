@@ -7,6 +7,7 @@ trap 'rm -rf "$work"' EXIT
 
 "$build/uses_garrison"
 "$build/uses_headers"
+"$build/memory"
 
 # Every node gives the bits of the whole library's agents, from the same parts.
 "$build/parts" >"$work/cases"

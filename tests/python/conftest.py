@@ -1,4 +1,5 @@
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -26,6 +27,11 @@ def wind() -> Path:
 def cases() -> Path:
     """Folder of the reference cases."""
     return ROOT / "tests" / "cases"
+
+
+def title_of(figure: Any) -> str:
+    """The title of a whole figure, as matplotlib 3.6 has it too; get_suptitle came with 3.8."""
+    return str(figure._suptitle.get_text())
 
 
 def node_programs() -> Path | None:

@@ -6,6 +6,7 @@ from typing import Any
 import garrison as gr
 import numpy as np
 import pytest
+from conftest import title_of
 
 NASTY: list[Any] = [
     None, True, -1, 0, 1, 2, 2.5, 1e308, float("nan"), float("inf"), 10**30, "x", "", b"x", [], [[]], [1], [1, 2],
@@ -39,7 +40,7 @@ def test_arrays_are_lists_and_numbers_alone_are_none(parts: tuple[gr.Model, gr.N
     assert np.array_equal(run.estimate, gr.simulate(*parts, steps=3, link={"cuts": [(0, 1, 1, 2)]}).estimate)
     for which in ([0, 1], np.arange(2)):
         assert gr.compare(*parts[:2], which, steps=4, start=2, trials=1, filters={}, baselines=False).attacked == [0, 1]
-    titles = [run.plot(agents=agents).get_suptitle() for agents in (np.array([0, 2]), [0, 2], (0, np.int8(2)))]
+    titles = [title_of(run.plot(agents=agents)) for agents in (np.array([0, 2]), [0, 2], (0, np.int8(2)))]
     assert "agents 0, 2" in titles[0] and titles.count(titles[0]) == 3
     lone = np.array(1.5)  # iterable by its class, but not in fact
     calls: dict[str, Callable[[], object]] = {

@@ -8,6 +8,7 @@ from pathlib import Path
 import garrison as gr
 import numpy as np
 import pytest
+from conftest import title_of
 from garrison.longform import state_names
 
 
@@ -126,7 +127,7 @@ def test_verdict_is_an_enum() -> None:
 
 
 def test_a_plot_says_which_trial(run: gr.Run) -> None:
-    assert run.plot(2).get_suptitle() == "saturation: trial 2 of 3 (numbered from 0)"
+    assert title_of(run.plot(2)) == "saturation: trial 2 of 3 (numbered from 0)"
     with pytest.raises(gr.InvalidInput, match=r"trial: got 3, expected a whole number in 0\.\.2"):
         run.plot(3)
 

@@ -246,7 +246,7 @@ def test_every_panel_of_a_figure_says_what_it_shows(tmp_path: Path) -> None:
             shown = {text.get_text() for text in legend}
             assert shown == {line.get_label() for line in ax.get_lines() if not line.get_label().startswith("_")}
     few = innovation_figure(scenario, run)
-    assert few.get_supylabel() and few.get_supxlabel()
+    assert few._supylabel.get_text() and few._supxlabel.get_text()  # get_supylabel: matplotlib 3.8
     assert "actually attacked" in [t.get_text() for t in map_figure(scenario, run).axes[0].get_legend().get_texts()]
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import garrison as gr
 import numpy as np
 import pytest
+from conftest import title_of
 from garrison.objects import filter_of, model_of, network_of
 
 MODEL = gr.Model(
@@ -106,7 +107,7 @@ def test_plot_of_some_agents_and_other_runs(run: gr.Run) -> None:
     lines = {line.get_label(): line for line in figure.axes[0].get_lines()}
     assert np.array_equal(lines["largest error of an agent"].get_ydata(), run.error[1][:, [1, 2]].max(axis=1))  # type: ignore[index]
     assert np.array_equal(lines["mean error of scalar_gain"].get_ydata(), plain.error[1][:, [1, 2]].mean(axis=1))  # type: ignore[index]
-    assert "agents B, C" in figure.get_suptitle()
+    assert "agents B, C" in title_of(figure)
     whole = run.plot()
     assert np.array_equal(whole.axes[0].get_lines()[0].get_ydata(), run.error[0].max(axis=1))  # type: ignore[index]
     for wrong, words in (

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from garrison.families.platoon import SETS, world_of
-from garrison.figures.style import LOOKS, axes, trial_words
+from garrison.figures.style import LOOKS, axes, legend_below, trial_words
 from garrison.record import Run
 from garrison.verdict import Verdict
 
@@ -84,7 +84,7 @@ def string_figure(run: Run, trial: int = 0) -> Figure:
     handles = [matplotlib.patches.Patch(color=c, label=n) for n, c in _COLOURS.items()]
     sets.legend(handles=handles, fontsize=8, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False)
     vehicles = [matplotlib.lines.Line2D([], [], **_line(k, N), label=f"vehicle {k}") for k in range(N)]
-    figure.legend(handles=vehicles[:: 1 + N // 12], fontsize=8, ncols=13, loc="outside lower center", frameon=False)
+    legend_below(figure, vehicles[:: 1 + N // 12], 13)
     if words := trial_words(trial, run.shape[0]):
         figure.suptitle(words, fontsize=11)
     return figure
@@ -114,7 +114,7 @@ def animate(run: Run, path: str | Path, trial: int = 0, frames: int = 80) -> Non
     ax.text(0.01, 0.93, "triangles: where the absolute sensors claim to be", transform=ax.transAxes, fontsize=8)
     if run.details:
         handles = [matplotlib.patches.Patch(facecolor=c, edgecolor="#333333", label=n) for n, c in _COLOURS.items()]
-        figure.legend(handles=handles, fontsize=8, ncols=3, loc="outside lower right", frameon=False)
+        legend_below(figure, handles, 3, "lower right")
     text = ax.text(0.99, 0.93, "", transform=ax.transAxes, ha="right", fontsize=8)
 
     def draw(t: int) -> tuple[Any, ...]:

@@ -32,6 +32,14 @@ def axes(figure: Any, *place: int) -> Any:
     return ax
 
 
+def legend_below(figure: Any, handles: Any, columns: int, place: str = "lower center") -> None:
+    """One row of a legend below all panels of a constrained figure: "outside", which matplotlib has from 3.7 on."""
+    row = _LEGEND / figure.get_figheight()
+    figure.set_layout_engine("constrained", rect=(0.0, row, 1.0, 1.0 - row))
+    figure.legend(handles=handles, fontsize=8, ncols=columns, loc=place, frameon=False)
+
+
+_LEGEND = 0.28  # inches, one row of small letters
 #: lines that are labelled at their ends; more are told apart in a legend
 _MOST_DIRECT = 9
 _ROW = 0.058  # of the height of the axes, from one label to the next
