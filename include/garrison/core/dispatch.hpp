@@ -34,7 +34,8 @@ auto dispatch(int states, const Action& action) {
   }
 }
 
-/// The same with n = 2, 4 and Dynamic: for what runs once a sample on one agent. The bits are those of every n.
+/// The same with n = 2, 4 and Dynamic: for what runs once a sample on one agent. The bits are those of every
+/// n.
 template <class Action>
 auto dispatch_few(int states, const Action& action) {
   switch (states) {
