@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "garrison/kernel/magnitude.hpp"
+
 namespace garrison {
 
 Places::Places(const Model& model, const Network& network, std::span<const int> order)
@@ -39,10 +41,7 @@ void Places::constant() {
 }
 
 bool Places::measures_below(double limit, const double* y) const noexcept {
-  bool all = true;
-  const int M = model_.total_outputs();
-  for (int r = 0; r < M; ++r) all &= !(std::abs(y[r]) >= limit);
-  return all;
+  return known_below(y, static_cast<std::size_t>(model_.total_outputs()), limit);
 }
 
 bool Places::miss_more_than(int most, const double* y) const noexcept {

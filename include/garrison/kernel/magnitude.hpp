@@ -11,6 +11,8 @@
 namespace garrison {
 
 namespace detail {
+/// `nan`: what it counts as.
+template <bool nan>
 struct AllBelow {
   template <int B>
   GARRISON_INLINE static void run(const double* x, std::size_t count, double limit, bool* all) noexcept {
@@ -21,11 +23,15 @@ struct AllBelow {
     for (; k + B <= count; k += B) {
       const V value = *Block<B>::of(x + k);
       const V size = value < 0.0 ? -value : value;
-      beyond = size < most ? beyond : V{} + 1.0;
+      if constexpr (nan)
+        beyond = size >= most ? V{} + 1.0 : beyond;
+      else
+        beyond = size < most ? beyond : V{} + 1.0;
     }
     for (; k < count; ++k) {
       const double size = x[k] < 0.0 ? -x[k] : x[k];
-      beyond[0] = size < limit ? beyond[0] : 1.0;
+      const bool below = nan ? !(size >= limit) : size < limit;
+      beyond[0] = below ? beyond[0] : 1.0;
     }
     *all = true;
     for (int lane = 0; lane < B; ++lane) *all = *all && beyond[lane] == 0.0;
@@ -36,7 +42,14 @@ struct AllBelow {
 /// Whether every |x| < limit; NaN is not.
 inline bool all_below(const double* x, std::size_t count, double limit) noexcept {
   bool all = true;
-  run_widest<detail::AllBelow>(x, count, limit, &all);
+  run_widest<detail::AllBelow<false>>(x, count, limit, &all);
+  return all;
+}
+
+/// The same, where NaN stands for what is missing and counts as small.
+inline bool known_below(const double* x, std::size_t count, double limit) noexcept {
+  bool all = true;
+  run_widest<detail::AllBelow<true>>(x, count, limit, &all);
   return all;
 }
 
