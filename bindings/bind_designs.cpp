@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "agents.hpp"
+#include "budget.hpp"
 #include "bytes.hpp"
 #include "garrison/node/log.hpp"
 
@@ -63,10 +64,11 @@ void bind_designs(py::module_& m) {
                        const std::string& certificate, double failure, int attacked,
                        const std::pair<double, double>& levels) {
              const auto wanted = wanted_of(certificate, failure, attacked, levels);
-             const py::gil_scoped_release no_gil;
-             auto prepared = filter.filter->prepare(model, network);
-             if (wanted) prepared = certified(*prepared, *wanted);
-             return std::const_pointer_cast<Prepared>(prepared);
+             return without_gil([&] {
+               auto prepared = filter.filter->prepare(model, network);
+               if (wanted) prepared = certified(*prepared, *wanted);
+               return std::const_pointer_cast<Prepared>(prepared);
+             });
            }),
            py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("certificate") = "none",
            py::arg("failure") = 1e-6, py::arg("attacked") = 0, py::arg("levels") = std::pair(0.0, 0.0))

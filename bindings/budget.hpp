@@ -26,4 +26,35 @@ auto within_budget(double seconds, Compute&& compute) {
   }
 }
 
+/// `compute` without the GIL, within the budget of the caller; a pending KeyboardInterrupt ends it and is
+/// raised.
+template <class Compute>
+auto without_gil(Compute&& compute) {
+  bool interrupted = false;
+  const auto raise = [&] {
+    if (!interrupted) return;
+    PyErr_SetNone(PyExc_KeyboardInterrupt);
+    throw pybind11::error_already_set();
+  };
+  try {
+    auto result = [&] {
+      const pybind11::gil_scoped_release no_gil;
+      const BudgetScope scope(Budget(kInfinity, [outer = current_budget(), &interrupted] {
+        if (outer.over()) return true;
+        const pybind11::gil_scoped_acquire gil;
+        if (PyErr_CheckSignals() == 0) return false;
+        PyErr_Clear();
+        interrupted = true;
+        return true;
+      }));
+      return std::forward<Compute>(compute)();
+    }();
+    raise();
+    return result;
+  } catch (const Error&) {  // stopped without a result: the interrupt is what happened
+    raise();
+    throw;
+  }
+}
+
 }  // namespace garrison

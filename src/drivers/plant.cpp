@@ -10,10 +10,12 @@
 namespace garrison::detail {
 namespace {
 
-/// Symmetric square root, which exists for singular covariances too.
+/// Symmetric square root. Eigenvalues of singular covariances are zero up to rounding, of either sign.
 Matrix root(const Matrix& covariance) {
   if (covariance.rows() == 0) return covariance;
-  return Eigen::SelfAdjointEigenSolver<Matrix>(covariance).operatorSqrt();
+  const Eigen::SelfAdjointEigenSolver<Matrix> of(covariance);
+  return of.eigenvectors() * of.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         of.eigenvectors().transpose();
 }
 
 class Simulated final : public Source {

@@ -2,6 +2,8 @@
 
 import copy
 import pickle
+import signal
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -364,3 +366,21 @@ def test_observability_of_which_one_cannot_tell_is_not_denied() -> None:
             gr.s_sparse_observable(B, D, 0)
     assert gr.observable(np.diag([1.0, 1.1]), C)
     assert not gr.observable(np.eye(2), C)
+
+
+@pytest.mark.parametrize("call", [gr.prepare, gr.check, lambda *parts: gr.simulate(*parts, steps=3)])
+def test_an_interrupt_ends_a_long_design(call: Callable[..., Any]) -> None:
+    rng = np.random.default_rng(0)
+    A = 0.98 * np.linalg.qr(rng.normal(size=(12, 12)))[0]
+    model = gr.Model(A, list(rng.normal(size=(40, 1, 12))), process_covariance=0.1, measurement_covariance=0.1)
+    parts = model, gr.Network.random_geometric(40, 0.5, 1), gr.filters.Structural(design="h2")
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.5)
+    started = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            call(*parts)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert time.monotonic() - started < 15  # without an answer it takes far longer

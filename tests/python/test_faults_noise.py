@@ -1,6 +1,7 @@
 """Noise that is larger than a filter was told is named in the warnings; noise as told, and a few liars, are not."""
 
 import garrison as gr
+import numpy as np
 import pytest
 
 NET = gr.Network.complete(6)
@@ -54,3 +55,17 @@ def test_covariances_told_too_small(options: dict[str, object]) -> None:
             assert true.measurements is not None
             told = gr.replay(gaussian(1.0), NET, filt, measurements=true.measurements[0])
             assert any("measurement_covariance is too small" in w for w in told.warnings) == named, told.warnings
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_singular_covariances_are_simulated(seed: int) -> None:
+    """Q = G G' of any rank, as of white acceleration: rounding makes eigenvalues negative."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(2, 5))
+    G = rng.normal(size=(n, rng.integers(1, n + 1))) * 10.0 ** rng.integers(-3, 3)
+    model = gr.Model(0.9 * np.eye(n), list(rng.normal(size=(3, 1, n))), process_covariance=G @ G.T)
+    noisy = gr.Model(model.A, model.C, process_covariance=G @ G.T, measurement_covariance=0.5)
+    run = gr.simulate(noisy, gr.Network.complete(3), gr.filters.ScalarGain(), steps=200, start=np.zeros(n))
+    assert np.isfinite(run.error).all() and np.isfinite(run.measurements).all()  # type: ignore[type-var]
+    w = run.truth[0, 1:] - run.truth[0, :-1] @ np.asarray(model.A).T  # type: ignore[index]
+    assert np.allclose(np.cov(w.T), G @ G.T, atol=0.6 * np.abs(G @ G.T).max())

@@ -211,3 +211,15 @@ def test_measurements_without_noise_alarm_as_rarely_as_asked(noise: float, test:
     assert over[0, 100:].mean() < 0.015
     if noise < 1e-9 and "test" in test and test["test"] == "residual":  # zero up to rounding: says nothing
         assert not (run.verdict == gr.Verdict.CLEARED).any()
+
+
+@pytest.mark.parametrize("start", [0.0, 10.0, 30.0])
+@pytest.mark.parametrize("options", [{"window": 20}, {"window": 5, "isolate": True}, {"window": 20, "share": "none"}])
+def test_a_wrong_start_accuses_nobody(options: dict[str, Any], start: float) -> None:
+    """Windows hold nothing of the start."""
+    model = gr.Model(0.95, [1.0] * 4, process_covariance=0.1, measurement_covariance=0.5)
+    filt = gr.filters.Structural(false_alarm=0.01, **options)
+    run = gr.simulate(model, gr.Network.complete(4), filt, steps=80, trials=100, start=[start], seed=1)
+    tested = np.isfinite(run.threshold) & np.isfinite(run.statistic)  # type: ignore[arg-type]
+    assert tested.mean() > 0.2
+    assert (run.statistic > run.threshold)[tested].mean() < 0.013  # type: ignore[operator, index]

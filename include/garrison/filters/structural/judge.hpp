@@ -15,14 +15,13 @@ bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double val
   s.coarse = false;
   bool window = false;
   if (g.window > 1) {
-    const bool stationary = exact || (s.start > 0 && s.rest <= s.start);
-    remember(g, s, stationary ? value : kNaN);
-    window = stationary && !s.broken;
+    remember(g, s, exact ? value : kNaN);  // nothing of the start, whose error nobody knows
+    window = exact && !s.broken;
     if (window) s.statistic = window_statistic(g, s, id);
   }
   if (s.start > 0 || std::isnan(s.statistic)) return false;
   if (window) {
-    if (exact && !std::isnan(g.std[id])) s.threshold = g.level;
+    if (!std::isnan(g.std[id])) s.threshold = g.level;
   } else if (exact || (carries(g) && structural::varies(std, g.noise[id], g.innovation_std[id]))) {
     const double usual = g.innovation ? g.innovation_std[id] : g.std[id];
     // What a sensor left out may be up to is in `std`: it must be able to come back.
