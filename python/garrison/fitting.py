@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.arguments import whole
+from garrison.arguments import chance, number, whole
 from garrison.clean import clean_levels
 from garrison.notebook import of_model, titled
 from garrison.numeric import real
@@ -70,6 +70,8 @@ class Fit(Result):
 
     def measurements(self, records: Records) -> Array:
         """Measurements (samples, stations) of other records of the same stations and period, matched by name."""
+        if not isinstance(records, Records):
+            raise refusal("records", shown(records), "Records, as garrison.tables.read_records returns them")
         if abs(records.step - self.records.step) > 1e-6 * self.records.step:
             raise refusal("records", f"a period of {records.step:g} s", f"{self.records.step:g} s, as the fitted ones")
         same = records.of(self.records.stations)
@@ -106,8 +108,8 @@ class Fit(Result):
         Split conformal over all sets with at most `attacked` stations missing. None where they do not exist: several
         states, rows that are not 1 or -1, or fewer than 2/failure - 1 complete records.
         """
-        y = self.measurements(self.records)
-        return clean_levels(self.model, y, whole("attacked", attacked, 0, self.model.agents - 1), failure)
+        most, rate = whole("attacked", attacked, 0, self.model.agents - 1), chance("failure", failure)
+        return clean_levels(self.model, self.measurements(self.records), most, rate)
 
     def inflated(self, factor: float = INFLATION) -> tuple[list[float], float]:
         """(measurement_bound, process_bound) times a factor: the largest noise of the records is not the largest ever.
@@ -115,7 +117,8 @@ class Fit(Result):
         On the wind data one station and day in 30 000 of the test years breaks a bound of the clean years, and none
         the one that is 1.1 times as large.
         """
-        return (factor * np.asarray(self.model.measurement_bound)).tolist(), factor * self.model.process_bound
+        by = number("factor", factor)
+        return (by * np.asarray(self.model.measurement_bound)).tolist(), by * self.model.process_bound
 
     def to_json(self, attacked: int | None = None, failure: float = 1e-3) -> str:
         """The model as text: everything a scenario or another program needs.

@@ -71,6 +71,16 @@ class Word(IntEnum, metaclass=HintingEnum):
         """For people: `not tested`."""
         return self.name.lower().replace("_", " ")
 
+    @classmethod
+    def _missing_(cls, value: object) -> Any:
+        """By its word, as tables and files have it; refused otherwise."""
+        for member in cls:
+            if isinstance(value, str) and value.strip().lower().replace("_", " ") == member.word:
+                return member
+        words = [member.word for member in cls]
+        advice = near(value, words) if isinstance(value, str) else ""
+        raise refusal(cls.__name__, shown(value), f"0..{len(words) - 1} or one of {', '.join(words)}", advice)
+
     def __getattr__(self, name: str) -> Any:
         return missing(self, name)
 

@@ -384,3 +384,32 @@ def test_an_interrupt_ends_a_long_design(call: Callable[..., Any]) -> None:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
     assert time.monotonic() - started < 15  # without an answer it takes far longer
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda f, r: f.measurements(None), "records: got no value, expected Records"),
+        (lambda f, r: f.reference([1.0]), "expected Records"),
+        (lambda f, r: f.robust_reference("x"), "expected Records"),
+        (lambda f, r: f.levels(3, "x"), "failure: got 'x', expected a number"),
+        (lambda f, r: f.inflated(None), "factor: got no value, expected a number"),
+        (lambda f, r: f.inflated("x"), "factor: got 'x', expected a number"),
+        (lambda f, r: r.between("1961-01-01", None), "from: got '1961-01-01', expected a datetime.date"),
+        (lambda f, r: r.between(None, pd.NA), "to: got"),
+        (lambda f, r: r.of(pd.NA), "stations: got"),
+        (lambda f, r: read_records(None), "path: got no value"),
+        (lambda f, r: gr.Verdict("atacked"), 'did you mean "attacked"?'),
+        (lambda f, r: gr.Verdict(7), "Verdict: got 7, expected 0..4 or one of cleared, suspected"),
+    ],
+)
+def test_methods_of_fits_and_records_refuse(wind: Path, call: Callable[[Any, Any], Any], said: str) -> None:
+    records = read_records(wind / "irish_wind.csv")
+    fit = gr.fit(records.between(None, records.dates[2000]), factors=1)
+    with pytest.raises(gr.InvalidInput) as refused:
+        call(fit, records)
+    assert said in str(refused.value)
+
+
+def test_verdicts_by_their_words() -> None:
+    assert gr.Verdict("not tested") is gr.Verdict.NOT_TESTED is gr.Verdict("NOT_TESTED") is gr.Verdict(4)

@@ -2,6 +2,7 @@
 
 import datetime as dt
 from dataclasses import dataclass, field
+from numbers import Real
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from garrison.result import Result
 from garrison.tables.clock import Moment, of_number, seconds_of
 from garrison.tables.columns import read_table
-from garrison.words import hinted_methods, refusal
+from garrison.words import hinted_methods, refusal, shown
 
 Array = NDArray[np.float64]
 _DAY = 86400.0
@@ -53,6 +54,8 @@ class Records(Result):
 
         Raises InvalidInput for other numbers, and for a date where the records have plain seconds.
         """
+        if isinstance(moment, bool) or not isinstance(moment, (dt.date, Real)):
+            raise refusal(where, shown(moment), "a datetime.date or datetime.datetime, or a number of seconds")
         dated = isinstance(self.dates[0], dt.date)
         if dated and not isinstance(moment, dt.date) and (meant := of_number(float(moment), last)) is not None:
             return meant
@@ -97,12 +100,15 @@ class Records(Result):
 
     def of(self, stations: list[str]) -> "Records":
         """The records of `stations`, matched by name. Raises InvalidInput where one is missing."""
+        if not isinstance(stations, (list, tuple)):
+            raise refusal("stations", shown(stations), "a list of names of stations")
         missing = [s for s in stations if s not in self.stations]
         if missing:
-            raise refusal("stations", ", ".join(self.stations), f"also {', '.join(missing)}, which the model has")
+            also = ", ".join(map(str, missing))
+            raise refusal("stations", ", ".join(self.stations), f"also {also}, which the model has")
         columns = [self.stations.index(s) for s in stations]
         units = [self.units[c] for c in columns] if self.units else []
-        return Records(self.dates, stations, self.values[:, columns], self.step, units, self.notes)
+        return Records(self.dates, list(stations), self.values[:, columns], self.step, units, self.notes)
 
 
 def read_records(path: str | Path) -> Records:

@@ -3,12 +3,13 @@
 import csv
 import re
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 from garrison import _core
 from garrison.files import contents
 from garrison.tables.cells import has_decimal_comma, is_missing, number
-from garrison.words import count, refusal
+from garrison.words import count, refusal, shown
 
 _SEPARATORS = (";", "\t", "|", ",")
 _NAMES = {";": "semicolons", "\t": "tabs", "|": "bars", ",": "commas", " ": "blanks"}
@@ -44,6 +45,8 @@ class Rows:
 
 def read_rows(path: str | Path) -> Rows:
     """Read a text file of cells. Raises IoError when it cannot be read, InvalidInput when it is no such text."""
+    if not isinstance(path, (str, PathLike)):
+        raise refusal("path", shown(path), "the path of a file of records")
     path = Path(path)
     text = _text(path)
     numbered = [(k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
