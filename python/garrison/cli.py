@@ -5,6 +5,7 @@ Exit codes: 0 fine, 1 a check failed (a condition is not met, a case misses), 2 
 """
 
 import argparse
+import errno
 import os
 import sys
 import traceback
@@ -95,6 +96,9 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _one_line(error: BaseException) -> str:
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT):
+        where = error.filename or "the output"
+        return f"{where}: got a disk that is full, expected room for it; free some, or name another place with -o"
     if type(error).__module__ == "builtins" and isinstance(error, OSError) and error.filename is not None:
         return f"{error.filename}: got {error.strerror}, expected a file or folder that can be used"
     return " ".join(str(error).split())

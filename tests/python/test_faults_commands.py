@@ -1,5 +1,6 @@
 """Slips on the command line: encodings, numbers of options, and what a design file shows."""
 
+import errno
 import os
 from pathlib import Path
 
@@ -358,3 +359,15 @@ def test_one_covariance_for_the_noises_of_all_agents() -> None:
         gr.Model(0.9, [1.0] * 3, measurement_covariance=np.eye(3))
     with pytest.raises(gr.InvalidInput, match="give the block of each agent"):
         gr.Model(0.9 * np.eye(2), [np.eye(2)] * 3, measurement_covariance=np.eye(6))
+
+
+def test_a_full_disk_is_called_so(
+    wind: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*_args: object, **_named: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    assert main(["fit", str(wind / "irish_wind.csv"), "-o", str(tmp_path / "m.json")]) == 2
+    assert "got a disk that is full, expected room for it; free some" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
