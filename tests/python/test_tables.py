@@ -324,6 +324,9 @@ def test_a_constant_within_the_spread_of_a_column_is_named(tmp_path: Path) -> No
     cells = [f"{-999 if k % 9 == 5 else 700 * np.sin(7.3 * k):g}" for k in range(60)]
     (note,) = read_records(write(tmp_path, "t,A\n" + "".join(f"{k},{c}\n" for k, c in enumerate(cells)))).notes
     assert "column A: 7 values of exactly -999" in note and "make the cells empty" in note
+    cells = [f"{-99.9 if k % 9 == 5 else 12 + round(2 * np.sin(7.3 * k), 1):g}" for k in range(90)]
+    (note,) = read_records(write(tmp_path, "t,A\n" + "".join(f"{k},{c}\n" for k, c in enumerate(cells)))).notes
+    assert "column A: 10 values of exactly -99.9" in note or "10 values such as -99.9" in note
     once = ["-999" if k == 5 else f"{700 * np.sin(7.3 * k):g}" for k in range(60)]
     assert read_records(write(tmp_path, "t,A\n" + "".join(f"{k},{c}\n" for k, c in enumerate(once)))).notes == []
 
@@ -337,6 +340,8 @@ def test_a_constant_within_the_spread_of_a_column_is_named(tmp_path: Path) -> No
         ("time [d]", 44197, 1, False),
         ("time", 0, 1, False),
         ("day", 44197, 1, False),
+        ("time", 737791, 1, True),
+        ("time", 2459215.5, 1, True),
     ],
 )
 def test_day_numbers_of_spreadsheets_are_doubted(
@@ -344,7 +349,7 @@ def test_day_numbers_of_spreadsheets_are_doubted(
 ) -> None:
     rows = "".join(f"{first + step * k:.10g},{k % 5}\n" for k in range(30))
     notes = read_records(write(tmp_path, f"{name},A\n{rows}")).notes
-    assert any("day numbers of a spreadsheet" in note for note in notes) == doubted
+    assert any("are read as seconds; if they are" in note for note in notes) == doubted
     with pytest.raises(gr.InvalidInput, match="format the column as a date"):
         read_records(write(tmp_path, "date,A\n44197,1\n44198,2\n44199,3\n"))
 

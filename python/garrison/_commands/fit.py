@@ -53,9 +53,9 @@ def do(args: argparse.Namespace) -> int:
     start = moment("--from", args.start) if args.start is not None else None
     end = moment("--to", args.end, last=True) if args.end is not None else None
     records = read_records(args.records).between(start, end)
+    print_warnings(records.notes, stderr=True)  # first: what is wrong with records may end the fit
     options = {"factors": args.factors, "harmonics": args.harmonics, "root": args.root, "factor": args.scale}
     found = fit(records, **options, **({"period": args.period} if args.period is not None else {}))
-    print_warnings(records.notes, stderr=True)
     text = found.to_json(args.attacked, *([] if args.failure is None else [args.failure]))
     if args.output:
         write_whole(new_file(args.output, args.force), lambda path: path.write_text(text + "\n", encoding="utf-8"))

@@ -45,8 +45,12 @@ _DATES = ("date", "datum")
 _EPOCHS = ((1e17, 1e20, 1e-9), (1e14, 1e17, 1e-6), (1e11, 1e14, 1e-3), (1e8, 1e11, 1.0))
 #: units of the header that whole seconds since 1970 may have
 _SECONDS = ("", "s", "sec", "seconds", "unix", "epoch")
-#: days since 1900, by which spreadsheets keep dates, of 1954 to 2091
-_SHEET = (20000.0, 70000.0)
+#: counts of days by which programs keep dates -> those of the years 1954 to 2091
+_DAYS = {
+    "day numbers of a spreadsheet": (20000.0, 70000.0),
+    "MATLAB's day numbers": (714000.0, 764000.0),
+    "Julian days": (2434800.0, 2484800.0),
+}
 #: a year, in a column of years
 _YEAR = re.compile(r"[12]\d{3}")
 
@@ -100,19 +104,22 @@ def read_clock(rows: Rows, cells: list[str], name: str = "", unit: str = "") -> 
 
 
 def doubt(cells: list[str], name: str, unit: str) -> list[str]:
-    """A line where times that are read as seconds look like the day numbers of a spreadsheet."""
-    plain = [number(c, True) for c in cells]
-    if unit or name.lower() in _IMPLIED or not _day_numbers(plain) or looks_like_time(cells[0]):
+    """A line where times that are read as seconds look like counts of days."""
+    kind = _day_numbers([number(c, True) for c in cells])
+    if unit or name.lower() in _IMPLIED or kind is None or looks_like_time(cells[0]):
         return []
     return [
-        f"column {name}: {cells[0].strip()} to {cells[-1].strip()} are read as seconds; if they are day numbers of a "
-        f"spreadsheet, name the column `{name} [d]`, or format it as a date before you save it"
+        f"column {name}: {cells[0].strip()} to {cells[-1].strip()} are read as seconds; if they are {kind}, name the "
+        f"column `{name} [d]`, or format it as a date before you save it"
     ]
 
 
-def _day_numbers(plain: list[float | None]) -> bool:
-    """All of them are dates of our time, if they count days since 1900."""
-    return all(value is not None and _SHEET[0] <= value < _SHEET[1] for value in plain)
+def _day_numbers(plain: list[float | None]) -> str | None:
+    """Whose counts of days all of them may be, as dates of our time."""
+    for kind, (least, most) in _DAYS.items():
+        if all(value is not None and least <= value < most for value in plain):
+            return kind
+    return None
 
 
 def _seconds(places: list[str], cells: list[str], plain: list[float | None], unit: str) -> list[Moment]:

@@ -41,9 +41,10 @@ TIME_NAMES = {
     "datum",
 }
 #: constants that many instruments write for "no value"
-_SENTINELS = (-999.0, -9999.0, -99999.0, -999.9, -999.99, -99.99, 9999.0, 99999.0, 999.9)
+_SENTINELS = (-999.0, -9999.0, -99999.0, -999.9, -999.99, -99.9, -99.99, -99.0, 9999.0, 99999.0, 999.9)
 _FAR = 100.0  # robust deviations from which on a value is suspicious
 _OFTEN = 3  # times as often as any other value, from which on such a constant is suspicious
+_ALONE = 5.0  # robust deviations between it and the next value, from which on it is
 
 
 @dataclass(frozen=True)
@@ -223,7 +224,7 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
         middle = np.median(known)
         spread = 1.4826 * np.median(np.abs(known - middle))
         far = known[np.abs(known - middle) > _FAR * spread] if spread > 0 else known[np.isin(known, _SENTINELS)]
-        if not len(far) and (constant := _constant(known)) is not None:
+        if not len(far) and (constant := _constant(known, spread)) is not None:
             often = count(int(np.sum(known == constant)), "value")
             notes.append(
                 f"column {column.name}: {often} of exactly {constant:g}, which many instruments write where there is "
@@ -242,11 +243,13 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
     return notes
 
 
-def _constant(known: Array) -> float | None:
-    """A constant for "no value" that is the least or largest one, and there far more often than any other value."""
+def _constant(known: Array, spread: float) -> float | None:
+    """A constant for "no value", the least or largest one, that is there too often, or too far away, for a value."""
     kinds, counts = np.unique(known, return_counts=True)
-    for k in (0, len(kinds) - 1):
-        others = np.delete(counts, k)
-        if kinds[k] in _SENTINELS and counts[k] >= _OFTEN * max(1, int(others.max(initial=0))):
+    for k, beside in ((0, 1), (len(kinds) - 1, len(kinds) - 2)):
+        if kinds[k] not in _SENTINELS or counts[k] < 2 or len(kinds) < 2:
+            continue
+        often = counts[k] >= _OFTEN * int(np.delete(counts, k).max())
+        if often or abs(kinds[k] - kinds[beside]) > _ALONE * spread:
             return float(kinds[k])
     return None
