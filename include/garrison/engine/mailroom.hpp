@@ -57,9 +57,9 @@ class Mailroom {
   Message* outgoing() { return messages_.data() + routes_.outgoing(); }
   void post() { routes_.post(); }
 
-  /// Prepares the inboxes of one round from the current messages. `plain`: every estimate is finite and below
-  /// kHuge. `shape(receiver, sender, message)` derives what a message does not carry. `certified`: what it
-  /// has said in this round travels with them; null = nothing.
+  /// Prepares the inboxes of one round from the current messages. `plain`: as in Engine::rounds.
+  /// `shape(receiver, sender, message)` derives what a message does not carry. `certified`: what it has said
+  /// in this round travels with them; null = nothing.
   template <class Shape>
   void collect(std::int64_t t, int round, bool plain, const Shape& shape, CertifiedNetwork* certified) {
     if (routes_.as_wired(plain)) return;

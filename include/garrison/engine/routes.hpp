@@ -57,8 +57,8 @@ class GARRISON_EXPORT Routes {
     outgoing_ = base(++posted_);
   }
 
-  /// Whether everybody hears all that are due, as nothing can happen to a message. `plain`: every estimate is
-  /// finite and below kHuge.
+  /// Whether everybody hears all that are due, as nothing can happen to a message. `plain`: as in
+  /// Engine::rounds.
   bool as_wired(bool plain) { return as_wired_ = perfect() && plain; }
   /// Whether what agent k sent this round is finite and below kHuge.
   void deliverable(std::size_t k, bool is) { deliverable_[k] = is ? 1 : 0; }
