@@ -64,7 +64,7 @@ void bind_designs(py::module_& m) {
                        const std::string& certificate, double failure, int attacked,
                        const std::pair<double, double>& levels) {
              const auto wanted = wanted_of(certificate, failure, attacked, levels);
-             return without_gil([&] {
+             return within_budget(kInfinity, [&] {
                auto prepared = filter.filter->prepare(model, network);
                if (wanted) prepared = certified(*prepared, *wanted);
                return std::const_pointer_cast<Prepared>(prepared);

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "garrison/core/budget.hpp"
+#include "budget.hpp"
 
 namespace garrison {
 
@@ -17,13 +17,7 @@ class TimeLimit {
   explicit TimeLimit(double seconds) : seconds_(seconds) { Budget{seconds}; }
   void enter() {
     interrupted_ = std::make_shared<bool>(false);
-    budget_ = Budget(seconds_, [interrupted = interrupted_] {
-      const pybind11::gil_scoped_acquire gil;
-      if (PyErr_CheckSignals() == 0) return false;
-      PyErr_Clear();
-      *interrupted = true;
-      return true;
-    });
+    budget_ = Budget(seconds_, [interrupted = interrupted_] { return *interrupted = interrupt_taken(); });
     scope_ = std::make_unique<BudgetScope>(budget_);
   }
   void leave() {

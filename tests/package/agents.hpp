@@ -7,6 +7,15 @@
 #include <memory>
 #include <vector>
 
+/// States of the agents of family F here.
+template <class F>
+constexpr int states_of() {
+  if constexpr (requires { F::only_states; })
+    return F::only_states;
+  else
+    return 4;
+}
+
 /// 50 samples of agents that hear each other, on measurements that every machine makes alike; prints every
 /// agent's estimate, to the last bit. False when an agent refuses something.
 inline bool drive(const std::vector<std::unique_ptr<garrison::Agent>>& agents) {

@@ -16,6 +16,8 @@
 #include <map>
 #include <new>
 
+#include "agents.hpp"
+
 namespace {
 long live = 0;
 
@@ -86,14 +88,6 @@ const std::map<std::string, Setting, std::less<>> settings{
        {"reference", std::vector<double>{0.0, 10.0}}},
       1500}},
 };
-
-template <class F>
-constexpr int states_of() {
-  if constexpr (requires { F::only_states; })
-    return F::only_states;
-  else
-    return 4;
-}
 
 /// State and message of one agent, with their heap, in bytes.
 template <class F>

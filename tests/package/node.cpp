@@ -9,13 +9,6 @@
 
 using Family = garrison::FAMILY;
 
-template <class F>
-constexpr int states_of() {
-  if constexpr (requires { F::only_states; })
-    return F::only_states;
-  else
-    return 4;
-}
 constexpr int n = states_of<Family>();
 
 static std::vector<std::byte> read(const char* path) {

@@ -6,15 +6,25 @@
 
 namespace garrison {
 
-/// Calls `action.operator()<n>()` with n = states for 1..8, Dynamic beyond. Builds for the sanitizers, where
-/// every dimension costs minutes and is the same source, have 2, 4 and 8 only.
+/// Calls `action.operator()<n>()` with n = states for 2 and 4, Dynamic for others: for what runs once a
+/// sample on one agent. The bits are those of every n.
 template <class Action>
-auto dispatch(int states, const Action& action) {
+auto dispatch_few(int states, const Action& action) {
   switch (states) {
     case 2:
       return action.template operator()<2>();
     case 4:
       return action.template operator()<4>();
+    default:
+      return action.template operator()<Dynamic>();
+  }
+}
+
+/// The same for 1..8. Builds for the sanitizers, where every dimension costs minutes and is the same source,
+/// have 2, 4 and 8 only.
+template <class Action>
+auto dispatch(int states, const Action& action) {
+  switch (states) {
 #ifndef GARRISON_FEW_DIMENSIONS
     case 1:
       return action.template operator()<1>();
@@ -30,21 +40,7 @@ auto dispatch(int states, const Action& action) {
     case 8:
       return action.template operator()<8>();
     default:
-      return action.template operator()<Dynamic>();
-  }
-}
-
-/// The same with n = 2, 4 and Dynamic: for what runs once a sample on one agent. The bits are those of every
-/// n.
-template <class Action>
-auto dispatch_few(int states, const Action& action) {
-  switch (states) {
-    case 2:
-      return action.template operator()<2>();
-    case 4:
-      return action.template operator()<4>();
-    default:
-      return action.template operator()<Dynamic>();
+      return dispatch_few(states, action);
   }
 }
 

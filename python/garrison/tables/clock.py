@@ -94,9 +94,7 @@ def read_clock(rows: Rows, cells: list[str], name: str = "", unit: str = "") -> 
                 places[0],
                 f"the date {cells[0]!r}",
                 "YYYY-MM-DD in the first column",
-                "a spreadsheet's day numbers: format the column as a date before you save it"
-                if _day_numbers(plain)
-                else "",
+                f"{kind}: format the column as a date before you save it" if (kind := _day_numbers(plain)) else "",
             )
     else:
         moments = _dates(places, cells)
@@ -105,8 +103,10 @@ def read_clock(rows: Rows, cells: list[str], name: str = "", unit: str = "") -> 
 
 def doubt(cells: list[str], name: str, unit: str) -> list[str]:
     """A line where times that are read as seconds look like counts of days."""
+    if unit or name.lower() in _IMPLIED or looks_like_time(cells[0]):
+        return []
     kind = _day_numbers([number(c, True) for c in cells])
-    if unit or name.lower() in _IMPLIED or kind is None or looks_like_time(cells[0]):
+    if kind is None:
         return []
     return [
         f"column {name}: {cells[0].strip()} to {cells[-1].strip()} are read as seconds; if they are {kind}, name the "

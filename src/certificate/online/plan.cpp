@@ -68,6 +68,13 @@ double variance_of(const Model& model, int agent, int output, double width) {
   return R(output, output);
 }
 
+/// How many rows, each a column here, are not zero.
+int sensing_rows(const Matrix& rows) {
+  int count = 0;
+  for (Eigen::Index r = 0; r < rows.cols(); ++r) count += rows.col(r).isZero(0.0) ? 0 : 1;
+  return count;
+}
+
 /// How many ages keep all numbers small, without designing for minutes in large dimensions.
 int ages_of(const Matrix& A) {
   const double n = static_cast<double>(A.rows());
@@ -119,7 +126,7 @@ Plan make_plan(const Wanted& wanted, const Model& model, const Network& network)
   plan.agents = network.agents();
   plan.A = model.A();
   plan.rows = model.stacked().transpose();
-  for (Eigen::Index r = 0; r < plan.rows.cols(); ++r) plan.all_rows += plan.rows.col(r).isZero(0.0) ? 0 : 1;
+  plan.all_rows = sensing_rows(plan.rows);
   if (plan.all_rows == 0) refuse("certificate", "a model without sensors", "at least one measurement");
   plan.source = source_numbers(model);
   plan.sources = 1 + *std::max_element(plan.source.begin(), plan.source.end());
@@ -175,15 +182,14 @@ Plan part_of(const Plan& plan, int id, std::span<const int> neighbours) {
 
 bool consistent(const Plan& plan) {
   const auto m = static_cast<Eigen::Index>(plan.source.size());
-  int rows = 0;  // that are not zero
-  for (Eigen::Index r = 0; r < plan.rows.cols(); ++r) rows += plan.rows.col(r).isZero(0.0) ? 0 : 1;
   bool fine =
       plan.first.size() == plan.ids.size() + 1 && plan.first.front() == 0 && plan.first.back() == m &&
       std::is_sorted(plan.first.begin(), plan.first.end()) &&
       std::adjacent_find(plan.ids.begin(), plan.ids.end(), std::greater_equal<>()) == plan.ids.end() &&
       plan.rows.cols() == m && plan.rows.rows() == plan.states() && plan.states() >= 1 &&
       plan.A.cols() == plan.states() && plan.variance.size() == m && plan.width.size() == m &&
-      plan.norm.size() == plan.added.size() && plan.ages() <= kMostAge && plan.all_rows >= rows;
+      plan.norm.size() == plan.added.size() && plan.ages() <= kMostAge &&
+      plan.all_rows >= sensing_rows(plan.rows);
   for (const int source : plan.source) fine = fine && source >= 0 && source < plan.sources;
   return fine && !plan.ids.empty() && plan.ids.front() >= 0 && plan.ids.back() < plan.agents;
 }
