@@ -1,5 +1,6 @@
 """A model with every station as a state: `fit(records, states="all")`."""
 
+import json
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,8 +10,9 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison.arguments import number, texts, whole
 from garrison.fitting import Fit, Whiteness, _by_name, _options
+from garrison.numeric import sparse
 from garrison.tables import Records
-from garrison.words import hinted_methods, only, refusal
+from garrison.words import hinted_methods, only, refusal, shown
 
 Array = NDArray[np.float64]
 _ORDER = ("order", "most", "held_out", "noise", "inputs")
@@ -54,8 +56,29 @@ class FullFit(Fit):
         return Whiteness(self.records.stations, statistic, correlation, p_value, lags)
 
     def to_json(self, attacked: int | None = None, failure: float = 1e-3) -> str:
-        """Refused: the form of model files has one state per factor; save the model's arguments, or pickle the fit."""
-        raise refusal("to_json", "a model with every station as a state", "one of factors", "pickle it, or fit again")
+        """The model as text, which `[model] file` reads: matrices, noise, names and units, known inputs.
+
+        attacked: refused, since levels of clean records exist for one state only (`levels`).
+        """
+        if attacked is not None:
+            raise refusal(
+                "attacked", shown(attacked), "none beside every station as a state", "fit one factor for levels"
+            )
+        m = self.model
+        given = {"B": sparse(m.B), "inputs": m.input_names} if self.inputs else {}
+        content = {
+            "garrison_model": 1,
+            "A": sparse(m.A),
+            "C": [sparse(one) for one in m.C],
+            **given,
+            "process_bound": m.process_bound,
+            "process_covariance": sparse(m.process_covariance),
+            "measurement_covariance": [one.tolist() for one in m.measurement_covariance],
+            "agents": self.records.stations,
+            "states": m.state_names,
+            "units": m.units,
+        }
+        return json.dumps(content, indent=1)
 
 
 def fit_full(records: Records, **options: Any) -> FullFit:

@@ -124,3 +124,10 @@ def output_names(model: _core.Model, network: _core.Network | None = None) -> li
         return [str(n) for n in names]
     names = getattr(network, "names", None)
     return [str(n) for n in names] if names and model.outputs == model.agents else None
+
+
+def sparse(matrix: Array) -> dict[str, Any]:
+    """A matrix as its size and its entries that are not zero: [row, column, value]."""
+    rows, columns = np.nonzero(matrix)
+    entries = [[int(i), int(j), float(matrix[i, j])] for i, j in zip(rows, columns, strict=True)]
+    return {"size": list(matrix.shape), "entries": entries}

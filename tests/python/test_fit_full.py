@@ -6,6 +6,8 @@ from typing import Any
 import garrison as gr
 import numpy as np
 import pytest
+from garrison.cli import main
+from garrison.scenario.model_file import read_model_file
 from garrison.tables import read_records
 
 A1, A2, B = np.array([[0.5, 0.2], [-0.1, 0.3]]), np.array([[0.3, 0.0], [0.1, 0.4]]), np.array([1.0, -2.0])
@@ -100,3 +102,33 @@ def test_what_does_not_fit_is_refused(folder: Path, given: dict[str, Any], words
         gr.fit(read_records(folder / "records.csv"), states="all", **given)
     with pytest.raises(gr.InvalidInput, match=r"fit\.states"):
         gr.fit(read_records(folder / "records.csv"), states="some")
+
+
+def test_the_command_writes_a_model_that_scenarios_read(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    records, file = str(folder / "records.csv"), folder / "model.json"
+    words = ["fit", records, "--states", "all", "--input", "valve", "--harmonics", "0", "-o", str(file)]
+    assert main(words) == 0
+    out = capsys.readouterr().out
+    assert "a vector autoregression with 2 samples of the past" in out and "east" in out and "valve" not in out
+    model, names = read_model_file(file)
+    fitted = gr.fit(read_records(records), states="all", inputs=["valve"], harmonics=0)
+    assert model == fitted.model and names == ["east", "west"]
+    with pytest.raises(gr.InvalidInput, match="attacked: got 1"):
+        fitted.to_json(1)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--states", "all", "--factors", "2"], "--factors: got 2 beside --states all"),
+        (["--states", "all", "--attacked", "1"], "--attacked: got 1 beside --states all"),
+        (["--order", "2"], "--order: got 2, expected --states all"),
+        (["--input", "valve"], "--input: got ['valve'], expected --states all"),
+        (["--states", "all", "--input", "vane"], "fit.inputs: got vane"),
+    ],
+)
+def test_options_that_do_not_go_together(
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
+) -> None:
+    assert main(["fit", str(folder / "records.csv"), *words]) == 2
+    assert message in capsys.readouterr().err

@@ -1,15 +1,23 @@
 """`garrison fit`: identify a model from records."""
 
+from __future__ import annotations
+
 import argparse
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from garrison._commands.output import new_file, write_whole
 from garrison._commands.terminal import OK, Commands, console_for, number, print_table, print_warnings, whole_number
+from garrison.fitting import Fit
+from garrison.fitting_full import FullFit
 from garrison.identifying import fit
 from garrison.scenario.section import moment
 from garrison.tables import read_records
-from garrison.words import count, refusal
+from garrison.words import count, refusal, shown
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 
 def add(commands: Commands) -> None:
@@ -23,7 +31,21 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("--to", dest="end", help="last record, included")
     command.add_argument(
-        "--factors", type=whole_number, default=2, help="number of states: common factors of all stations (default 2)"
+        "--states",
+        choices=("factors", "all"),
+        default="factors",
+        help="factors: what all stations have in common (default); all: every station, with samples of its past",
+    )
+    command.add_argument("--factors", type=whole_number, help="number of common factors (default 2)")
+    command.add_argument(
+        "--order", type=whole_number, help="with --states all: samples of the past (default: the likeliest, up to 4)"
+    )
+    command.add_argument(
+        "--input",
+        action="append",
+        dest="inputs",
+        metavar="COLUMN",
+        help="with --states all: a column of the records that is a known input; may be repeated",
     )
     command.add_argument(
         "--harmonics", type=whole_number, default=2, help="number of harmonics of the seasonal cycle (default 2)"
@@ -54,39 +76,77 @@ def do(args: argparse.Namespace) -> int:
     end = moment("--to", args.end, last=True) if args.end is not None else None
     records = read_records(args.records).between(start, end)
     print_warnings(records.notes, stderr=True)  # first: what is wrong with records may end the fit
-    options = {"factors": args.factors, "harmonics": args.harmonics, "root": args.root, "factor": args.scale}
-    found = fit(records, **options, **({"period": args.period} if args.period is not None else {}))
+    found = fit(records, **_options(args))
     text = found.to_json(args.attacked, *([] if args.failure is None else [args.failure]))
     if args.output:
         write_whole(new_file(args.output, args.force), lambda path: path.write_text(text + "\n", encoding="utf-8"))
     if args.json or not args.output:
         print(text)
         return OK
-    i = found.identified
     console = console_for()
     console.print(
         f"{len(records.dates)} records, {records.dates[0]} to {records.dates[-1]}, "
-        f"{count(len(records.stations), 'station')}"
+        f"{count(len(found.records.stations), 'station')}"
     )
+    if isinstance(found, FullFit):
+        _show_full(found, console)
+    else:
+        _show_factors(found, console)
+    console.print(str(found.whiteness()))
+    console.print(f"written to {args.output}")
+    return OK
+
+
+def _options(args: argparse.Namespace) -> dict[str, Any]:
+    """What was given, by the names of `garrison.fit`."""
+    given = {
+        "states": args.states,
+        "factors": args.factors,
+        "order": args.order,
+        "inputs": args.inputs,
+        "period": args.period,
+    }
+    options = {key: value for key, value in given.items() if value is not None}
+    return {**options, "harmonics": args.harmonics, "root": args.root, "factor": args.scale}
+
+
+def _show_factors(found: Fit, console: Console) -> None:
+    i = found.identified
     console.print(f"factors carry {', '.join(f'{s:.1%}' for s in i.share)} of the variance around the season")
     console.print(f"A = {np.asarray(i.A).round(4).tolist()}, ||w|| <= {i.process_bound:.4g}")
     rows = [
         [name, *(f"{v:.3f}" for v in row), f"{bound:.3f}", f"{variance**0.5:.3f}"]
         for name, row, bound, variance in zip(
-            records.stations, np.asarray(i.C), i.measurement_bound, i.measurement_variance, strict=True
+            found.records.stations, np.asarray(i.C), i.measurement_bound, i.measurement_variance, strict=True
         )
     ]
     head = ["station", *(f"C{k}" for k in range(found.model.states)), "|v| <=", "std of v"]
     print_table("", head, rows, console)
-    console.print(str(found.whiteness()))
-    console.print(f"written to {args.output}")
-    return OK
+
+
+def _show_full(found: FullFit, console: Console) -> None:
+    """Per station: the spread around the season, and what the model leaves of it one sample ahead."""
+    order = found.autoregression.order
+    past = "1 sample" if order == 1 else f"{order} samples"
+    console.print(f"a vector autoregression with {past} of the past; ||w|| <= {found.identified.process_bound:.4g}")
+    spread = np.nanstd(found.measurements(found.records), axis=0)
+    left = np.nanstd(np.asarray(found.autoregression.residuals), axis=0)
+    stations = found.records.stations
+    rows = [[name, f"{a:.3f}", f"{b:.3f}"] for name, a, b in zip(stations, spread, left, strict=True)]
+    print_table("", ["station", "std", "residual std"], rows, console)
 
 
 def _require_options(args: argparse.Namespace) -> None:
     """Refuse what the records need not be read for, by the names of the command line."""
     if not 0.0 < args.scale < np.inf:
         raise refusal("--scale", f"{args.scale:g}", "a finite number > 0", "it multiplies all records")
+    if args.states == "all" and args.factors is not None:
+        raise refusal("--factors", f"{args.factors} beside --states all", "one of them", "there are no factors then")
+    for option, value in (("--order", args.order), ("--input", args.inputs)):
+        if args.states == "factors" and value is not None:
+            raise refusal(option, shown(value), "--states all beside it")
+    if args.states == "all" and args.attacked is not None:
+        raise refusal("--attacked", f"{args.attacked} beside --states all", "--factors 1", "levels exist for one state")
     if args.failure is None:
         return
     if args.attacked is None:

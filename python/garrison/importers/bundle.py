@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison.importers.toml import document
+from garrison.numeric import sparse
 
 Array = NDArray[np.float64]
 #: digits of measurements in the CSV file: finer than any of the sensors
@@ -72,13 +73,6 @@ def gate(label: str, false_alarm: float, *, isolate: bool) -> dict[str, Any]:
     """The [filter] table of recordings whose sensors all see the whole state: tests of innovations."""
     table = {"name": "structural", "label": label, "false_alarm": false_alarm, "test": "innovation"}
     return {**table, "isolate": True} if isolate else table
-
-
-def sparse(matrix: Array) -> dict[str, Any]:
-    """A matrix as its size and its entries that are not zero: [row, column, value]."""
-    rows, columns = np.nonzero(matrix)
-    entries = [[int(i), int(j), float(matrix[i, j])] for i, j in zip(rows, columns, strict=True)]
-    return {"size": list(matrix.shape), "entries": entries}
 
 
 def model_file(
