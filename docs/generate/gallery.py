@@ -1,4 +1,4 @@
-"""The gallery: every script of examples/gallery is run, and shown with its figure."""
+"""The gallery: every script of examples/gallery is run, and shown with its figure; last, a page of real nodes."""
 
 import ast
 import os
@@ -12,6 +12,14 @@ _HEAD = """# Gallery
 
 Every picture is made by the code above it when this page is built; the scripts are in `examples/gallery` and run from
 the root of the source tree. [Examples](../examples.md) lists the larger ones.
+"""
+_NODES = """## Twelve daemons on a lossy network
+
+`garrison-net up examples/wind/network.toml --page 9470` runs the wind stations as twelve programs that talk by sealed
+datagrams. A tenth of the datagrams is lost, and three sensors lie. This is their page; the way to networks of your own is
+[Deploy three nodes](../how-to/deploy-three-nodes.md).
+
+![Live page: a map of twelve stations, bound against error, verdicts and link ages](../images/network.png)
 """
 
 
@@ -40,7 +48,7 @@ def page(folder: Path) -> str:
         figure_of(script).savefig(picture)
         code = "\n".join(source.splitlines()[ast.parse(source).body[0].end_lineno :]).strip()
         parts.append(f"## {title}\n\n{text}\n\n```python\n{code}\n```\n\n![{title}]({picture.name})\n")
-    return "\n".join(parts)
+    return "\n".join([*parts, _NODES])
 
 
 def _words(source: str) -> tuple[str, str]:
