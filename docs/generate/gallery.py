@@ -16,7 +16,7 @@ the root of the source tree. [Examples](../examples.md) lists the larger ones.
 _NODES = """## Twelve daemons on a lossy network
 
 `garrison-net up examples/wind/network.toml --page 9470` runs the wind stations as twelve programs that talk by sealed
-datagrams. A tenth of the datagrams is lost, and three sensors lie. This is their page; the way to networks of your own is
+datagrams. A tenth of the datagrams is lost, and three sensors lie. This is their page; for networks of your own see
 [Deploy three nodes](../how-to/deploy-three-nodes.md).
 
 ![Live page: a map of twelve stations, bound against error, verdicts and link ages](../images/network.png)
