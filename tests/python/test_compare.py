@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from garrison.comparison import baselines
-from garrison.comparison.run import KALMAN
+from garrison.comparison.job import KALMAN
 
 
 def plant(agents=7, attacked=(2,)):

@@ -16,7 +16,7 @@ from garrison._commands.terminal import (
     whole_number,
 )
 from garrison.comparison import Comparison, compare
-from garrison.comparison.run import COLUMNS
+from garrison.comparison.table import COLUMNS
 from garrison.scenario import read_scenario
 from garrison.words import refusal
 
