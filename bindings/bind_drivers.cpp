@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drivers: simulate, replay.
 #include "bindings.hpp"
+#include "budget.hpp"
+#include "garrison/drivers/contradiction.hpp"
 #include "garrison/drivers/exceedances.hpp"
 #include "garrison/drivers/simulate.hpp"
 #include "known.hpp"
@@ -187,6 +189,25 @@ void bind_drivers(py::module_& m) {
       py::arg("statistic"), py::arg("threshold"),
       "(tests, above) per agent, the last axis: samples with a test (no nan), and those above its "
       "threshold.");
+  m.def(
+      "contradiction",
+      [](const Model& model, const MatrixRef& measurements, int attacked, bool for_good, bool constant,
+         const std::vector<int>& owner, const Matrix& inputs) {
+        const auto found = within_budget(kInfinity, [&] {
+          return contradiction(model, measurements, {attacked, for_good, constant, owner, inputs});
+        });
+        const char* const bound = found.refuted == Refuted::measurement_bound ? "measurement_bound"
+                                  : found.refuted == Refuted::process_bound   ? "process_bound"
+                                                                              : nullptr;
+        return py::make_tuple(bound, found.row);
+      },
+      py::arg("model"), py::arg("measurements"), py::kw_only(), py::arg("attacked"), py::arg("for_good"),
+      py::arg("constant"), py::arg("owner"), py::arg("inputs"),
+      "(bound, row): which bound measurements (samples, outputs) refute whichever `attacked` sources lie, "
+      "and "
+      "where; (None, -1) =\nnone. owner: whose each measurement is, [] = its agent's; inputs: row r leads "
+      "from "
+      "sample r to the next one.");
   m.def(
       "simulate",
       [](const std::shared_ptr<Prepared>& prepared, int steps, const Vector& x0, double start_error,

@@ -63,6 +63,7 @@ def _run(
     model: _core.Model,
     network: _core.Network,
     filter: _core.Filter,
+    design: _core.Design,
     attacks: list[_core.Attack],
     conditions: bool,
     known: dict[str, Any],
@@ -78,8 +79,15 @@ def _run(
     run.warnings += doubts.of_losses(run.bound, run.verdict, run.counters)
     quiet = max((a.start for a in attacks), default=0)
     if "C" not in series:
-        constant = not series and not model.inputs
-        run.warnings += refuted.of_bounds(model, filter, run.measurements, constant=constant)
+        u = known["inputs"]
+        run.warnings += refuted.of_bounds(
+            model,
+            filter,
+            run.measurements,
+            attacked=(design.certificate or {}).get("attacked"),
+            inputs=u if len(u) else None,
+            constant=not series and bool(not model.inputs or len(u)),
+        )
     run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
     run.warnings += [] if "A" in series else doubts.of_divergence(model, run.estimate, run.error, quiet)
     return run
@@ -218,7 +226,7 @@ def simulate(
         **known,
         progress=arguments.callback("progress", progress),
     )
-    run = _run(data, base, ground, filter, attacks, wanted, known)
+    run = _run(data, base, ground, filter, design, attacks, wanted, known)
     drawn = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
     own = {
         "driver": "simulate",
@@ -374,7 +382,7 @@ def replay(
         **known,
         progress=arguments.callback("progress", progress),
     )
-    run = _run(data, base, ground, filter, attacks, wanted, known)
+    run = _run(data, base, ground, filter, design, attacks, wanted, known)
     run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
     shared = _shared(trials, first_trial, seed, start, attacks, links, kept, design, wanted)
     return _made(run, {"driver": "replay"} | shared)

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.bound_kind import BoundKind
-from garrison.circuits import Circuits
 
 Array = NDArray[np.float64]
 #: times `false_alarm` that most sensors must exceed, and standard deviations of a rate beyond that
@@ -63,47 +62,72 @@ def of_certificates(kind: NDArray[np.generic] | None, failure: float) -> list[st
 
 
 def of_bounds(
-    model: _core.Model, filter: _core.Filter, measurements: Array | None, *, constant: bool = True
+    model: _core.Model,
+    filter: _core.Filter,
+    measurements: Array | None,
+    *,
+    attacked: int | None = None,
+    inputs: Array | None = None,
+    constant: bool = True,
 ) -> list[str]:
-    """A line when sensors contradict each other more than `attacked` of them can explain.
+    """A line when measurements contradict the bounds of the noise whichever sensors lie, by the first trial.
 
-    Of those that measure the same, where two differ by more than the sum of their bounds, one of them is off by more
-    than its own. Pairs without a common sensor are counted: over the whole first trial where the attacked ones must
-    stay the same (a detector), else in one sample. Of others, groups whose rows of C depend on each other, and
-    (constant: a plant without inputs) on those of the sample before.
+    attacked: most sources that may lie at a time, where the filter does not say it of its sensors. inputs: of the run,
+    the last row leads to the last sample. constant: A holds at all times, and all inputs are known.
     """
-    attacked = filter.params.get("attacked")
+    own = filter.params.get("attacked")
+    liars = own if isinstance(own, int) else attacked
     bounds = np.asarray(model.measurement_bound, dtype=float)
-    if measurements is None or not isinstance(attacked, int) or len(bounds) != model.agents:
+    if measurements is None or liars is None or len(bounds) != model.agents:
         return []
     for_good = bool(filter.params.get("detector", False))
+    most = _pairs(model, measurements[0], bounds, for_good=for_good) if isinstance(own, int) else 0
+    if most > liars:
+        return [
+            f"{most} pairs of sensors that measure the same differ by more than measurement_bound allows, and only "
+            f"{liars} sensors may be attacked: measurement_bound is too small, or more of them lie"
+        ]
+    refuted, row = _core.contradiction(
+        model,
+        measurements[0],
+        attacked=liars,
+        for_good=for_good,
+        constant=constant,
+        owner=[] if isinstance(own, int) else _sources(model),
+        inputs=np.zeros((0, 0)) if inputs is None else inputs[len(inputs) - len(measurements[0]) + 1 :],
+    )
+    if refuted is None:
+        return []
+    ever = "the same all the time" if for_good else "at a time"
+    whoever = f"whichever {liars} of the sources lie, {ever}" if liars else "and none of the sources may lie"
+    if refuted == "measurement_bound":
+        return [
+            f"measurements of one sample contradict each other by more than measurement_bound allows, {whoever} (row "
+            f"{row} of the measurements): measurement_bound is too small, C is wrong, or more of them lie"
+        ]
+    return [
+        f"measurements change from one sample to the next by more than process_bound and measurement_bound allow, "
+        f"{whoever} (from row {row} of the measurements on): process_bound or measurement_bound is too small, A or C "
+        "is wrong, or more of them lie"
+    ]
+
+
+def _sources(model: _core.Model) -> list[int]:
+    """A number per measurement, the same for those of one source; [] where every agent is one."""
+    numbered: dict[str, int] = {}
+    return [numbered.setdefault(name, len(numbered)) for name in model.sources]
+
+
+def _pairs(model: _core.Model, measurements: Array, bounds: Array, *, for_good: bool) -> int:
+    """Pairs without a common sensor that measure the same and differ by more than the sum of their bounds.
+
+    Over the whole record where the attacked ones stay the same, else in one sample.
+    """
     groups = _groups(model)
     pairs = _for_good if for_good else _in_one_sample
     with np.errstate(invalid="ignore", over="ignore"):
-        found = sum(pairs(measurements[0][:, columns], bounds[agents]) for columns, agents in groups)
-    most = int(np.max(found)) if groups else 0
-    limits = f"and only {attacked} sensors may be attacked"
-    if most > attacked:
-        return [
-            f"{most} pairs of sensors that measure the same differ by more than measurement_bound allows, {limits}: "
-            "measurement_bound is too small, or more of them lie"
-        ]
-    circuits = Circuits(model, measurements[0], bounds, attacked=attacked, for_good=for_good)
-    most = circuits.in_one_sample()
-    if most > attacked:
-        return [
-            f"{most} groups of {model.states + 1} sensors contradict themselves by more than measurement_bound allows, "
-            f"{limits}: measurement_bound is too small, or more of them lie"
-        ]
-    if not constant or not math.isfinite(model.process_bound):
-        return []
-    most = circuits.over_a_step(model.process_bound)
-    if most <= (attacked if for_good else 2 * attacked):  # other ones may lie in the next sample
-        return []
-    return [
-        f"{most} groups of {model.states + 1} sensors change from one sample to the next by more than process_bound "
-        f"and measurement_bound allow, {limits}: one of these bounds is too small, A is wrong, or more of them lie"
-    ]
+        found = sum(pairs(measurements[:, columns], bounds[agents]) for columns, agents in groups)
+    return int(np.max(found)) if groups else 0
 
 
 def _groups(model: _core.Model) -> list[tuple[list[int], list[int]]]:

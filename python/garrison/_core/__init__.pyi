@@ -44,6 +44,7 @@ __all__: list[str] = [
     "certificate",
     "chebyshev_contraction",
     "check",
+    "contradiction",
     "custom_attack",
     "design_summary",
     "discretise",
@@ -1077,6 +1078,21 @@ def check(
     """
     Conditions and quantities of the family's theorems, as two lists of dicts. Searches end after `seconds` with a
     certified interval; a computation without partial results raises InvalidInput then. Ctrl-C ends it, too.
+    """
+
+def contradiction(
+    model: Model,
+    measurements: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    *,
+    attacked: typing.SupportsInt | typing.SupportsIndex,
+    for_good: bool,
+    constant: bool,
+    owner: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+) -> tuple[str, int]:
+    """
+    (bound, row): which bound measurements (samples, outputs) refute whichever `attacked` sources lie, and where; (None, -1) =
+    none. owner: whose each measurement is, [] = its agent's; inputs: row r leads from sample r to the next one.
     """
 
 def custom_attack(
