@@ -32,6 +32,12 @@ double pencil_max(const Matrix& S, const Matrix& B) {
       .maxCoeff();
 }
 
+/// R with R R' = S, which may be singular up to rounding.
+Matrix root(const Matrix& S) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(S);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
 Matrix inverse(const Matrix& S) { return Eigen::LLT<Matrix>(S).solve(Matrix::Identity(S.rows(), S.cols())); }
 
 /// Blocks left_i Pbar_j^-1 A / d_i for j in N_i, stacked Nn x Nn.
@@ -173,7 +179,11 @@ Constants constants(const Setting& s, const SteadyState& steady, double lambda, 
     const Matrix& M = s.M[k];
     const Matrix moved = s.A.transpose() * Eigen::LLT<Matrix>(steady.Pbar[k]).solve(s.A);
     const Matrix symmetric = 0.5 * (moved + moved.transpose());
-    c.rate = std::max(c.rate, pencil_max(symmetric, inverse(steady.P[k])));
+    const Matrix S = root(steady.P[k]);  // P^-1 of precise measurements holds nothing but these
+    const Matrix relative = S.transpose() * symmetric * S;
+    c.rate = std::max(
+        c.rate,
+        Eigen::SelfAdjointEigenSolver<Matrix>(relative, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
     c.eta = std::max(c.eta, pencil_max(symmetric, steady.Q[k]));
     c.refined_threshold(i) = kInfinity;
     if (M.rows() == 0) continue;
@@ -182,7 +192,8 @@ Constants constants(const Setting& s, const SteadyState& steady, double lambda, 
     const double rounding = 1e-14 * static_cast<double>(G.rows()) * std::max(values.maxCoeff(), 0.0);
     const double kappa = M.rows() > M.cols() || values(0) <= rounding ? 0.0 : values(0);
     c.refined_threshold(i) = lambda / 2.0 * (1.0 + std::sqrt(1.0 + kappa));
-    const double spread = norm2(M * Eigen::LLT<Matrix>(steady.P[k]).matrixL().toDenseMatrix());
+    const double most = std::max(values.maxCoeff(), 0.0);
+    const double spread = std::sqrt(most / (1.0 + most));  // of M P M' = G (I + G)^-1
     if (spread == 0.0) continue;
     const auto reach = [&](double t) { return t * t / (spread * spread); };
     c.level.printed = std::min(c.level.printed, reach(2.0 * lambda));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/setting.hpp"
 
+#include <cmath>
+
 #include "core/solvers.hpp"
 #include "garrison/analysis/modes.hpp"
 
@@ -55,6 +57,10 @@ Setting part_setting(const Model& model, const Network& network) {
       s.whitener.emplace_back(0, 0);
     }
     s.M.push_back(s.whitener.back() * s.C.back());
+    if (!std::isfinite(s.M.back().squaredNorm()))
+      refuse("measurement_covariance (Sv[" + agent + "])",
+             "numbers so small that what the measurements tell overflows",
+             "variances above about 1e-300 of the squares of C", "any that small says the same: take 1e-100");
     const auto heard = network.neighbours(i);
     std::vector<int> all(heard.begin(), heard.end());
     all.insert(std::lower_bound(all.begin(), all.end(), i), i);

@@ -21,6 +21,24 @@ Matrix inverse(const Matrix& S) {
   return 0.5 * (inv + inv.transpose());
 }
 
+/// (Q + M'M)^-1 from a root of Q^-1, row by row of M (Potter): where M is huge, because measurements have
+/// hardly any noise, the sum would hold nothing of Q.
+template <class T>
+Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> updated(
+    const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>& Q, const Matrix& M) {
+  using Wide = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+  using Column = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+  Wide S = Eigen::LLT<Wide>(Q).matrixU().solve(Wide::Identity(Q.rows(), Q.cols()));
+  for (Eigen::Index r = 0; r < M.rows(); ++r) {
+    const Column a = S.transpose() * M.row(r).transpose().template cast<T>();
+    const T whole = T(1) + a.squaredNorm();
+    const Column moved = S * a;
+    S.noalias() -= moved * (a / (whole + std::sqrt(whole))).transpose();
+  }
+  const Wide P = S * S.transpose();
+  return T(0.5) * (P + P.transpose());
+}
+
 Matrix predicted(const Setting& s, std::size_t j, const Matrix& P) {
   const Matrix half = s.A * P;
   const Matrix Pbar = half * s.A.transpose() + s.Sw[j];
@@ -40,9 +58,9 @@ std::vector<Matrix> fused(const Setting& s, const std::vector<Matrix>& P) {
   return Q;
 }
 
-std::vector<Matrix> sweep(const Setting& s, const std::vector<Matrix>& seen, const std::vector<Matrix>& P) {
+std::vector<Matrix> sweep(const Setting& s, const std::vector<Matrix>& P) {
   std::vector<Matrix> next = fused(s, P);
-  for (std::size_t i = 0; i < next.size(); ++i) next[i] = inverse(next[i] + seen[i]);
+  for (std::size_t i = 0; i < next.size(); ++i) next[i] = updated<double>(next[i], s.M[i]);
   return next;
 }
 
@@ -89,7 +107,7 @@ bool settle(const Setting& s, const std::vector<Matrix>& seen, double tolerance,
   for (int k = 0; k < most; ++k) {
     ++out.sweeps;
     require_time("the sweeps of (5)");
-    std::vector<Matrix> next = sweep(s, seen, out.P);
+    std::vector<Matrix> next = sweep(s, out.P);
     borders.refresh(next);
     out.change = 0.0;
     int beyond = -1;
@@ -116,7 +134,7 @@ bool settle(const Setting& s, const std::vector<Matrix>& seen, double tolerance,
 /// (5).
 class Fusion : public detail::RiccatiMap {
  public:
-  Fusion(const Setting& s, const std::vector<Matrix>& seen) : s_(s), seen_(seen) {}
+  explicit Fusion(const Setting& s) : s_(s) {}
 
   detail::Matrices residual(const detail::Matrices& P) override {
     const Wide A = s_.A.cast<long double>();
@@ -131,7 +149,7 @@ class Fusion : public detail::RiccatiMap {
       Wide sum = Wide::Zero(s_.A.rows(), s_.A.cols());
       for (const int j : heard) sum += information[static_cast<std::size_t>(j)];
       sum /= static_cast<long double>(heard.size());
-      const Wide next = inverted(sum + seen_[i].cast<long double>());
+      const Wide next = updated<long double>(sum, s_.M[i]);
       r.push_back((next - P[i].cast<long double>()).cast<double>());
       for (const int j : heard)
         weights_[i].push_back((next * information[static_cast<std::size_t>(j)] * A /
@@ -160,7 +178,6 @@ class Fusion : public detail::RiccatiMap {
   }
 
   const Setting& s_;
-  const std::vector<Matrix>& seen_;
   std::vector<std::vector<Matrix>> weights_;  // sqrt(d_i) L_ij A, in the order of N_i
 };
 
@@ -245,7 +262,7 @@ bool newton(const Setting& given, SteadyState& out) {
     more = more > own ? more * kFall : 0.0;
     noisy.Sw = noisier(s, more, even);
     for (Matrix& one : P) one *= 1.01;
-    Fusion fusion(noisy, seen);
+    Fusion fusion(noisy);
     auto found = detail::policy_iteration(fusion, std::move(P));
     out.sweeps += found.steps;
     if (!found.converged) return false;
@@ -269,8 +286,7 @@ bool finish(const Setting& given, SteadyState& out) {
   const Vector back = unit.cwiseInverse();
   std::vector<Matrix> P;
   for (const Matrix& one : out.P) P.push_back(1.01 * (back.asDiagonal() * one * back.asDiagonal()));
-  const std::vector<Matrix> seen = measured(s);
-  Fusion fusion(s, seen);
+  Fusion fusion(s);
   const auto found = detail::policy_iteration(fusion, std::move(P));
   out.sweeps += found.steps;
   if (!found.converged) return false;
@@ -318,7 +334,7 @@ void solve(const Setting& s, const std::vector<Matrix>& seen, const SteadyOption
 
 std::vector<Matrix> riccati_sweep(const Setting& s, const std::vector<Matrix>& P) {
   require_start(s, P);
-  return sweep(s, measured(s), P);
+  return sweep(s, P);
 }
 
 SteadyState steady_state(const Setting& s, const SteadyOptions& options) {

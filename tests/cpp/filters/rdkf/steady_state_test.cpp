@@ -6,6 +6,8 @@
 
 #include "../../cases.hpp"
 #include "core/solvers.hpp"
+#include "garrison/drivers/simulate.hpp"
+#include "garrison/filters/rdkf/analysis.hpp"
 #include "random_setting.hpp"
 
 using namespace garrison;
@@ -172,4 +174,60 @@ TEST_CASE("detectability: only modes that do not decay must be seen") {
   const double d = std::sin(1.0);
   CHECK(detectable(Matrix{{c, d}, {-d, c}}, Matrix{{1.0, 0.0}}));  // complex modes on the circle
   CHECK_FALSE(detectable(Matrix::Identity(2, 2), Matrix{{1.0, 0.0}}));
+}
+
+TEST_CASE("measurements with hardly any noise leave what they do not show as it is") {
+  Rng rng(12);
+  for (int instance = 0; instance < 20; ++instance) {
+    const int n = whole(rng, 2, 5);
+    Matrix A = normal_matrix(rng, n, n);
+    A *= uniform(rng, 0.5, 1.2) / Eigen::EigenSolver<Matrix>(A, false).eigenvalues().cwiseAbs().maxCoeff();
+    const Matrix C = normal_matrix(rng, 1, n);
+    for (const double r : {1e-10, 1e-15, 1e-18, 1e-25, 1e-60, 1e-120}) {
+      CAPTURE(instance);
+      CAPTURE(r);
+      Noise noise;
+      noise.process_covariance = 0.3 * Matrix::Identity(n, n);
+      noise.measurement_covariance = {Matrix::Constant(1, 1, r)};
+      const Setting s = setting(Model(A, {C}, noise), Network(1, {}));
+      const SteadyState steady = steady_state(s);
+      Matrix P = Matrix::Identity(n, n);
+      for (int k = 0; k < 2000; ++k) {  // the form with a gain, which keeps what r is small against
+        const Matrix prior = A * P * A.transpose() + s.Sw[0];
+        const Matrix gain = prior * C.transpose() / ((C * prior * C.transpose())(0, 0) + r);
+        const Matrix rest = Matrix::Identity(n, n) - gain * C;
+        P = rest * prior * rest.transpose() + r * gain * gain.transpose();
+      }
+      CHECK((P - steady.P[0]).norm() <= 1e-9 * P.norm());
+      CHECK(constants(s, steady, 0.0, Penalty::norm).rate < 1.0);
+    }
+  }
+}
+
+TEST_CASE("a network whose measurements have hardly any noise follows the plant") {
+  Rng rng(13);
+  for (int instance = 0; instance < 10; ++instance) {
+    CAPTURE(instance);
+    const int n = whole(rng, 2, 4);
+    const int N = whole(rng, 3, 6);
+    const Network network = connected_network(rng, N);
+    Model model = scalar_model(rng, n, N, 1.02, 0.1, 0.1);
+    PlantOptions plant;
+    plant.steps = 400;
+    plant.noise = "normal";
+    std::vector<double> mean;
+    for (const double r : {1e-10, 1e-16, 1e-24}) {
+      Noise noise = model.noise();
+      for (Matrix& one : noise.measurement_covariance) one.setConstant(r);
+      std::vector<Matrix> rows;
+      for (int i = 0; i < N; ++i) rows.push_back(model.C(i));
+      const Model precise(model.A(), rows, noise);
+      const auto run = simulate(precise, network, *make_filter("dkf", {}), plant, {});
+      double sum = 0.0;
+      for (std::size_t k = run.error.size() / 2; k < run.error.size(); ++k) sum += run.error[k];
+      mean.push_back(sum / static_cast<double>(run.error.size() / 2));
+    }
+    CHECK(mean[0] < 10.0);
+    for (const double other : mean) CHECK(other == doctest::Approx(mean[0]).epsilon(1e-3));
+  }
 }
