@@ -2,6 +2,10 @@
 // Weighted least squares over some rows, by the eigenvalues of G = sum C_j'C_j / R_j. Internal.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "core/solvers.hpp"
 #include "garrison/certificate/rows.hpp"
 
@@ -37,23 +41,25 @@ class LeastSquares {
       to_frame_.col(k) = eigen_.eigenvectors().col(k) / std::sqrt(values(k));
     return true;
   }
-  /// The rest of it, after `factor` of the same rows.
+  /// The rest of it, after `factor` of the same rows. Refined once: what rounding of G leaves is then less
+  /// than what rounding of the measurements does.
   template <class Uses>
   bool locate(const Rows& rows, const Uses& uses) {
-    const Eigen::Index n = g_.size();
-    g_.setZero();
-    for (int j = 0; j < rows.size(); ++j) {
-      if (!uses(j)) continue;
-      const double weighted = rows.y(j) / rows.variance(j);
-      const double* const c = rows.c(j).data();
-      for (Eigen::Index k = 0; k < n; ++k) g_[k] += weighted * c[k];
-    }
-    u_.noalias() = to_frame_.transpose().lazyProduct(g_);
-    c_.noalias() = to_frame_.lazyProduct(u_);
+    c_.setZero();
+    move_to_least(rows, uses);
+    move_to_least(rows, uses);
     return c_.allFinite();
   }
 
   const Vector& state() const { return c_; }
+  /// What rounding changes a measurement of this row and C_j state() by: a part of their largest term.
+  double rounding(const Rows& rows, int j) const {
+    constexpr double kUnits = 8.0 * std::numeric_limits<double>::epsilon();
+    const double* const c = rows.c(j).data();
+    double largest = std::abs(rows.y(j));
+    for (Eigen::Index k = 0; k < c_.size(); ++k) largest = std::max(largest, std::abs(c[k] * c_[k]));
+    return kUnits * static_cast<double>(c_.size() + 1) * largest;
+  }
   /// lmin(G).
   double least() const { return eigen_.eigenvalues()(0); }
   /// C_j G^-1 C_j'.
@@ -65,6 +71,23 @@ class LeastSquares {
   double variance(Eigen::Index k) const { return to_frame_.row(k).squaredNorm(); }
 
  private:
+  /// One step from c_ by the residuals there.
+  template <class Uses>
+  void move_to_least(const Rows& rows, const Uses& uses) {
+    const Eigen::Index n = g_.size();
+    g_.setZero();
+    for (int j = 0; j < rows.size(); ++j) {
+      if (!uses(j)) continue;
+      const double* const c = rows.c(j).data();
+      double residual = rows.y(j);
+      for (Eigen::Index k = 0; k < n; ++k) residual -= c[k] * c_[k];
+      const double weighted = residual / rows.variance(j);
+      for (Eigen::Index k = 0; k < n; ++k) g_[k] += weighted * c[k];
+    }
+    u_.noalias() = to_frame_.transpose().lazyProduct(g_);
+    c_.noalias() += to_frame_.lazyProduct(u_);
+  }
+
   Eigen::SelfAdjointEigenSolver<Matrix> eigen_;
   Matrix G_, to_frame_;
   Vector c_, g_, u_;

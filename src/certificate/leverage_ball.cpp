@@ -74,6 +74,7 @@ struct LeverageWorkspace::Room {
   Frame* frame = nullptr;      // of the present pass
   Vector own_at;               // C_j times the centre of the own ball
   double own_radius = 0.0;     // bG of the own ball
+  double rounding = 0.0;       // on ||G^1/2 (x - c)|| of rounding
   std::vector<char> out;       // sources that are proved
   std::vector<char> part_out;  // those that `part` leaves out; none = it was not made
   std::vector<char> hit;       // sources that a pass refutes
@@ -155,6 +156,7 @@ bool LeverageWorkspace::Room::fit_rows(const Rows& rows, const Assumption& a) {
   if (!frame->fit.locate(rows, kept)) return false;
   std::fill(influence.begin(), influence.end(), 0.0);
   if (a.bounded) std::fill(noise.begin(), noise.end(), 0.0);
+  rounding = 0.0;
   const Eigen::Index n = frame->fit.state().size();
   const double* const x = frame->fit.state().data();
   for (int j = 0; j < rows.size(); ++j) {
@@ -166,6 +168,7 @@ bool LeverageWorkspace::Room::fit_rows(const Rows& rows, const Assumption& a) {
     own_at(j) = at;
     influence[source] += frame->influence(j) * std::abs(rows.y(j) - at);
     if (a.bounded) noise[source] += frame->influence(j) * rows.width(j);
+    rounding += frame->influence(j) * frame->fit.rounding(rows, j);
   }
   return true;
 }
@@ -182,12 +185,12 @@ double LeverageWorkspace::Room::spare(int left) {
 /// bG of step 3: bound on ||G^1/2 (x - c)||.
 double LeverageWorkspace::Room::in_frame(const Rows& rows, const Assumption& a, int left, double mu) {
   const double attack = top(influence, left);
-  if (!a.bounded) return attack / mu + a.levels.z2 / std::sqrt(mu);
+  if (!a.bounded) return (attack + rounding) / mu + a.levels.z2 / std::sqrt(mu);
   int kept = 0;
   for (int source = 0; source < rows.sources(); ++source)
     kept += static_cast<int>(rows.has(source) && out[static_cast<std::size_t>(source)] == 0);
   // The expression does not fall with the number of attacked among the kept: its maximum is at `left`.
-  return (attack + top(noise, kept - left)) / mu;
+  return (attack + top(noise, kept - left) + rounding) / mu;
 }
 
 /// Reports which rows were kept and which sources are proved.

@@ -94,18 +94,22 @@ bool SubsetsWorkspace::Room::leave_out(const Rows& rows, const Levels& levels, d
 bool SubsetsWorkspace::Room::judge(const Rows& rows, const Levels& levels, double z3) {
   if (!fit.solve(rows, [&](int j) { return uses(rows, j); })) return false;
   double sum = 0.0;
+  double rounding = 0.0;  // on ||G^1/2 (x - c)||
   for (int j = 0; j < rows.size(); ++j) {
     if (!uses(rows, j)) continue;
     const double sigma = std::sqrt(rows.variance(j));
     const double residual = std::abs(rows.y(j) - rows.c(j).dot(fit.state()));
-    const double room = levels.z1 * sigma + levels.z2 * std::sqrt(fit.spread2(rows, j));
+    const double reach = std::sqrt(fit.spread2(rows, j));
+    const double room = levels.z1 * sigma + levels.z2 * reach;
+    rounding += reach / rows.variance(j) * fit.rounding(rows, j);
     if (!(residual <= room + 1e-12 * (room + std::abs(rows.y(j))))) return true;
     sum += (residual / sigma) * (residual / sigma);
   }
   if (!std::isnan(z3) && !(sum <= z3 * z3 * (1.0 + 1e-12))) return true;
   x.col(consistent) = fit.state();
-  radius(consistent) = levels.z2 / std::sqrt(fit.least());
-  for (Eigen::Index k = 0; k < box.rows(); ++k) box(k, consistent) = levels.z2 * std::sqrt(fit.variance(k));
+  const double far = levels.z2 + rounding;
+  radius(consistent) = far / std::sqrt(fit.least());
+  for (Eigen::Index k = 0; k < box.rows(); ++k) box(k, consistent) = far * std::sqrt(fit.variance(k));
   ++consistent;
   for (const int source : at_hand)
     if (part[static_cast<std::size_t>(source)] == Part::in) cleared[static_cast<std::size_t>(source)] = 1;

@@ -11,6 +11,11 @@
 namespace garrison::certificate {
 namespace {
 
+/// Times a sum of distances, which is rounded.
+constexpr double kSums = 1.0 + 1e-13;
+/// Part of a state that rounding may change while it ages.
+constexpr double kAgeingRounding = 1e-12;
+
 /// Agents whose measurements may reach this one, ascending.
 std::vector<int> within_reach(const Plan& plan, int id, std::span<const int> neighbours) {
   if (plan.wanted.spread == Spread::flooded) return plan.ids;
@@ -280,17 +285,21 @@ Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
   double ball = 0.0;
   double box = 0.0;
   double relayed = 0.0;
+  double size = 0.0;
   for (std::size_t k = 0; k < estimate.size(); ++k) {
     const double d = estimate[k] - m.center[k];
     ball += d * d;
     box += (std::abs(d) + m.box[k]) * (std::abs(d) + m.box[k]);
     const double e = estimate[k] - m.ball[k];
     relayed += e * e;
+    size += std::abs(m.ball[k]);
   }
   if (std::isfinite(m.radius))
-    least = {std::fmin(std::sqrt(ball) + m.radius, std::sqrt(box)), CertificateKind::witness};
+    least = {kSums * std::fmin(std::sqrt(ball) + m.radius, std::sqrt(box)), CertificateKind::witness};
   if (m.age < 0) return least;
-  const double other = std::sqrt(relayed) + aged(m.ball_radius, m.age);
+  // Steps of the plant are rounded, those of the centre and those that were measured.
+  const double rounding = m.age == 0 ? 0.0 : kAgeingRounding * size;
+  const double other = kSums * (std::sqrt(relayed) + aged(m.ball_radius, m.age) + rounding);
   return other < least.value ? Bound{other, CertificateKind::relayed} : least;
 }
 

@@ -110,6 +110,7 @@ struct GARRISON_EXPORT Saturation {
     double level = kNaN;       // in force at t: phi_i of the detector, or the adaptive beta
     double rho = kNaN;         // rho or rhobar_i at t-1
     double p = kNaN;           // p at t-1
+    double size = 0.0;         // largest number of the latest estimates, where there are bounds
     std::int64_t t = 0;        // sample of x
     int d = 0;                 // |I_i(t-1)|
     std::int64_t full = -1;    // sample at whose end all attackers were proved here; -1 = not yet
@@ -129,6 +130,7 @@ struct GARRISON_EXPORT Saturation {
       v("level", level);
       v("rho", rho);
       v("p", p);
+      v("size", size);
       v.range("t", t, 0, INT64_MAX / 4);
       v.range("d", d, 0, INT32_MAX);
       v.range("full", full, -1, INT64_MAX / 4);
@@ -199,6 +201,7 @@ struct GARRISON_EXPORT Saturation {
     if (!g.omega.empty()) fresh.previous = std::make_unique<double[]>(nn);
     fresh.rho = g.bounded ? g.setting.eta0 : kNaN;
     fresh.p = 0.0;
+    if (bounds_errors(g)) fresh.size = largest(x0.data(), static_cast<int>(x0.size()));
     m.intact = true;
     const int tracked = g.detector ? l.agents : 0;
     fresh.proved.resize(tracked);
@@ -250,7 +253,7 @@ struct GARRISON_EXPORT Saturation {
         injected = h;  // (b) all attackers are known, no test
         ++used;
       } else if (g.detector && s.intact && !s.refuted &&
-                 exceeds(std::abs(h), s.level, std::abs(y[r]), std::abs(expected_y))) {
+                 exceeds(std::abs(h), s.level, std::abs(y[r]) + std::abs(expected_y) + s.size)) {
         accused = true;  // (c) proof (15)
       } else {
         injected = std::max(-beta, std::min(h, beta));  // (d) = k h with k of (4), without 0/0
@@ -265,6 +268,7 @@ struct GARRISON_EXPORT Saturation {
       s.proved.insert(l.id);
       look_for_refutation(g, s);
     }
+    if (bounds_errors(g)) s.size = std::max(kFading * s.size, largest(estimate, nn));
     s.verdict = proved || accused                                          ? Verdict::attacked
                 : used == 0                                                ? Verdict::silent
                 : limited > 0                                              ? Verdict::suspected
@@ -326,10 +330,14 @@ struct GARRISON_EXPORT Saturation {
     r.threshold = g.detector ? s.level : beta_now(g, s);
     if (g.bounded && s.intact && !(g.detector && s.proved.size() >= g.setting.attacked))
       r.bound = rho_now(g, s) + p_now(g, s);
-    if (!covered(g, s)) return r;
+    if (covered(g, s)) offer_table(l, g, s, r);
+    r.bound += kRounding * (s.size + r.bound);
+    return r;
+  }
+  template <int n>
+  static void offer_table(const Local& l, const Gains& g, const State<n>& s, Report& r) noexcept {
     offer(g.table.bound(l.id, s.t), CertificateKind::table, r);
     if (s.full >= 0) offer(g.table.bound_after(l.id, s.t, s.which, s.full), CertificateKind::informed, r);
-    return r;
   }
 
   template <int n>
@@ -407,6 +415,17 @@ struct GARRISON_EXPORT Saturation {
   }
 
  private:
+  /// Part of the numbers that rounding of many samples may change.
+  static constexpr double kRounding = 1e-12;
+  /// Per sample: errors that rounding made fade no slower, or the bounds are far above them.
+  static constexpr double kFading = 0.999;
+
+  static bool bounds_errors(const Gains& g) noexcept { return g.bounded || !g.table.empty(); }
+  static double largest(const double* x, int n) noexcept {
+    double found = 0.0;
+    for (int k = 0; k < n; ++k) found = std::max(found, std::abs(x[k]));
+    return found;
+  }
   /// Takes over a bound that is less than what is there, which NaN is not.
   static void offer(double bound, CertificateKind kind, Report& r) noexcept {
     if (r.bound <= bound || !(bound < kInfinity)) return;
@@ -430,9 +449,10 @@ struct GARRISON_EXPORT Saturation {
     return s.verdict == Verdict::suspected && h > beta_now(g, s) ? beta_now(g, s) / h : 1.0;
   }
 
-  /// h > phi (15) beyond rounding: for n = 1 the bound (16) is attained, a bare ">" accuses honest sensors.
-  static bool exceeds(double h, double phi, double y, double expected_y) noexcept {
-    return std::isinf(h) || h > phi + 1e-12 * (phi + y + expected_y);
+  /// h > phi (15) beyond rounding of numbers of this size: for n = 1 the bound (16) is attained, a bare ">"
+  /// accuses honest sensors.
+  static bool exceeds(double h, double phi, double size) noexcept {
+    return std::isinf(h) || h > phi + kRounding * (phi + size);
   }
 
   /// rho(t) of (7), rhobar_i(t) of (14) or rho_t of the adaptive threshold, from the values at t-1.
