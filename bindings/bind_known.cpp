@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Known inputs, and baselines that see measurements as they come.
 #include "bindings.hpp"
+#include "budget.hpp"
 #include "convert.hpp"
 #include "garrison/core/discretise.hpp"
 #include "garrison/core/response.hpp"
@@ -22,19 +23,27 @@ Vector vector_from(const char* which, const py::object& value) {
   return Eigen::Map<const Vector>(array.data(), array.size());
 }
 
-/// The user's functions; an empty one where there is none.
+/// The user's functions, called with the GIL; an empty one where there is none.
 NonlinearPlant plant_of(const py::function& f, const py::function& h, const py::object& f_jacobian,
                         const py::object& h_jacobian, const Matrix& process_covariance,
                         const Vector& measurement_variance) {
   NonlinearPlant plant;
-  plant.f = [f](const Vector& x, const Vector& u, int t) { return vector_from("f", f(x, u, t)); };
-  plant.h = [h](const Vector& x, int t) { return vector_from("h", h(x, t)); };
+  plant.f = [f](const Vector& x, const Vector& u, int t) {
+    const py::gil_scoped_acquire gil;
+    return vector_from("f", f(x, u, t));
+  };
+  plant.h = [h](const Vector& x, int t) {
+    const py::gil_scoped_acquire gil;
+    return vector_from("h", h(x, t));
+  };
   if (!f_jacobian.is_none())
     plant.f_jacobian = [f_jacobian](const Vector& x, const Vector& u, int t) {
+      const py::gil_scoped_acquire gil;
       return convert::eigen(convert::matrix("f_jacobian", f_jacobian(x, u, t)));
     };
   if (!h_jacobian.is_none())
     plant.h_jacobian = [h_jacobian](const Vector& x, int t) {
+      const py::gil_scoped_acquire gil;
       return convert::eigen(convert::matrix("h_jacobian", h_jacobian(x, t)));
     };
   plant.process_covariance = process_covariance;
@@ -48,7 +57,9 @@ void bind_kalman(py::module_& m) {
       [](const Model& model, const MatrixRef& y, const VectorRef& x0, double start_variance, double gate,
          double huber, const Matrix& inputs, const py::dict& series) {
         require_range("start_variance", start_variance, 0.0);
-        return central_kalman(model, y, x0, start_variance, {gate, huber}, known_of(inputs, series));
+        const Known known = known_of(inputs, series);
+        return within_budget(
+            kInfinity, [&] { return central_kalman(model, y, x0, start_variance, {gate, huber}, known); });
       },
       py::arg("model"), py::arg("measurements"), py::arg("x0"), py::arg("start_variance"),
       py::arg("gate") = 0.0, py::arg("huber") = kInfinity, py::arg("inputs") = Matrix(),
@@ -58,8 +69,10 @@ void bind_kalman(py::module_& m) {
       [](const Model& model, const Network& network, const MatrixRef& y, const MatrixRef& start,
          double start_variance, double gate, double huber, const Matrix& inputs, const py::dict& series) {
         require_range("start_variance", start_variance, 0.0);
-        return local_kalman(model, network, y, start.transpose(), start_variance, {gate, huber},
-                            known_of(inputs, series));
+        const Known known = known_of(inputs, series);
+        return within_budget(kInfinity, [&] {
+          return local_kalman(model, network, y, start.transpose(), start_variance, {gate, huber}, known);
+        });
       },
       py::arg("model"), py::arg("network"), py::arg("measurements"), py::arg("start"),
       py::arg("start_variance"), py::arg("gate") = 0.0, py::arg("huber") = kInfinity,
@@ -71,9 +84,10 @@ void bind_kalman(py::module_& m) {
          const MatrixRef& P0, const Matrix& process_covariance, const Vector& measurement_variance,
          const MatrixRef& inputs, const py::object& f_jacobian, const py::object& h_jacobian, double gate,
          double huber) {
-        return extended_kalman(
-            plant_of(f, h, f_jacobian, h_jacobian, process_covariance, measurement_variance), y, x0, P0,
-            inputs, {gate, huber});
+        const NonlinearPlant plant =
+            plant_of(f, h, f_jacobian, h_jacobian, process_covariance, measurement_variance);
+        return within_budget(kInfinity,
+                             [&] { return extended_kalman(plant, y, x0, P0, inputs, {gate, huber}); });
       },
       py::arg("f"), py::arg("h"), py::arg("measurements"), py::arg("x0"), py::arg("P0"),
       py::arg("process_covariance"), py::arg("measurement_variance"), py::arg("inputs"),

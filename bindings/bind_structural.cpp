@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Analysis and design of the structural filter.
 #include "bindings.hpp"
+#include "budget.hpp"
 #include "garrison/filters/structural/detection.hpp"
 #include "garrison/filters/structural/filter.hpp"
 #include "garrison/filters/structural/gains.hpp"
@@ -157,11 +158,8 @@ void bind_gains(py::module_& m) {
       "coupled_riccati",
       [](const Setting& s, int most_sweeps, double tolerance) {
         require_sweeps(most_sweeps, tolerance);
-        RiccatiGains g;
-        {
-          const py::gil_scoped_release no_gil;
-          g = coupled_riccati(s, most_sweeps, tolerance);
-        }
+        const RiccatiGains g =
+            within_budget(kInfinity, [&] { return coupled_riccati(s, most_sweeps, tolerance); });
         return py::dict(py::arg("K") = g.K, py::arg("P") = g.P, py::arg("Pprior") = g.Pprior,
                         py::arg("converged") = g.converged, py::arg("sweeps") = g.sweeps);
       },
@@ -171,11 +169,8 @@ void bind_gains(py::module_& m) {
       "joint_kalman",
       [](const Setting& s, int most_sweeps, double tolerance) {
         require_sweeps(most_sweeps, tolerance);
-        JointGains g;
-        {
-          const py::gil_scoped_release no_gil;
-          g = joint_kalman(s, most_sweeps, tolerance);
-        }
+        const JointGains g =
+            within_budget(kInfinity, [&] { return joint_kalman(s, most_sweeps, tolerance); });
         return py::dict(py::arg("K") = g.K, py::arg("converged") = g.converged, py::arg("sweeps") = g.sweeps);
       },
       py::arg("setting"), py::arg("most_sweeps") = 20000, py::arg("tolerance") = 1e-14);
@@ -183,19 +178,14 @@ void bind_gains(py::module_& m) {
   m.def(
       "h2_gains",
       [](const Setting& s, const GainMatrices& start, const std::vector<int>& hubs, double epsilon) {
-        const py::gil_scoped_release no_gil;
-        return h2_gains(s, start, hubs, epsilon);
+        return within_budget(kInfinity, [&] { return h2_gains(s, start, hubs, epsilon); });
       },
       py::arg("setting"), py::arg("start"), py::arg("hubs") = std::vector<int>{}, py::arg("epsilon") = 0.01,
       "Gains of least tr Q, under the isolation constraint (18) for `hubs`.");
   m.def(
       "design_gains",
       [](const Setting& s, const std::string& method) {
-        Designed d;
-        {
-          const py::gil_scoped_release no_gil;
-          d = design_gains(s, method);
-        }
+        const Designed d = within_budget(kInfinity, [&] { return design_gains(s, method); });
         return py::dict(py::arg("K") = d.K, py::arg("method") = d.method, py::arg("rho") = d.rho,
                         py::arg("P") = d.P);
       },

@@ -8,6 +8,7 @@
 
 #include "core/solvers.hpp"
 #include "garrison/certificate/quantiles.hpp"
+#include "garrison/core/budget.hpp"
 
 namespace garrison::kalman {
 namespace {
@@ -38,6 +39,7 @@ void correct_plainly(Estimate& now, const Outputs& o, const Vector& R) {
   if (present.empty()) return;
   const Index n = now.x.size();
   const auto m = static_cast<Index>(present.size());
+  now.take_time(static_cast<double>(n + m));
   Matrix rows(n + m, n);
   Vector right = Vector::Zero(n + m);
   rows.topRows(n).setIdentity();
@@ -72,7 +74,8 @@ void correct_robustly(Estimate& now, const Outputs& o, double huber) {
   const Vector& R = o.R;
   Vector weight = Vector::Ones(R.size());
   for (int k = 0; k < kMost; ++k) {
-    now = prior;
+    now.x = prior.x;
+    now.S = prior.S;
     correct_plainly(now, o, R.cwiseQuotient(weight));
     Vector next = Vector::Ones(R.size());
     for (Index r = 0; r < R.size(); ++r) {
@@ -93,10 +96,20 @@ Matrix root(const Matrix& covariance) {
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
+void Estimate::take_time(double rows) {
+  constexpr double kWorthAsking = 1e6;  // multiplications, about a millisecond
+  const auto n = static_cast<double>(x.size());
+  since_asked += rows * n * n;
+  if (since_asked < kWorthAsking) return;
+  since_asked = 0.0;
+  require_time("a Kalman filter");
+}
+
 void Estimate::predict(Vector next, const Matrix& A, const Matrix& process_root) {
   x = std::move(next);
   const Index n = x.size();
   Matrix both(S.cols() + process_root.cols(), n);
+  take_time(static_cast<double>(both.rows()));
   both << (A * S).transpose(), process_root.transpose();
   const auto qr = sorted_qr(std::move(both));
   const Matrix R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();

@@ -29,11 +29,14 @@ struct Outputs {
 struct Estimate {
   Vector x;
   Matrix S;
+  double since_asked = 0.0;  ///< multiplications since the budget was asked
 
   /// To `next`, of a plant with this A there.
   void predict(Vector next, const Matrix& A, const Matrix& process_root);
   /// With the outputs that are there, screened as asked.
   void correct(const Outputs& outputs, const Screen& screen);
+  /// About to factor so many rows. @throws InvalidInput when the budget is over
+  void take_time(double rows);
 };
 
 /// @throws InvalidInput where it is no screen

@@ -1,5 +1,8 @@
 """Kalman filters per agent and for nonlinear plants, against textbook recursions and FilterPy where it is installed."""
 
+import signal
+import time
+from collections.abc import Callable
 from typing import Any
 
 import garrison as gr
@@ -184,3 +187,37 @@ def test_what_a_function_raises_is_its_owners() -> None:
 
     with pytest.raises(ZeroDivisionError, match="mine"):
         gr.extended_kalman(broken, bob, swing()[1], **ARGUMENTS)
+
+
+@pytest.mark.parametrize("name", ["central_kalman", "local_kalman", "extended_kalman"])
+@pytest.mark.parametrize("screen", [{}, {"huber": 1.0}])
+def test_an_interrupt_ends_a_long_filter(name: str, screen: dict[str, float]) -> None:
+    rng = np.random.default_rng(0)
+    A, y = 0.98 * np.linalg.qr(rng.normal(size=(150, 150)))[0], rng.normal(size=(20_000, 20))
+    H = np.eye(150)[:20]
+    model = gr.Model(A, H, process_covariance=0.1, measurement_covariance=0.1)
+    calls: dict[str, Callable[[], Any]] = {
+        "central_kalman": lambda: gr.central_kalman(model, y, **screen),
+        "local_kalman": lambda: gr.local_kalman(model, gr.Network.ring(20), y, **screen),
+        "extended_kalman": lambda: gr.extended_kalman(
+            lambda x, u, t: A @ x,
+            lambda x, t: x[:20],
+            y,
+            process_covariance=0.1,
+            measurement_variance=0.1,
+            start=np.zeros(150),
+            f_jacobian=lambda x, u, t: A,
+            h_jacobian=lambda x, t: H,
+            **screen,
+        ),
+    }
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.3)
+    started = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            calls[name]()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert time.monotonic() - started < 15  # the whole record takes minutes
