@@ -223,3 +223,29 @@ def test_a_wrong_start_accuses_nobody(options: dict[str, Any], start: float) -> 
     tested = np.isfinite(run.threshold) & np.isfinite(run.statistic)  # type: ignore[arg-type]
     assert tested.mean() > 0.2
     assert (run.statistic > run.threshold)[tested].mean() < 0.013  # type: ignore[operator, index]
+
+
+@pytest.mark.parametrize("drop", [0.01, 0.1, 0.4])
+def test_without_measurement_noise_a_false_alarm_ends_within_tens_of_samples(drop: float) -> None:
+    """Where nothing is lost the residual vanishes, so hardly any sample could end it."""
+    model = gr.Model(
+        [[1.0, 0.1], [0.0, 0.9]], [[1, 0], [0, 1]] * 3, process_covariance=0.01, measurement_covariance=0.0
+    )
+    alarms = 0
+    for seed in range(4):
+        run = gr.simulate(
+            model,
+            gr.Network.complete(6),
+            gr.filters.Structural(test="residual"),
+            steps=2000,
+            noise="normal",
+            seed=seed,
+            link={"drop": drop},
+        )
+        attacked = run.verdict[0] == gr.Verdict.ATTACKED  # type: ignore[index]
+        alarms += int(attacked.any())
+        length = np.zeros(6, dtype=int)
+        for sample in attacked:
+            length = np.where(sample, length + 1, 0)
+            assert length.max() <= 100
+    assert alarms > 0

@@ -38,7 +38,8 @@ namespace garrison {
 /// samples after the start (threshold NaN, verdict "not tested"). Where the bounded deviation is above 10
 /// times the stationary one, a measurement beyond even that is an alarm, and one within says nothing: the
 /// verdict stays "not tested" and no alarm ends. Where a gap has cut a window short the last sample alone is
-/// tested, which can accuse and end an alarm, but not clear: the verdict is "not tested" there, too.
+/// tested, which can accuse and end an alarm, but not clear: the verdict is "not tested" there, too. An alarm
+/// ends also after 20 measurements in a row that cannot be tested.
 ///
 /// With `isolate` innovations are tested before they are used: an agent leaves out every measurement, its own
 /// or one it hears, that is over its level, and withholds its own while its alarm lasts. P_i grows meanwhile,
@@ -249,6 +250,9 @@ struct GARRISON_EXPORT Structural {
  private:
   /// Deviations, in stationary ones, above which a test can tell an alarm and nothing else.
   static constexpr double kBlind = 10.0;
+  /// Measurements in a row that no test says anything of, as where the residual vanishes because there is no
+  /// noise: after so many nothing speaks for an alarm any more.
+  static constexpr int kForgotten = 20;
   /// By which P grows, per sample, while all that is measured is left out: nothing speaks for the estimate.
   static constexpr double kNobody = 1.3;
   /// By which P grows, per sample, while a sensor is left out that the estimate followed after it had been

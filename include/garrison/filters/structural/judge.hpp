@@ -23,7 +23,10 @@ bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double val
   if (window) {
     if (!std::isnan(g.std[id])) s.threshold = g.level;
   } else if (exact || (carries(g) && structural::varies(std, g.noise[id], g.innovation_std[id]))) {
-    const double usual = g.innovation ? g.innovation_std[id] : g.std[id];
+    const double own = g.innovation ? g.innovation_std[id] : g.std[id];
+    // A residual that vanishes when nothing is missing is no measure of what a gap does to it.
+    const bool vanishes = carries(g) && !structural::varies(own, g.noise[id], g.innovation_std[id]);
+    const double usual = vanishes ? g.innovation_std[id] : own;
     // What a sensor left out may be up to is in `std`: it must be able to come back.
     s.coarse = !(std <= kBlind * usual || (g.isolate && s.alarm));
     s.threshold = g.sample_level * std;
@@ -34,7 +37,15 @@ bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double val
 template <int n>
 void Structural::judge(const Local& l, const Gains& g, State<n>& s, bool over) noexcept {
   const bool absent = g.accuse_missing && l.outputs > 0 && std::isnan(s.y);
-  if (!absent && std::isnan(s.threshold)) return;
+  if (!absent && std::isnan(s.threshold)) {
+    const bool could_be = !std::isnan(s.y) && s.start == 0;
+    s.untold = could_be ? one_more(s.untold) : s.untold;
+    if (s.untold < std::max(kForgotten, g.clear_after)) return;
+    s.alarm = false;
+    s.accused.clear();
+    return;
+  }
+  s.untold = 0;
   over = over || absent;
   if (s.coarse && !over) return;
   s.above = over ? one_more(s.above) : 0;

@@ -109,6 +109,7 @@ struct State {
   int rest = 0;   // samples before the error is stationary
   int above = 0;  // tests in a row
   int below = 0;
+  int untold = 0;  // measurements in a row that no test says anything of
   int filled = 0;  // residuals in the window
   int oldest = 0;
   bool coarse = false;  // the threshold is so high that only an alarm tells something
@@ -141,6 +142,7 @@ struct State {
     v.range("rest", rest, 0, kMostRest);
     v.range("above", above, 0, INT32_MAX);
     v.range("below", below, 0, INT32_MAX);
+    v.range("untold", untold, 0, INT32_MAX);
     v.range("filled", filled, 0, window);
     v.range("oldest", oldest, 0, window - 1);
     v("coarse", coarse);
