@@ -23,6 +23,14 @@ void require_pair(const MatrixRef& A, const MatrixRef& C) {
   if (!A.allFinite() || !C.allFinite()) refuse("A or C", "a number that is not finite", "finite numbers");
 }
 
+/// One cannot tell of any mode of which it says that it is unseen.
+Visibility unclear(Visibility v) {
+  v.sight = Sight::unclear;
+  v.unclear.insert(v.unclear.end(), v.unseen.begin(), v.unseen.end());
+  v.unseen.clear();
+  return v;
+}
+
 std::string three_digits(double value) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
@@ -55,17 +63,18 @@ Visibility visibility(const MatrixRef& A, const MatrixRef& C, double least) {
   if (!(least >= 0.0)) refuse("least", text(least), "a modulus >= 0");
   const auto [own_A, own_C] = detail::in_moderate_units(A, C.rows() > 0 ? Matrix(C) : Matrix(0, A.rows()));
   Visibility v = detail::examine(own_A, own_C, least);
-  if (v.sight != Sight::seen) return v;
+  if (v.sight == Sight::unclear) return v;
+  Matrix A_other = own_A;
+  Matrix C_other = own_C;
+  if (v.sight == Sight::unseen) {
+    // What only entries show that are very small, but not 0, is not surely unseen.
+    const bool small = detail::enlarge_small(A_other, C_other);
+    return small && detail::examine(A_other, C_other, least).all_seen() ? unclear(std::move(v)) : v;
+  }
   // Entries of the size of rounding must not be what makes a mode visible.
-  Matrix A_without = own_A;
-  Matrix C_without = own_C;
-  if (!detail::drop_rounding(A_without, C_without)) return v;
-  Visibility without = detail::examine(A_without, C_without, least);
-  if (without.sight == Sight::seen) return v;
-  without.sight = Sight::unclear;
-  without.unclear.insert(without.unclear.end(), without.unseen.begin(), without.unseen.end());
-  without.unseen.clear();
-  return without;
+  if (!detail::drop_rounding(A_other, C_other)) return v;
+  Visibility without = detail::examine(A_other, C_other, least);
+  return without.all_seen() ? v : unclear(std::move(without));
 }
 
 std::vector<std::complex<double>> unseen_modes(const MatrixRef& A, const MatrixRef& C, double least) {

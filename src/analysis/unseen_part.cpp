@@ -73,28 +73,44 @@ Visibility examine(const Matrix& A, const Matrix& C, double least) {
   return v;
 }
 
-bool drop_rounding(Matrix& A, Matrix& C) {
+namespace {
+
+/// Changes entries that are small in all units, up to `part`: change(entry, whole), `whole` being the size of
+/// what it is small against. False when there are none.
+template <class Change>
+bool change_small(Matrix& A, Matrix& C, double part, const Change& change) {
   const Index n = A.rows();
-  constexpr double part = 2.0 * std::numeric_limits<double>::epsilon();
-  bool dropped = false;
-  const auto drop = [&](double& entry, double level) {
-    if (entry == 0.0 || std::abs(entry) > level) return;
-    entry = 0.0;
-    dropped = true;
+  bool changed = false;
+  const auto look_at = [&](double& entry, double whole) {
+    if (entry == 0.0 || std::abs(entry) > part * whole) return;
+    change(entry, whole);
+    changed = true;
   };
   const double rate = natural_rate(A);
-  const Matrix whole = A;
+  const Matrix before = A;
   for (Index j = 0; j < n; ++j)
     for (Index i = 0; i < n; ++i)
-      if (i != j && std::abs(whole(i, j)) * std::abs(whole(j, i)) <= part * rate * rate)
-        drop(A(i, j), part * rate);
+      if (i != j && std::abs(before(i, j)) * std::abs(before(j, i)) <= part * rate * rate)
+        look_at(A(i, j), rate);
   for (Index k = 0; k < C.rows(); ++k) {
     Index largest = 0;
     const double row = C.row(k).cwiseAbs().maxCoeff(&largest);
     for (Index j = 0; j < n; ++j)
-      if (std::abs(C(k, j)) * std::abs(whole(j, largest)) <= part * row * rate) drop(C(k, j), part * row);
+      if (std::abs(C(k, j)) * std::abs(before(j, largest)) <= part * row * rate) look_at(C(k, j), row);
   }
-  return dropped;
+  return changed;
+}
+
+}  // namespace
+
+bool drop_rounding(Matrix& A, Matrix& C) {
+  constexpr double part = 2.0 * std::numeric_limits<double>::epsilon();
+  return change_small(A, C, part, [](double& entry, double) { entry = 0.0; });
+}
+
+bool enlarge_small(Matrix& A, Matrix& C) {
+  return change_small(A, C, unclear_level(A.rows()),
+                      [](double& entry, double whole) { entry = std::copysign(whole, entry); });
 }
 
 }  // namespace garrison::detail

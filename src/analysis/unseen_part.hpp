@@ -36,4 +36,8 @@ Visibility examine(const Matrix& A, const Matrix& C, double least);
 /// when there are none.
 bool drop_rounding(Matrix& A, Matrix& C);
 
+/// Makes entries that are that small, up to unclear_level(), but not 0, as large as the others: what a mode
+/// would be seen by if they were not so small. False when there are none.
+bool enlarge_small(Matrix& A, Matrix& C);
+
 }  // namespace garrison::detail

@@ -34,9 +34,10 @@ struct GARRISON_EXPORT Visibility {
 /// least = 0: observable when all modes are seen; least = 1: detectable. Neither coordinates nor units of
 /// states and outputs matter: the pair is balanced first, and entries that are rounding only decide nothing.
 /// Up to 4 n eps, at most 500 eps, (relative distance) counts as unseen, up to 16000 n^1.5 eps, at most
-/// 1e-10, is unclear; in between, up to 16 n^1.5 eps, it is unseen if it counts as that in some units. A: n x
-/// n, n >= 1. C: m x n, m >= 0. About one QR decomposition of n columns per mode. Popov, Belevitch, Hautus;
-/// distance: Eising, Systems & Control Letters 1984. @throws InvalidInput
+/// 1e-10, is unclear; in between, up to 16 n^1.5 eps, it is unseen if it counts as that in some units. What
+/// would be seen if very small entries were large is unclear, not unseen. A: n x n, n >= 1. C: m x n, m >= 0.
+/// About one QR decomposition of n columns per mode. Popov, Belevitch, Hautus; distance: Eising, Systems &
+/// Control Letters 1984. @throws InvalidInput
 GARRISON_EXPORT Visibility visibility(const MatrixRef& A, const MatrixRef& C, double least);
 
 /// Modes of modulus >= least that are not surely seen: unseen and unclear ones of visibility().

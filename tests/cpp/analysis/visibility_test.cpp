@@ -345,3 +345,20 @@ TEST_CASE("the quick yes of observable() is the answer of visibility() at every 
   CHECK(yes > 500);
   CHECK(no > 500);
 }
+
+TEST_CASE("what only very small entries show is not surely unseen") {
+  const Matrix A{{1.0, 0.1}, {0.0, 1.0}};
+  for (const double small : {1e-13, 1e-15, 1e-17}) {
+    CAPTURE(small);
+    for (const double sign : {1.0, -1.0}) {
+      const Visibility v = visibility(A, Matrix{{sign * small, 1.0}}, 1.0);
+      CHECK(v.sight == Sight::unclear);
+      CHECK(v.unseen.empty());
+      CHECK(v.text().find("cannot tell") == 0);
+    }
+    CHECK(visibility(A, Matrix{{1.0, small}}, 1.0).sight == Sight::seen);
+    // One output sees one copy of a double mode, however large its entries are.
+    CHECK(visibility(Matrix::Identity(2, 2), Matrix{{small, 1.0}}, 1.0).sight == Sight::unseen);
+  }
+  CHECK(visibility(A, Matrix{{0.0, 1.0}}, 1.0).sight == Sight::unseen);
+}
