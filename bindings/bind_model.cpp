@@ -16,14 +16,13 @@ std::string at(const char* which, std::size_t k) {
 
 /// The entries of a list, one per agent.
 py::list per_agent(const std::string& which, const py::object& given, const std::string& expected) {
-  const char* to_array = py::hasattr(given, "toarray")    ? "toarray"
-                         : py::hasattr(given, "to_numpy") ? "to_numpy"
-                                                          : nullptr;
-  const py::object plain = to_array != nullptr ? given.attr(to_array)() : given;  // sparse, or a table
+  const py::object plain = py::hasattr(given, "toarray") ? convert::array(which, given, expected)  // sparse
+                           : py::hasattr(given, "to_numpy") ? given.attr("to_numpy")()             // a table
+                                                            : given;
   const bool can = !convert::scalar(plain) && !py::isinstance<py::str>(plain) &&
                    !py::isinstance<py::bytes>(plain) && !py::isinstance<py::dict>(plain);
   if (!can) refuse(which, convert::shown(plain), expected);
-  return py::list(plain);
+  return convert::listed(which, plain, expected);
 }
 
 /// C: one matrix per agent, or one N x n array with a row per agent. A flat list of n numbers is one row.

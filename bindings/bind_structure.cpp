@@ -26,9 +26,10 @@ py::array_t<int> numbers(std::vector<int> v) {
 }
 
 py::list list_of(const std::string& which, py::handle given) {
+  const char* const expected = "a state, None, or a list of states";
   if (py::isinstance<py::str>(given) || py::isinstance<py::dict>(given))
-    refuse(which, convert::shown(given), "a state, None, or a list of states");
-  return py::list(py::reinterpret_borrow<py::object>(given));
+    refuse(which, convert::shown(given), expected);
+  return convert::listed(which, given, expected);
 }
 
 /// measured: per agent a state, None, or a list of states.

@@ -70,17 +70,28 @@ std::optional<std::string> flag_in(py::handle value) {
   return std::nullopt;
 }
 
+bool is_sparse(py::handle given) { return py::hasattr(given, "toarray") && py::hasattr(given, "shape"); }
+
+/// Refuses what cannot be held with all its entries as doubles, as views of one number may pretend to.
+void require_room(const std::string& which, py::handle given) {
+  const py::object shape = attempt([&] { return py::object(given.attr("shape")); });
+  if (!shape || !py::isinstance<py::tuple>(shape)) return;
+  double entries = 1.0;
+  for (const auto& length : shape) {
+    if (!PyLong_Check(length.ptr())) return;
+    entries *= length.cast<double>();
+  }
+  garrison::require_memory(which,
+                           (is_sparse(given) ? "a sparse matrix of shape " : "an array of shape ") +
+                               py::str(shape).cast<std::string>(),
+                           8.0 * entries);
+}
+
 /// An ndarray of any dtype, with nan where entries are masked.
 py::array plain(const std::string& which, py::handle given, const std::string& expected) {
   py::object x = py::reinterpret_borrow<py::object>(given);
-  if (py::hasattr(x, "toarray") && py::hasattr(x, "shape")) {  // a sparse matrix
-    const auto shape = x.attr("shape").cast<py::tuple>();
-    double entries = 1.0;
-    for (const auto& length : shape) entries *= length.cast<double>();
-    garrison::require_memory(
-        which, "a sparse matrix of shape " + py::str(py::handle(shape)).cast<std::string>(), 8.0 * entries);
-    x = x.attr("toarray")();
-  }
+  require_room(which, x);
+  if (is_sparse(x)) x = x.attr("toarray")();
   if (is_masked_array(x)) {
     const auto kind = x.attr("dtype").attr("kind").cast<std::string>();
     if (std::string("biuf").find(kind) != std::string::npos)
@@ -127,6 +138,27 @@ std::string shown(py::handle given) {
 bool scalar(py::handle given) {
   if (!py::hasattr(given, "__iter__")) return true;
   return py::isinstance<py::array>(given) && py::reinterpret_borrow<py::array>(given).ndim() == 0;
+}
+
+py::list listed(const std::string& which, py::handle given, const std::string& expected) {
+  constexpr double kEntry = 40.0;  // bytes of a reference and a number
+  if (is_sparse(given))
+    refuse(which, "a sparse matrix", expected, "take .toarray(), or the numbers that are meant");
+  require_room(which, given);
+  Py_ssize_t length = PyObject_LengthHint(given.ptr(), 0);
+  if (length < 0) {
+    const bool beyond = PyErr_ExceptionMatches(PyExc_OverflowError) != 0;
+    PyErr_Clear();
+    length = beyond ? std::numeric_limits<Py_ssize_t>::max() : 0;
+  }
+  garrison::require_memory(which, garrison::text(static_cast<double>(length)) + " entries",
+                           kEntry * static_cast<double>(length));
+  try {
+    return {py::reinterpret_borrow<py::object>(given)};
+  } catch (const py::error_already_set& error) {  // what a generator raises is its owner's
+    if (!error.matches(PyExc_TypeError)) throw;
+    refuse(which, shown(given), expected);
+  }
 }
 
 double number(const std::string& which, py::handle given) {
@@ -216,10 +248,8 @@ std::string words(const std::string& which, py::handle given) {
 std::vector<std::string> names(const std::string& which, py::handle given) {
   if (PyUnicode_Check(given.ptr())) return {words(which, given)};
   const char* expected = "a list of names";
-  const py::object all = is_text(given) || PyDict_Check(given.ptr()) ? py::object() : attempt([&] {
-    return py::object(py::list(py::reinterpret_borrow<py::object>(given)));
-  });
-  if (!all) refuse(which, shown(given), expected);
+  if (is_text(given) || PyDict_Check(given.ptr())) refuse(which, shown(given), expected);
+  const py::list all = listed(which, given, expected);
   std::vector<std::string> list;
   for (const auto& one : all) list.push_back(words(which + "[" + std::to_string(list.size()) + "]", one));
   return list;

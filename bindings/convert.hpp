@@ -23,6 +23,10 @@ std::string shown(py::handle given);
 /// One value: nothing to iterate over, or an array without dimensions.
 bool scalar(py::handle given);
 
+/// What can be iterated over, as a list; no sparse matrix. Refuses, with the memory it would take, what is
+/// too long (`range(10**10)`); `expected` ends a refusal.
+py::list listed(const std::string& which, py::handle given, const std::string& expected);
+
 /// A real number; no bool, text, complex or masked value.
 double number(const std::string& which, py::handle given);
 /// A whole number of any size (2.0 is one); no bool.

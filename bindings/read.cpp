@@ -57,7 +57,7 @@ py::object read_list(const ArgumentType& type, const std::string& which, py::han
     const auto numbers = convert::array(which,
                                         py::isinstance<py::array>(given)
                                             ? py::reinterpret_borrow<py::object>(given)
-                                            : py::object(py::list(py::reinterpret_borrow<py::object>(given))),
+                                            : py::object(convert::listed(which, given, "a list of numbers")),
                                         "a list of numbers");
     if (numbers.ndim() != 1)
       refuse(which, "an array of shape " + py::str(numbers.attr("shape")).cast<std::string>(),
@@ -65,7 +65,7 @@ py::object read_list(const ArgumentType& type, const std::string& which, py::han
     return numbers.attr("tolist")();
   }
   std::size_t k = 0;
-  for (const auto& one : py::list(py::reinterpret_borrow<py::object>(given)))
+  for (const auto& one : convert::listed(which, given, type.expected()))
     all.append(read_entry(inner, which + "[" + std::to_string(k++) + "]", one));
   return all;
 }
@@ -75,7 +75,7 @@ py::object read_tuple(const ArgumentType& type, const std::string& which, py::ha
       py::hasattr(given, "__iter__") && !PyUnicode_Check(given.ptr()) && !PyDict_Check(given.ptr());
   // A 0-d array has __iter__ and no values.
   const bool scalar = py::hasattr(given, "ndim") && given.attr("ndim").cast<int>() == 0;
-  const py::list parts = can && !scalar ? py::list(py::reinterpret_borrow<py::object>(given)) : py::list();
+  const py::list parts = can && !scalar ? convert::listed(which, given, type.expected()) : py::list();
   if (parts.size() != type.of.size())
     refuse(which, can ? std::to_string(parts.size()) + " values" : convert::shown(given), type.expected());
   py::tuple all(type.of.size());
@@ -136,7 +136,7 @@ py::object read(const ArgumentType& type, const std::string& which, py::handle g
       if (convert::scalar(given) || PyUnicode_Check(given.ptr()) || PyBytes_Check(given.ptr()) ||
           PyDict_Check(given.ptr()))
         refuse(which, convert::shown(given), type.expected());
-      return py::list(py::reinterpret_borrow<py::object>(given));
+      return convert::listed(which, given, type.expected());
     case Kind::map:
       if (!PyMapping_Check(given.ptr()) || !py::hasattr(given, "keys"))
         refuse(which, convert::shown(given), type.expected());

@@ -11,11 +11,14 @@ import numpy as np
 from garrison import _core
 from garrison.files import contents
 from garrison.numeric import Array, numbers, real, whole_of
+from garrison.sizes import require_room
 from garrison.words import near, only, refusal, shown
 
 T = TypeVar("T")
 _MOST = 2**31 - 1
 _HUGE = 1e150
+#: doubles that a Python number in a list takes
+_NUMBERS = 5.0
 
 
 def whole(which: str, value: Any, least: int, most: int = _MOST) -> int:
@@ -32,6 +35,9 @@ def entries(which: str, value: Any, expected: str) -> list[Any]:
     """What a list, an array or another iterable holds; words and mappings are none of them."""
     if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable) or getattr(value, "ndim", 1) == 0:
         raise refusal(which, shown(value), expected)
+    if hasattr(value, "toarray"):
+        raise refusal(which, "a sparse matrix", expected, "take .toarray(), or the numbers that are meant")
+    require_room(which, value, _NUMBERS)
     return list(value)
 
 

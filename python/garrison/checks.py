@@ -9,7 +9,7 @@ from garrison.arguments import number
 from garrison.expected import expected_certificate
 from garrison.notebook import of_check
 from garrison.result import Result
-from garrison.words import hinted, hinted_methods, require_order
+from garrison.words import hinted, hinted_methods, refusal, require_order, shown
 
 
 @hinted_methods
@@ -37,6 +37,8 @@ class Check(Result):
 
     def __getitem__(self, name: str) -> float:
         """Value of the condition or quantity `name`."""
+        if not isinstance(name, str):
+            raise refusal("Check[...]", shown(name), "the name of a condition or quantity")
         entries = [*self.conditions, *self.quantities]
         for entry in entries:
             if entry["name"] == name:

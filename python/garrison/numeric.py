@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.sizes import require_room
 from garrison.words import refusal, shown
 
 Array = NDArray[np.float64]
@@ -20,6 +21,7 @@ def numbers(which: str, value: Any, *, flags: bool = False) -> Array:
     """
     if not flags and (at := _flag_in(value)) is not None:
         raise refusal(f"{which}{at[0]}", shown(at[1]), "a number")
+    require_room(which, value)
     try:
         found = np.asarray(_plain(value))
     except (ValueError, TypeError) as error:

@@ -1,6 +1,8 @@
 """Sizes without sense are refused before anything is allocated."""
 
+import math
 import os
+from typing import Any
 
 from garrison.words import refusal
 
@@ -28,3 +30,15 @@ def require_memory(which: str, got: str, doubles: float) -> None:
             f"at most {limit / 1e9:g} GB",
             f"set {VARIABLE} if this machine has more",
         )
+
+
+def require_room(which: str, value: Any, each: float = 1.0) -> None:
+    """Refuse what is too large with all its entries, as views of one number may pretend to be, and long ranges.
+
+    each: how many doubles an entry takes.
+    """
+    shape = getattr(value, "shape", None)
+    if isinstance(value, range):
+        require_memory(which, f"{value}", each * min(1e18, max(0, (value.stop - value.start) // value.step)))
+    elif isinstance(shape, tuple) and all(isinstance(length, int) for length in shape):
+        require_memory(which, f"an array of shape {shape}", each * math.prod(shape))

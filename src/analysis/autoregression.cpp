@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/solvers.hpp"
+#include "giant_record.hpp"
 
 namespace garrison {
 namespace {
@@ -56,9 +57,11 @@ Regression regressed(const MatrixRef& z, const MatrixRef& u, int order, const st
            "at least " + std::to_string(10 * X.cols()) + " for order " + std::to_string(order),
            "use more records, a smaller order or fewer stations");
   const Eigen::ColPivHouseholderQR<Matrix> qr(X);
-  if (qr.rank() < X.cols())
+  if (qr.rank() < X.cols()) {
+    detail::refuse_giant_record(z, z);
     refuse("records", "stations or inputs that depend on each other", "independent ones",
            "leave out what follows from the others");
+  }
   Regression found;
   found.coefficients = qr.solve(Y);
   const Matrix E = Y - X * found.coefficients;

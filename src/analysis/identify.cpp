@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/solvers.hpp"
+#include "giant_record.hpp"
 
 namespace garrison {
 namespace {
@@ -159,8 +160,8 @@ Matrix anomalies(const MatrixRef& raw, std::int64_t first, const FitOptions& opt
 Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& options) {
   Identified m;
   m.options = options;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(
-      pairwise_covariance(anomalies(raw, first, options, m.season)));
+  const Matrix deviations = anomalies(raw, first, options, m.season);
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(pairwise_covariance(deviations));
   const auto N = raw.cols();
   const auto n = options.factors;
   m.share = eigen.eigenvalues().reverse().head(n) / eigen.eigenvalues().sum();
@@ -169,9 +170,11 @@ Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& 
     if (loadings.col(k).sum() < 0.0) loadings.col(k) *= -1.0;
   m.scale = loadings.rowwise().norm();
   for (Eigen::Index i = 0; i < N; ++i)
-    if (!(m.scale(i) > 1e-9))
+    if (!(m.scale(i) > 1e-9)) {
+      detail::refuse_giant_record(deviations, raw);
       refuse("station " + std::to_string(i), "no share in the factors",
              "a station that varies with the others", "leave it out or use more factors");
+    }
   m.C = m.scale.cwiseInverse().asDiagonal() * loadings;
   const Matrix y = measurements(m, raw, first);
   const Matrix x = reference_states(m, y);
