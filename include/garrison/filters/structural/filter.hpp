@@ -109,7 +109,7 @@ struct GARRISON_EXPORT Structural {
     if (carries(g)) {
       fresh.P.assign(structural::entries(nn), 0.0);
       fresh.work.assign(4 * structural::entries(nn), 0.0);
-      fresh.whole = when_whole<n>(l, g);
+      fresh.whole = when_whole(l, g);
     }
     fresh.pace = g.rho > 0.0 && g.rho < 1.0 ? -1.0 / std::log(g.rho) : 0.0;
     fresh.senders.assign(fresh.left_out.size(), 0);
@@ -118,9 +118,9 @@ struct GARRISON_EXPORT Structural {
     s = std::move(fresh);
     s.start = s.rest = g.settle;
     if (g.settle == 0)
-      settle(l, g, s);
+      settle(l, g, s.P);
     else
-      begin(l, g, s, kStartVariance);
+      begin(l, g, s.P, kStartVariance);
     m.measured = m.withheld = false;
     m.rest = g.settle;
     m.numbers.setZero(nn + 1);
@@ -189,7 +189,7 @@ struct GARRISON_EXPORT Structural {
     }
     if (!usable<n>(s.x)) s.x.setZero();
     s.prior = s.x;
-    begin(l, g, s, kStartVariance);
+    begin(l, g, s.P, kStartVariance);
     uncover<n>(g, s);
   }
   template <int n>
@@ -303,8 +303,7 @@ struct GARRISON_EXPORT Structural {
   /// c_i'K_i c_i
   static double reaction(const Gains& g, int id, int nn) noexcept;
   /// P of an estimate of which nothing is known: a diagonal, `factor` times the stationary variances.
-  template <int n>
-  static void begin(const Local& l, const Gains& g, State<n>& s, double factor) noexcept;
+  static void begin(const Local& l, const Gains& g, std::vector<double>& P, double factor) noexcept;
   /// The variance of state k in the stationary error. One that is zero up to rounding, as where measurements
   /// have no noise, is no measure of what a gap does: then it is a small part of what one step adds.
   static double variance(const Gains& g, const double* settled, int k, int nn) noexcept {
@@ -312,14 +311,11 @@ struct GARRISON_EXPORT Structural {
     return std::max(settled[at], 1e-9 * g.process[at]);
   }
   /// The largest of them.
-  template <int n>
   static double largest_settled(const Local& l, const Gains& g) noexcept;
   /// P = the covariance of the stationary error.
-  template <int n>
-  static void settle(const Local& l, const Gains& g, State<n>& s) noexcept;
+  static void settle(const Local& l, const Gains& g, std::vector<double>& P) noexcept;
   /// I - sum K_i c_j c_j', column by column, and sum R_jj K_i c_j (K_i c_j)', over all measurements that are
   /// due.
-  template <int n>
   static std::vector<double> when_whole(const Local& l, const Gains& g);
   /// Finds out who sent each message, and whose is missing.
   template <int n>

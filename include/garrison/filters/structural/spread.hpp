@@ -118,10 +118,8 @@ GARRISON_INLINE double quadratic(const double* S, const double* c, int nn) noexc
   return sum;
 }
 /// out += factor * (S c)(S c)'
-template <int n>
-GARRISON_INLINE void add_seen_outer(const double* S, const double* c, double factor, int nn,
-                                    double* __restrict__ out) noexcept {
-  const int size = n == Dynamic ? nn : n;
+inline void add_seen_outer(const double* S, const double* c, double factor, int size,
+                           double* __restrict__ out) noexcept {
   const auto seen = [&](int i) {
     double row = 0.0;
     for (int k = 0; k < size; ++k) row += S[static_cast<std::ptrdiff_t>(i) * size + k] * c[k];

@@ -23,37 +23,34 @@ inline double Structural::reaction(const Gains& g, int id, int nn) noexcept {
   return sum;
 }
 
-template <int n>
-void Structural::begin(const Local& l, const Gains& g, State<n>& s, double factor) noexcept {
+inline void Structural::begin(const Local& l, const Gains& g, std::vector<double>& P,
+                              double factor) noexcept {
   if (!carries(g)) return;
-  const int nn = dimension<n>(l);
+  const int nn = l.states;
   const double* settled = stationary(g, l.id, nn);
-  const double most = largest_settled<n>(l, g);
-  std::fill(s.P.begin(), s.P.end(), 0.0);
+  const double most = largest_settled(l, g);
+  std::fill(P.begin(), P.end(), 0.0);
   for (int k = 0; k < nn; ++k) {
     const double usual = variance(g, settled, k, nn);
-    s.P[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] =
+    P[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] =
         factor * (usual > 0.0 ? usual : most);
   }
 }
 
-template <int n>
-double Structural::largest_settled(const Local& l, const Gains& g) noexcept {
-  const int nn = dimension<n>(l);
+inline double Structural::largest_settled(const Local& l, const Gains& g) noexcept {
+  const int nn = l.states;
   const double* settled = stationary(g, l.id, nn);
   double most = 0.0;
   for (int k = 0; k < nn; ++k) most = std::max(most, variance(g, settled, k, nn));
   return most;
 }
 
-template <int n>
-void Structural::settle(const Local& l, const Gains& g, State<n>& s) noexcept {
-  if (carries(g)) std::copy_n(stationary(g, l.id, dimension<n>(l)), s.P.size(), s.P.data());
+inline void Structural::settle(const Local& l, const Gains& g, std::vector<double>& P) noexcept {
+  if (carries(g)) std::copy_n(stationary(g, l.id, l.states), P.size(), P.data());
 }
 
-template <int n>
-std::vector<double> Structural::when_whole(const Local& l, const Gains& g) {
-  const int nn = dimension<n>(l);
+inline std::vector<double> Structural::when_whole(const Local& l, const Gains& g) {
+  const int nn = l.states;
   const std::size_t size = structural::entries(nn);
   std::vector<double> both(2 * size, 0.0);
   for (int k = 0; k < nn; ++k) both[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] = 1.0;
@@ -62,8 +59,8 @@ std::vector<double> Structural::when_whole(const Local& l, const Gains& g) {
     const Heard& j = g.heard[static_cast<std::size_t>(at)];
     if (!expects(g, j)) continue;
     const double* column = g.columns.data() + j.first;
-    structural::add_outer<1, n>(row(g, j.id, nn), column, -1.0, nn, both.data());
-    structural::add_outer<1, n>(column, column, g.noise[static_cast<std::size_t>(j.id)], nn,
+    structural::add_outer<1, Dynamic>(row(g, j.id, nn), column, -1.0, nn, both.data());
+    structural::add_outer<1, Dynamic>(column, column, g.noise[static_cast<std::size_t>(j.id)], nn,
                                 both.data() + size);
   }
   return both;
@@ -179,8 +176,8 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     if (carried) growth = std::max(growth, again ? kHaste : g.doubt[static_cast<std::size_t>(j.id)]);
     if (by_level && used_before && carried) {
       const double* c = row(g, j.id, nn);
-      const double spread = structural::quadratic<n>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
-      if (spread > 0.0) structural::add_seen_outer<n>(prior, c, g.surprise / spread, nn, more);
+      const double spread = structural::quadratic<Dynamic>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
+      if (spread > 0.0) structural::add_seen_outer(prior, c, g.surprise / spread, nn, more);
     }
     before = again ? Trust::out_again : Trust::out;
   };
@@ -190,7 +187,7 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
       const auto id = static_cast<std::size_t>(heard[e].id);
       const double* c = row(g, heard[e].id, nn);
       const double usual = kBlind * g.innovation_std[id];
-      const bool far = carried && structural::quadratic<n>(prior, c, nn) + g.noise[id] > usual * usual;
+      const bool far = carried && structural::quadratic<Dynamic>(prior, c, nn) + g.noise[id] > usual * usual;
       trust = far ? Trust::followed : Trust::trusted;
     } else if (trust == Trust::out_again) {
       trust = Trust::returning;
@@ -257,8 +254,8 @@ GARRISON_INLINE void Structural::update_spread(const Local& l, const Gains& g, S
   }
   structural::add_congruence<B, n>(G, prior, nn, half, s.P.data());
   // Messages of a liar may have made it anything.
-  if (!structural::is_covariance<B, n>(s.P.data(), largest_settled<n>(l, g), kMostVariance, nn, half))
-    begin(l, g, s, kMostVariance);
+  if (!structural::is_covariance<B, n>(s.P.data(), largest_settled(l, g), kMostVariance, nn, half))
+    begin(l, g, s.P, kMostVariance);
 }
 
 template <int n>
@@ -286,7 +283,7 @@ void Structural::pass(const Local& l, const Gains& g, State<n>& s, bool whole) n
     s.rest = std::max(s.rest, static_cast<int>(most));
     return;
   }
-  if (s.rest > 0 && --s.rest == 0) settle(l, g, s);
+  if (s.rest > 0 && --s.rest == 0) settle(l, g, s.P);
 }
 
 }  // namespace garrison
