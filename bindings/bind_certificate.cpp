@@ -307,7 +307,7 @@ LossState state_of(const std::pair<int, double>& s, int t) {
   if (!(s.second >= 0.0)) refuse("x", text(s.second), "a number >= 0");
   return {s.first, s.second};
 }
-std::pair<int, double> from_state(const LossState& s) { return {s.lam, s.x}; }
+std::pair<int, double> from_state(const LossState& s) { return {static_cast<int>(s.lam), s.x}; }
 
 int agent_of(const Recovery& r, int agent) {
   if (agent < 0 || agent >= r.rb().cols())

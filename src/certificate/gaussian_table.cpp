@@ -54,7 +54,9 @@ GaussianTable gaussian_table(const Kernels& k, const TableOptions& options, cons
   const Gains none = Gains::Zero(k.window() + 1, N);
   detail::Recursion recursion(k, options, none, none);
   const Vector b = Vector::Zero(N);
-  GaussianTable result{{}, Gains::Constant(options.T + 1, N, kInfinity), static_cast<int>(s.states())};
+  GaussianTable result;
+  result.deviation = Gains::Constant(options.T + 1, N, kInfinity);
+  result.states = static_cast<int>(s.states());
   result.deviation.row(0).setZero();
   Matrix P = Matrix::Zero(s.M.rows(), s.M.cols());
   result.table = recursion.run([&](int t, const Vector& eta) {
@@ -67,6 +69,8 @@ GaussianTable gaussian_table(const Kernels& k, const TableOptions& options, cons
       covariance_limit(s.M, next_covariance(s, Matrix::Zero(s.M.rows(), s.M.cols()), Q, R));
   if (limit) {
     const Vector sigma = (1.0 + 1e-9) * innovation_deviations(s, *limit, Q, R);
+    result.deviation_for_ever = (1.0 + 1e-9) * block_deviations(s, *limit);
+    result.innovation_for_ever = sigma;
     result.table.steady = recursion.steady(
         result.table, [&](const Vector& eta) { return recursion.inputs(eta + z * sigma, b); });
   }

@@ -181,7 +181,7 @@ class PartEngine final : public PartRunner {
     });
     // Whether all agents of the network carry the same side information: all here alike, and as on rank 0.
     std::int64_t counts[] = {average_.lost(), static_cast<std::int64_t>(states_.size()) - intact,
-                             states_[0].intact ? 1 : 0, states_[0].proved.size() > 0 ? 1 : 0};
+                             states_[0].intact ? 1 : 0, F::template bare<n>(states_[0]) ? 0 : 1};
     exchange_.sum(counts);
     const bool alike = counts[1] == 0 && (counts[2] == 0 || counts[2] == exchange_.ranks()) && counts[3] == 0;
     if (counts[0] == 0 && alike) {

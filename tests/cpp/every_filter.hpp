@@ -36,6 +36,13 @@ inline std::vector<std::shared_ptr<const AnyFilter>> every_filter(bool bounded =
     adaptive.insert({"adaptive", true});
     all.push_back(make_filter("saturation", detector));
     all.push_back(make_filter("saturation", adaptive));
+    ParamMap gaussian = detector;
+    gaussian.insert({{"table", true}, {"failure", 1e-3}, {"horizon", std::int64_t{15}}});
+    all.push_back(make_filter("saturation", gaussian));
+    for (ParamMap* lossy : {&detector, &adaptive}) {
+      lossy->insert({{"table", true}, {"recovery", true}});
+      all.push_back(make_filter("saturation", *lossy));
+    }
     all.push_back(
         make_filter("rdkf", {{"weight", 0.5}, {"penalty", std::string("huber")}, {"initial_error", 2.0}}));
   }

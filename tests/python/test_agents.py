@@ -19,6 +19,9 @@ FILTERS = [
     gr.filters.Rdkf(weight=0.5),
     gr.filters.Rdkf(weight=0.5, penalty="group"),
     gr.filters.PartialSharing(gain=0.1, shared=1),
+    gr.filters.Saturation(
+        threshold=0.5, rounds=12, attacked=1, initial_error=3.0, detector=True, table=True, recovery=True
+    ),
 ]
 #: vehicles: test_platoon.py; a family that is in neither list runs as it comes
 VEHICLES = {"platoon", "platoon_baseline"}

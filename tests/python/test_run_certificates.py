@@ -159,6 +159,22 @@ def test_the_data_free_table_bounds_where_the_published_bound_ends() -> None:
     assert table_bound == pytest.approx(calm.bound[0, -1].max(), rel=2e-3)
 
 
+def test_bounds_and_tests_go_on_after_lost_messages_and_agents_of_messages_have_the_same_bits() -> None:
+    model, network, _ = parts()
+    options = {"threshold": 1.0, "rounds": 12, "attacked": 1, "initial_error": 2.0, "detector": True, "table": True}
+    attack = gr.attacks.Bias(agents=[2], value=90.0, start=40)
+    told: dict[str, Any] = {"steps": 60, "attack": attack, "conditions": False, "link": {"cuts": [(5, None, 10, 14)]}}
+    ended = gr.simulate(model, network, gr.filters.Saturation(**options), **told)
+    assert np.isnan(ended.bound[0, 20:]).all()
+    assert not any(s for _, _, sets in ended.accusations for s in sets)
+    filt = gr.filters.Saturation(**options, recovery=True)
+    run = gr.simulate(model, network, filt, **told)
+    assert (run.bound_kind[0, 14:] == gr.BoundKind.RECOVERED).all()
+    assert (run.error <= run.bound).all()
+    assert run.bound[0, -1].max() < 1.01 * gr.check(model, network, filt)["table bound"]
+    assert all(2 in s for s in run.accusations[-1][2])
+
+
 def test_a_bound_for_fewer_liars_does_not_stand_in_for_the_certificate() -> None:
     """One of eight lies; the filter was told of none, the certificate of one."""
     model, network, _ = parts()

@@ -12,6 +12,9 @@ struct GaussianTable {
   /// does.
   Table table;
   Gains deviation;  ///< sqrt(lmax(P_ii(t))), row t = 0..T, column = agent
+  /// What `deviation`, and the deviation of honest innovations' noise, never exceed, N numbers; empty where M is
+  /// not Schur.
+  Vector deviation_for_ever{}, innovation_for_ever{};
 
   /// Bounds of all agents at t: ||e_i(t)|| <= d_i(t) + chi_n(delta) deviation_i(t), failing with probability
   /// <= N T Q(z) + delta for each (i, t). @throws InvalidInput for t outside 0..T, delta outside (0, 1)

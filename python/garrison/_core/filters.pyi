@@ -36,6 +36,9 @@ class Saturation(garrison._core.Filter):
     adaptive: let the threshold follow the known bound on honest innovations (not in the paper; needs initial_error)
     accuse_missing: detector: a missing (NaN) measurement counts as proof of attack
     table: also bound errors, and with detector or adaptive threshold honest innovations, by the data-free table (docs/certificates.md, theorem T): a bound that outlives the proof of all attackers. Design takes the time of (agents times states)^3
+    recovery: with table: go on after lost messages (docs/certificates.md, theorem L). The bound is that of the table and an excess that fades once messages arrive again, and the detector goes on testing. Agents that a loss lies behind send up to 32 bytes more
+    failure: with table: above 0 it is that of Gaussian noise with the model's covariances, for which no noise bounds are needed (theorem TG), and the whole run has this probability at most that anything it says is false: a bound, or an accusation, of any agent at any of the samples 1 to horizon, >= 0, <= 1
+    horizon: with failure: the samples that it is shared by; after them the table says nothing [samples], >= 0
     """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
@@ -54,6 +57,9 @@ class Saturation(garrison._core.Filter):
         adaptive: bool = False,
         accuse_missing: bool = False,
         table: bool = False,
+        recovery: bool = False,
+        failure: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        horizon: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
     def __reduce__(self) -> tuple: ...
     def __setstate__(self, arg0: dict) -> None: ...

@@ -164,22 +164,39 @@ void add_adaptive(Check& c, const Setting& s, double varpi) {
        settles ? "limsup ||error|| with the adaptive threshold" : "the bounds do not settle"});
 }
 
+/// How fast the excess fades that lost messages leave.
+void add_recovery(Check& c, const certificate::Recovery& excess) {
+  const double left = excess.left();
+  const std::string window = std::to_string(excess.window());
+  c.conditions.push_back({"excess after lost messages fades", left, "< 1", left < 1.0,
+                          left < 1.0
+                              ? "once messages arrive again, so much of it is left every " + window +
+                                    " samples at most (theorem L)"
+                              : "bounds after a lost message hold, but may stay large or grow: take more "
+                                "rounds, or a smaller attacked",
+                          false});
+}
+
 /// The data-free bound, at the start and for ever.
 void add_table(Check& c, const Saturation::Params& p, const Model& model, const Network& network,
                const saturation::detail::Rates& rates) {
-  const auto table = data_free(
-      model, network,
-      {p.attacked, p.initial_error, p.adaptive ? kNaN : p.threshold, rates.alpha, rates.omega, p.rounds});
+  auto options = saturation::detail::table_options(p, rates);
+  options.detector = false;  // nothing here asks for theorem I
+  const auto table = data_free(model, network, options);
+  const bool gaussian = p.failure > 0.0;
+  const std::string theorem = gaussian ? "theorem TG" : "theorem T";
   const double first = table.d.row(1).maxCoeff();
   const double last = table.d.row(table.d.rows() - 1).maxCoeff();
   const bool settles = std::isfinite(last);
-  c.quantities.push_back({"table bound, first sample", first, "||error|| of any agent at t = 1, theorem T"});
+  c.quantities.push_back({"table bound, first sample", first, "||error|| of any agent at t = 1, " + theorem});
   c.quantities.push_back(
       {"table bound", settles ? last : kNaN,
        settles ? "||error|| of any agent from t = " + std::to_string(table.d.rows() - 1) +
-                     " on, theorem T, whatever " + std::to_string(p.attacked) +
-                     " sensors say and whoever is informed"
-               : "theorem T gives no bound for ever: take more rounds, or a smaller attacked"});
+                     (gaussian ? " to " + std::to_string(p.horizon) : " on") + ", " + theorem +
+                     ", whatever " + std::to_string(p.attacked) + " sensors say and whoever is informed" +
+                     (gaussian ? "; with probability " + text(p.failure) + " at most any of it is false" : "")
+               : theorem + " gives no bound for ever: take more rounds, or a smaller attacked"});
+  if (p.recovery) add_recovery(c, table.losses.excess);
 }
 
 }  // namespace
@@ -203,11 +220,21 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   const bool unit = scalar_unit_rows(model);
   c.conditions.push_back({"one output of unit length per agent", unit ? 1.0 : 0.0, "= 1", unit,
                           "assumption of all bounds; see normalise_rows and split_outputs", bound_asked});
-  const bool noise_known =
-      !std::isnan(model.noise().process_bound) && model.noise().measurement_bound.size() > 0;
-  c.conditions.push_back({"noise bounds known", noise_known ? 1.0 : 0.0, "= 1", noise_known,
-                          "process_bound and measurement_bound of the model, for all bounds", bound_asked});
+  const Noise& noise = model.noise();
+  const bool gaussian = p.failure > 0.0;
+  const bool noise_known = gaussian
+                               ? noise.process_covariance.size() > 0 && !noise.measurement_covariance.empty()
+                               : !std::isnan(noise.process_bound) && noise.measurement_bound.size() > 0;
+  c.conditions.push_back(
+      gaussian ? Condition{"noise covariances known", noise_known ? 1.0 : 0.0, "= 1", noise_known,
+                           "process_covariance and measurement_covariance of the model, for the table", true}
+               : Condition{"noise bounds known", noise_known ? 1.0 : 0.0, "= 1", noise_known,
+                           "process_bound and measurement_bound of the model, for all bounds", bound_asked});
   if (!unit) return c;
+  if (gaussian) {
+    if (noise_known) add_table(c, p, model, network, rates);
+    return c;
+  }
   const auto facts = saturation::detail::facts(model, p.attacked, true);
   const Matrix C = saturation::detail::sensor_rows(model);
   c.quantities.push_back({"||A||", facts.a, "largest growth of an error per step"});

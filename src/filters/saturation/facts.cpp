@@ -12,6 +12,25 @@ namespace {
 constexpr double kCleanGamma = 1e-14;  // complete graphs: rounding leaves 1e-17 where gamma is 0
 }
 
+namespace {
+/// What a table for Gaussian noise goes with.
+void require_gaussian(const Saturation::Params& p) {
+  if (!(p.failure > 0.0 && p.failure < 1.0))
+    refuse("saturation.failure", text(p.failure), "a probability in (0, 1) with horizon");
+  if (p.horizon < 1)
+    refuse("saturation.horizon", std::to_string(p.horizon), "a number of samples >= 1 with failure",
+           "all of them share the failure probability");
+  if (!p.table)
+    refuse("saturation.failure", text(p.failure), "0 without table", "it is the table's: set table = true");
+  if (p.adaptive)
+    refuse("saturation.adaptive", "true", "false with failure",
+           "the adaptive threshold outlives the horizon, and needs noise bounds then");
+  if (p.recovery)
+    refuse("saturation.recovery", "true", "false with failure",
+           "relayed bounds need noise bounds; a certificate of the data does not");
+}
+}  // namespace
+
 void require_parameters(const Saturation::Params& p, const Model& model) {
   if (std::isnan(p.threshold) && !p.adaptive)
     refuse("saturation.threshold", "no value, or nan", "a number > 0 (inf = never saturate)",
@@ -32,6 +51,10 @@ void require_parameters(const Saturation::Params& p, const Model& model) {
   if (p.table && !bounded)
     refuse("saturation.table", "true", "false without initial_error and a finite threshold",
            "the table starts from a bound on the initial error");
+  if (p.failure > 0.0 || p.horizon > 0) require_gaussian(p);
+  if (p.recovery && !p.table)
+    refuse("saturation.recovery", "true", "false without table",
+           "it goes on from the table: set table = true");
   if (p.detector && !bounded)
     refuse("saturation.threshold", text(p.threshold), "a finite number with the detector",
            "thresholds build on it");
@@ -80,6 +103,19 @@ Facts facts(const Model& model, int attacked, bool with_varpi) {
   if (const auto exact = varpi_enumerated(C, model.A(), attacked, limits))
     f.varpi = std::min(f.varpi, exact->upper);
   return f;
+}
+
+DataFreeOptions table_options(const Saturation::Params& p, const Rates& rates) {
+  return {.attacked = p.attacked,
+          .initial_error = p.initial_error,
+          .beta = p.adaptive ? kNaN : p.threshold,
+          .alpha = rates.alpha,
+          .omega = rates.omega,
+          .rounds = p.rounds,
+          .detector = p.detector,
+          .recovery = p.recovery,
+          .failure = p.failure,
+          .horizon = p.horizon};
 }
 
 Setting setting(const Saturation::Params& p, const Model& model, const Facts& facts, const Rates& rates) {

@@ -41,6 +41,9 @@ struct Facts {
 };
 Facts facts(const Model& model, int attacked, bool with_varpi);
 
+/// What the data-free table is made for.
+DataFreeOptions table_options(const Saturation::Params& p, const Rates& rates);
+
 Setting setting(const Saturation::Params& p, const Model& model, const Facts& facts, const Rates& rates);
 
 }  // namespace garrison::saturation::detail

@@ -11,12 +11,17 @@ namespace {
 
 using saturation::detail::Facts;
 
-/// What every run-time bound rests on; the first thing that is missing is named.
-void require_bound_assumptions(const Model& model) {
+/// What every run-time bound rests on; the first thing that is missing is named. Noise within bounds, or
+/// Gaussian.
+void require_bound_assumptions(const Model& model, bool gaussian) {
   const Noise& noise = model.noise();
-  if (std::isnan(noise.process_bound) || noise.measurement_bound.size() == 0)
+  if (!gaussian && (std::isnan(noise.process_bound) || noise.measurement_bound.size() == 0))
     refuse("model", "no process_bound or no measurement_bound", "both",
-           "an error bound needs bounded noise; leave initial_error out to run without");
+           "an error bound needs bounded noise; leave initial_error out to run without, or take a table with "
+           "failure > 0 for Gaussian noise");
+  if (gaussian && (noise.process_covariance.size() == 0 || noise.measurement_covariance.empty()))
+    refuse("model", "no process_covariance or no measurement_covariance", "both",
+           "saturation.failure > 0 means Gaussian noise of these covariances");
   for (int i = 0; i < model.agents(); ++i) {
     if (model.outputs(i) > 1)
       refuse("C[" + std::to_string(i) + "]", std::to_string(model.outputs(i)) + " rows",
@@ -45,21 +50,24 @@ Saturation::Gains Saturation::design(const Params& p, const Model& model, const 
   g.adaptive = p.adaptive;
   g.accuse_missing = p.accuse_missing;
   g.beta = p.adaptive ? kInfinity : p.threshold;
-  g.bounded = !std::isnan(p.initial_error) && (p.adaptive || std::isfinite(p.threshold));
+  const bool gaussian = p.failure > 0.0;
+  g.bounded = !gaussian && !std::isnan(p.initial_error) && (p.adaptive || std::isfinite(p.threshold));
   const bool spectrum_needed = std::isnan(p.step) || p.chebyshev || g.bounded ||
                                !saturation::detail::surely_contracts(network, p.step);
   const auto rates = spectrum_needed ? saturation::detail::rates(network, p.step, p.rounds, p.chebyshev)
                                      : saturation::detail::Rates{.alpha = p.step, .omega = {}};
   g.alpha = rates.alpha;
   g.omega = rates.omega;
-  if (!g.bounded) return g;
-  require_bound_assumptions(model);
+  if (!g.bounded && !gaussian) return g;
+  require_bound_assumptions(model, gaussian);
+  if (p.table) g.table = saturation::data_free(model, network, saturation::detail::table_options(p, rates));
+  if (gaussian) {
+    g.setting.agents = model.agents();
+    g.setting.attacked = p.attacked;
+    return g;
+  }
   const Facts facts = saturation::detail::facts(model, p.attacked, p.adaptive);
   g.setting = saturation::detail::setting(p, model, facts, rates);
-  if (p.table)
-    g.table = saturation::data_free(model, network,
-                                    {p.attacked, p.initial_error, p.adaptive ? kNaN : p.threshold, g.alpha,
-                                     g.omega, g.rounds, p.detector});
   if (p.adaptive) {
     g.varpi = facts.varpi;
     return g;

@@ -236,11 +236,19 @@ TEST_CASE("the tables of informed agents: every place that leads out of them is 
   good.proved.first = {0, 2, 5};
   good.proved.fade = good.proved.noise = Matrix::Ones(5, 3);
   good.proved.later = Matrix::Ones(3, 2);
-  CHECK(good.fits(1, 3));
+  const auto system = certificate::error_system(Matrix::Constant(1, 1, 0.5), Matrix::Ones(3, 1),
+                                                Matrix::Constant(3, 3, 1.0 / 3.0));
+  good.losses.excess = certificate::Recovery(certificate::kernels(system, 2), 1);
+  good.losses.predicted = Vector::Ones(4);
+  good.losses.spread = Vector::Ones(6);
+  good.losses.reach = good.losses.width = Vector::Ones(3);
+  CHECK(good.fits(1, 3, 5));
+  CHECK(good.of(1).fits(1, 3, 5));
+  CHECK(!good.of(1).fits(2, 3, 5));
   const auto refused = [&](const auto& change) {
     saturation::DataFree bad = good;
     change(bad);
-    return !bad.fits(1, 3);
+    return !bad.fits(1, 3, 5);
   };
   using Table = saturation::DataFree;
   CHECK(refused([](Table& t) { t.d.resize(4, 2); }));
@@ -259,4 +267,10 @@ TEST_CASE("the tables of informed agents: every place that leads out of them is 
   CHECK(refused([](Table& t) { t.proved.fade.resize(5, 1); }));
   CHECK(refused([](Table& t) { t.proved.noise.resize(4, 3); }));
   CHECK(refused([](Table& t) { t.proved.later.resize(3, 1); }));
+  CHECK(refused([](Table& t) { t.losses.excess = t.losses.excess.of(0); }));
+  CHECK(refused([](Table& t) { t.losses.predicted.resize(3); }));
+  CHECK(refused([](Table& t) { t.losses.spread.resize(5); }));
+  CHECK(refused([](Table& t) { t.losses.reach.resize(2); }));
+  CHECK(refused([](Table& t) { t.losses.width.resize(4); }));
+  CHECK(refused([](Table& t) { t.d.resize(0, 0); }));
 }

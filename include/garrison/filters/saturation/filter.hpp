@@ -17,7 +17,8 @@
 //
 // Where we leave the print: the test has a rounding guard; "= s" in line 6 reads ">= s"; a bound is reported
 // only by an agent that still tests, because (16) is false for the others; an agent that missed a message, or
-// heard from one that did, reports no bound, tests nothing, and its set is not united with others. The same
+// heard from one that did, reports no bound, tests nothing, and its set is not united with others (with
+// `recovery` it goes on, by theorem L of docs/certificates.md). The same
 // holds for all once more than s sensors lack a measurement in one sample. (Only who sees all measurements
 // can count them: an agent on its own takes it for granted, and `uncover` tells it.) Bounds and proofs cover
 // attacked sensors, not agents that lie in their messages: one liar that forges `proved` has anybody
@@ -63,6 +64,9 @@ struct GARRISON_EXPORT Saturation {
     bool adaptive = false;
     bool accuse_missing = false;
     bool table = false;
+    bool recovery = false;
+    double failure = 0.0;
+    int horizon = 0;
 
     static auto fields();
   };
@@ -122,6 +126,7 @@ struct GARRISON_EXPORT Saturation {
     AgentSet proved;                       // I_i
     std::unique_ptr<double[]> prediction;  // room for A xhat_i(t-1) where n is not known when compiling
     std::unique_ptr<double[]> previous;    // the estimate one round ago; Chebyshev only
+    std::unique_ptr<saturation::LossRecord> loss;  // with `recovery`
 
     template <class V>
     void visit(V& v) {
@@ -140,6 +145,7 @@ struct GARRISON_EXPORT Saturation {
       v("intact", intact);
       v.choice("verdict", verdict, kVerdicts);
       v("proved", proved);
+      if (loss != nullptr) v("recovery", *loss);
     }
   };
 
@@ -147,12 +153,16 @@ struct GARRISON_EXPORT Saturation {
   struct Message {
     Vec<n> x;
     bool intact = true;
+    saturation::LossNote loss;  // with `recovery`, in place of `intact`
     AgentSet proved;
 
     template <class V>
     void visit(V& v) {
       v.numbers("estimate", x);
-      v.flag("intact", intact);
+      if (loss.kept())
+        loss.visit(v);
+      else
+        v.flag("intact", intact);
       v.set("proved", proved);
     }
   };
@@ -180,7 +190,12 @@ struct GARRISON_EXPORT Saturation {
   /// Of a design file: the gains have what this agent reads.
   static bool fits(const Gains& g, const Local& l, std::span<const int>) noexcept {
     return (g.omega.empty() || g.omega.size() == static_cast<std::size_t>(g.rounds)) &&
-           g.table.fits(l.id, l.agents);
+           g.table.fits(l.id, l.agents, g.rounds);
+  }
+  /// Of a snapshot: nothing of it leads out of the tables.
+  template <int n>
+  static bool sound(const State<n>& s) noexcept {
+    return s.loss == nullptr || s.loss->sound(s.t);
   }
   static int rounds(const Gains& g) { return g.rounds; }
   /// A missing measurement is an update that fails to come, as that of an attacked sensor may.
@@ -199,6 +214,12 @@ struct GARRISON_EXPORT Saturation {
     const auto nn = static_cast<std::size_t>(x0.size());
     if constexpr (n == Dynamic) fresh.prediction = std::make_unique<double[]>(nn);
     if (!g.omega.empty()) fresh.previous = std::make_unique<double[]>(nn);
+    if (!g.table.losses.empty()) {
+      fresh.loss = std::make_unique<saturation::LossRecord>();
+      fresh.loss->clip = g.beta;
+      fresh.loss->old.resize(nn);
+      m.loss.keep();
+    }
     fresh.rho = g.bounded ? g.setting.eta0 : kNaN;
     fresh.p = 0.0;
     if (bounds_errors(g)) fresh.size = largest(x0.data(), static_cast<int>(x0.size()));
@@ -225,9 +246,14 @@ struct GARRISON_EXPORT Saturation {
   template <int n, int most = 2>
   GARRISON_INLINE static void update(const Local& l, const Gains& g, State<n>& s, const double* y,
                                      std::int64_t t, const double* prediction, double* estimate) noexcept {
+    const bool recovering = s.loss != nullptr && !s.intact;
+    if (recovering) s.loss->bound = recovered_bound(l, g, s);
     advance_bounds(g, s);
     s.t = t;
     if (covered(g, s)) s.level = std::fmin(s.level, g.table.level(l.id, t));
+    const bool tests = recovering
+                           ? take_levels(l, g, s)
+                           : g.detector && s.intact && !s.refuted && (g.bounded || s.level < kInfinity);
     const int nn = dimension<n>(l);
     copy<n, most>(prediction, estimate, nn);
     const bool proved = g.detector && !s.refuted && s.proved.contains(l.id);
@@ -252,8 +278,7 @@ struct GARRISON_EXPORT Saturation {
       } else if (informed) {
         injected = h;  // (b) all attackers are known, no test
         ++used;
-      } else if (g.detector && s.intact && !s.refuted &&
-                 exceeds(std::abs(h), s.level, std::abs(y[r]) + std::abs(expected_y) + s.size)) {
+      } else if (tests && exceeds(std::abs(h), s.level, std::abs(y[r]) + std::abs(expected_y) + s.size)) {
         accused = true;  // (c) proof (15)
       } else {
         injected = std::max(-beta, std::min(h, beta));  // (d) = k h with k of (4), without 0/0
@@ -269,12 +294,13 @@ struct GARRISON_EXPORT Saturation {
       look_for_refutation(g, s);
     }
     if (bounds_errors(g)) s.size = std::max(kFading * s.size, largest(estimate, nn));
-    s.verdict = proved || accused                                          ? Verdict::attacked
-                : used == 0                                                ? Verdict::silent
-                : limited > 0                                              ? Verdict::suspected
-                : informed                                                 ? Verdict::cleared
-                : (g.detector ? s.intact && !s.refuted : beta < kInfinity) ? Verdict::cleared
-                                                                           : Verdict::not_tested;
+    s.verdict = proved || accused                                         ? Verdict::attacked
+                : used == 0                                               ? Verdict::silent
+                : limited > 0                                             ? Verdict::suspected
+                : informed                                                ? Verdict::cleared
+                : ((g.detector ? tests && !s.refuted : beta < kInfinity)) ? Verdict::cleared
+                                                                          : Verdict::not_tested;
+    if (recovering) relay_update(l, g, s, estimate, prediction);
   }
 
   template <int n>
@@ -282,14 +308,17 @@ struct GARRISON_EXPORT Saturation {
                    Message<n>& m) noexcept {
     const int nn = dimension<n>(l);
     const double omega = g.omega.empty() ? 1.0 : g.omega[static_cast<std::size_t>(round)];
+    const bool recovering = s.loss != nullptr && (!s.intact || gap(inbox));
+    if (recovering) std::copy_n(s.x.data(), nn, s.loss->old.data());
     average_round<n>(nn, g.alpha, omega, s.x.data(), s.previous.get(), inbox.size(),
                      [&](std::size_t k) { return inbox[k].x.data(); });
+    if (recovering) relay(l, g, s, inbox, round, omega);
     // Estimates and sets travel in one message: the proof of "no false accusation" rests on it. A set of an
-    // agent that a gap lies behind proves nothing.
-    if (!inbox.complete()) s.intact = false;
+    // agent that a gap lies behind proves nothing, unless it has gone on with levels that hold all the same.
+    if (!inbox.complete() || recovering) s.intact = false;
     for (std::size_t k = 0; k < inbox.size(); ++k) {
       s.intact = s.intact && inbox[k].intact;
-      if (g.detector && inbox[k].intact) s.proved.unite(inbox[k].proved);
+      if (g.detector && (inbox[k].intact || s.loss != nullptr)) s.proved.unite(inbox[k].proved);
     }
     look_for_refutation(g, s);
     send(s, m);
@@ -298,22 +327,30 @@ struct GARRISON_EXPORT Saturation {
   /// Entrywise median of what the neighbours sent: less than half of them lie, so no liar moves it beyond the
   /// honest ones.
   template <int n>
-  static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t,
+  static void rejoin(const Local& l, const Gains& g, const Inbox<Message<n>>& inbox, std::int64_t t,
                      State<n>& s) noexcept {
     if (s.previous != nullptr)
       std::fill_n(s.previous.get(), dimension<n>(l), 0.0);  // it may be what overflowed
     median_into<n>(inbox.size(), [&](std::size_t k) { return inbox[k].x.data(); }, s.x);
     uncover<n>(g, s);
+    if (s.loss != nullptr && s.t == t) relay_median(l, g, s, inbox);
   }
   template <int n>
   static void uncover(const Gains&, State<n>& s) noexcept {
     s.intact = false;
+    if (s.loss != nullptr) s.loss->forget(s.t);
   }
 
   /// The rounds would change nothing but the average if both agents carry the same side information.
   template <int n>
   static bool same_side_information(const State<n>& a, const State<n>& b) noexcept {
-    return a.intact == b.intact && a.proved == b.proved;
+    return a.intact == b.intact && a.proved == b.proved &&
+           (a.loss == nullptr || a.intact || a.loss->state == b.loss->state);
+  }
+  /// Whether `intact` is all of the side information.
+  template <int n>
+  static bool bare(const State<n>& s) noexcept {
+    return s.proved.size() == 0 && (s.loss == nullptr || s.intact);
   }
 
   /// Where a driver that averages at once reads and writes the estimate.
@@ -330,6 +367,7 @@ struct GARRISON_EXPORT Saturation {
     r.threshold = g.detector ? s.level : beta_now(g, s);
     if (g.bounded && s.intact && !(g.detector && s.proved.size() >= g.setting.attacked))
       r.bound = rho_now(g, s) + p_now(g, s);
+    if (recovers(s)) offer(recovered_bound(l, g, s), CertificateKind::recovered, r);
     if (covered(g, s)) offer_table(l, g, s, r);
     r.bound += kRounding * (s.size + r.bound);
     return r;
@@ -355,9 +393,11 @@ struct GARRISON_EXPORT Saturation {
   }
   template <int n>
   static double alarm_level(const Local& l, const Gains& g, const State<n>& s) noexcept {
+    if (s.loss != nullptr && !s.intact) return recovered_alarm_level(l, g, s);
     if (!g.detector && !g.adaptive) return g.beta;
     const double level = saturation::innovation_bound(g.setting, rho_now(g, s), p_now(g, s));
-    return covered(g, s) ? std::fmin(level, g.table.level(l.id, s.t + 1)) : level;
+    const double least = covered(g, s) ? std::fmin(level, g.table.level(l.id, s.t + 1)) : level;
+    return g.bounded || least < kInfinity ? least : g.beta;
   }
 
   static constexpr std::size_t signal_count = 7;
@@ -380,13 +420,18 @@ struct GARRISON_EXPORT Saturation {
   /// beta in force at t.
   template <int n>
   static double beta_now(const Gains& g, const State<n>& s) noexcept {
-    return g.adaptive ? s.level : g.beta;
+    return g.adaptive ? s.level : s.loss != nullptr ? s.loss->clip : g.beta;
   }
 
   /// Whether the data-free table holds for this estimate.
   template <int n>
   static bool covered(const Gains& g, const State<n>& s) noexcept {
     return !g.table.empty() && s.intact && !s.refuted;
+  }
+  /// Whether theorem L holds for it instead.
+  template <int n>
+  static bool recovers(const State<n>& s) noexcept {
+    return s.loss != nullptr && !s.intact && !s.refuted;
   }
 
   /// Moves rho and p to t-1 and sets the level in force at t; data-free without the detector.
@@ -412,6 +457,7 @@ struct GARRISON_EXPORT Saturation {
     m.x = s.x;
     m.intact = s.intact;
     m.proved = s.proved;
+    if (s.loss != nullptr) say(s, m);
   }
 
  private:
@@ -432,6 +478,43 @@ struct GARRISON_EXPORT Saturation {
     r.bound = bound;
     r.kind = kind;
   }
+  /// ||a - b||.
+  static double distance(const double* a, const double* b, int nn) noexcept {
+    double sum = 0.0;
+    for (int k = 0; k < nn; ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return std::sqrt(sum);
+  }
+  // recovering.hpp: of an agent that a message was lost behind, with `recovery`. What is rare must not slow
+  // down what is not.
+  /// On the error of the estimate of sample s.t.
+  template <int n>
+  GARRISON_COLD static double recovered_bound(const Local& l, const Gains& g, const State<n>& s) noexcept;
+  /// The relayed bound after `sense`.
+  template <int n>
+  GARRISON_COLD static void relay_update(const Local& l, const Gains& g, State<n>& s, const double* estimate,
+                                         const double* prediction) noexcept;
+  template <int n>
+  GARRISON_COLD static void say(const State<n>& s, Message<n>& m) noexcept;
+  /// Whether a message of this sample is missing, here or behind what another agent sent.
+  template <int n>
+  GARRISON_COLD static bool gap(const Inbox<Message<n>>& inbox) noexcept;
+  /// Levels of sample s.t; whether the agent tests.
+  template <int n>
+  GARRISON_COLD static bool take_levels(const Local& l, const Gains& g, State<n>& s) noexcept;
+  template <int n>
+  GARRISON_COLD static double recovered_alarm_level(const Local& l, const Gains& g,
+                                                    const State<n>& s) noexcept;
+  /// After a round in which something was missing, here or behind what was heard: relays bounds and merges
+  /// what is known of earlier losses. s.loss->old: the estimate before the round.
+  template <int n>
+  GARRISON_COLD static void relay(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
+                                  int round, double omega) noexcept;
+  /// After a rejoin: what those who were heard know of the own estimate.
+  template <int n>
+  GARRISON_COLD static void relay_median(const Local& l, const Gains& g, State<n>& s,
+                                         const Inbox<Message<n>>& inbox) noexcept;
+  template <int n>
+  GARRISON_COLD static void start_anew(const Local& l, const Gains& g, State<n>& s) noexcept;
   /// As many sensors are proved as can be attacked: the others need no test.
   template <int n>
   static bool knows_all(const Gains& g, const State<n>& s) noexcept {
@@ -477,3 +560,4 @@ struct GARRISON_EXPORT Saturation {
 }  // namespace garrison
 
 #include "garrison/filters/saturation/params.hpp"
+#include "garrison/filters/saturation/recovering.hpp"
