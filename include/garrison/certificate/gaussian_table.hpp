@@ -12,8 +12,8 @@ struct GaussianTable {
   /// does.
   Table table;
   Gains deviation;  ///< sqrt(lmax(P_ii(t))), row t = 0..T, column = agent
-  /// What `deviation`, and the deviation of honest innovations' noise, never exceed, N numbers; empty where M is
-  /// not Schur.
+  /// What `deviation`, and the deviation of honest innovations' noise, never exceed, N numbers; empty where M
+  /// is not Schur.
   Vector deviation_for_ever{}, innovation_for_ever{};
 
   /// Bounds of all agents at t: ||e_i(t)|| <= d_i(t) + chi_n(delta) deviation_i(t), failing with probability

@@ -70,18 +70,16 @@ inline auto Saturation::Params::fields() {
                .doc = "with table: go on after lost messages (docs/certificates.md, theorem L). The bound is "
                       "that of the table and an excess that fades once messages arrive again, and the "
                       "detector goes on testing. Agents that a loss lies behind send up to 32 bytes more"}),
-          field(
-              &Params::failure,
-              {.name = "failure",
-               .symbol = "",
-               .unit = "",
-               .doc = "with table: above 0 it is that of Gaussian noise with the model's covariances, for "
-                      "which no "
-                      "noise bounds are needed (theorem TG), and the whole run has this probability at most "
-                      "that anything it says is false: a bound, or an accusation, of any agent at any of the "
-                      "samples 1 to horizon",
-               .least = 0.0,
-               .most = 1.0}),
+          field(&Params::failure,
+                {.name = "failure",
+                 .symbol = "",
+                 .unit = "",
+                 .doc = "with table: above 0 it is that of Gaussian noise with the model's covariances, for "
+                        "which no noise bounds are needed (theorem TG), and the whole run has this "
+                        "probability at most that anything it says is false: a bound, or an accusation, of "
+                        "any agent at any of the samples 1 to horizon",
+                 .least = 0.0,
+                 .most = 1.0}),
           field(&Params::horizon,
                 {.name = "horizon",
                  .symbol = "",

@@ -61,7 +61,7 @@ inline std::vector<double> Structural::when_whole(const Local& l, const Gains& g
     const double* column = g.columns.data() + j.first;
     structural::add_outer<1, Dynamic>(row(g, j.id, nn), column, -1.0, nn, both.data());
     structural::add_outer<1, Dynamic>(column, column, g.noise[static_cast<std::size_t>(j.id)], nn,
-                                both.data() + size);
+                                      both.data() + size);
   }
   return both;
 }
@@ -176,7 +176,8 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     if (carried) growth = std::max(growth, again ? kHaste : g.doubt[static_cast<std::size_t>(j.id)]);
     if (by_level && used_before && carried) {
       const double* c = row(g, j.id, nn);
-      const double spread = structural::quadratic<Dynamic>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
+      const double spread =
+          structural::quadratic<Dynamic>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
       if (spread > 0.0) structural::add_seen_outer(prior, c, g.surprise / spread, nn, more);
     }
     before = again ? Trust::out_again : Trust::out;
