@@ -30,9 +30,9 @@ constexpr int kMostStates = 30;
 constexpr int kMostGroups = 400;
 constexpr int kFewestGroups = 50;
 constexpr int kMostDirections = 12;
-constexpr Eigen::Index kMostSamples = 20000;
+constexpr Eigen::Index kMostSamples = 2000;
 /// Multiplications, of a pass over the record without a liar, and of the whole search.
-constexpr double kPass = 3e7;
+constexpr double kPass = 5e6;
 constexpr double kMostWork = 3e8;
 
 /// Rows of the model that are not zero, at most kMostRows, evenly.
