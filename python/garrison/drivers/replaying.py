@@ -1,0 +1,151 @@
+"""Feed recorded measurements to a filter."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from garrison import _core, arguments, doubts
+from garrison.drivers.common import (
+    KEEP,
+    KEEPABLE,
+    MOST_TRIALS,
+    Attacks,
+    Progress,
+    designed,
+    made_of,
+    recorded,
+    require_room,
+    threads_of,
+    with_recipe,
+)
+from garrison.numeric import matched, numbers, output_names
+from garrison.record import Run
+from garrison.varying import Inputs, VaryingModel, inputs_of, parted
+from garrison.varying_network import VaryingNetwork, links_of
+from garrison.words import hinted, require_order
+
+
+@hinted
+def replay(
+    model: _core.Model | VaryingModel,
+    network: _core.Network | VaryingNetwork,
+    filter: _core.Filter,
+    *,
+    measurements: ArrayLike,
+    inputs: Inputs = None,
+    truth: ArrayLike | None = None,
+    start: ArrayLike | None = None,
+    attack: Attacks = (),
+    trials: int | None = None,
+    first_trial: int = 0,
+    seed: int = 0,
+    link: Mapping[str, float] | None = None,
+    keep: Iterable[str] = KEEP,
+    threads: int = 0,
+    progress: Progress | None = None,
+    conditions: bool = True,
+    certificate: str = "none",
+    failure: float = 1e-6,
+    attacked: int | None = None,
+    levels: tuple[float, float] | None = None,
+    design: _core.Design | None = None,
+) -> Run:
+    """Feed recorded measurements to a filter.
+
+    Parameters
+    ----------
+    model : Model or VaryingModel
+        The plant and its sensors.
+    network : Network or VaryingNetwork
+        Who hears whom.
+    filter : Filter
+        One of garrison.filters, or a filter of your own.
+    measurements : (samples, outputs) array
+        nan or masked = missing; row r belongs to time r + 1. A pandas table with columns named as the network's
+        agents (or the model's outputs) is matched by name. In families with a sample at the start (platoon) row r
+        belongs to time r. A leading axis of trials is allowed, one log per trial; otherwise the one log serves
+        all trials.
+    inputs : (samples, p) array, table or function of t, optional
+        Known inputs of a model with B, as in `simulate`: row t led from time t to t + 1.
+    truth : (samples + 1, n) array, optional
+        From time 0; (samples, N, n) in families with a sample at the start. May have a leading axis of trials.
+    start : (n,) or (N, n) array, optional
+        Initial estimate, common or one per agent, default 0.
+    attack : Attack or sequence of them
+        On top of the log, in order.
+    trials : int, optional
+        Repetitions, default one per log.
+    first_trial : int
+        As in `simulate`.
+    seed : int
+        Of noise, attacks and links, >= 0. Equal arguments give bit-identical results.
+    link : dict, optional
+        drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says); cuts:
+        a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
+        (sample, round, sender, receiver).
+    keep : iterable of str
+        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets).
+    threads : int
+        0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
+        (garrison.Filter, garrison.attacks.custom) always run in one.
+    progress : callable, optional
+        progress(done, total) is called at most once per percent.
+    conditions : bool
+        Evaluate the filter's conditions first, and put the required ones that are not met into the run's
+        `warnings`.
+    certificate : {"none", "local", "flooded", "direct"}
+        What to certify at run time, see `prepare`.
+    failure : float
+        Probability in [0, 1), per agent and sample, that a certified bound is wrong; 0 = never, with bounded
+        noise.
+    attacked : int, optional
+        Most sources that lie, >= 0; default the filter's parameter of that name.
+    levels : tuple of two floats, optional
+        (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
+        (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
+    design : Design, optional
+        Made before of these very three (`prepare` does that).
+
+    Returns
+    -------
+    Run
+        Arrays (trial, time, agent, ..).
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
+    """
+    base, series = parted(model)
+    plain = network.network if isinstance(network, VaryingNetwork) else network
+    require_order("replay", base, plain, filter)
+    names = output_names(base, plain)
+    y = numbers("measurements", matched("measurements", measurements, names))
+    trials = (len(y) if y.ndim == 3 else 1) if trials is None else arguments.whole("trials", trials, 1)
+    wanted = arguments.flag("conditions", conditions)
+    attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
+    samples = y.shape[-2] if y.ndim >= 2 else 0
+    ground, links = links_of(network, arguments.link(link), samples)
+    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
+    require_room(base, filter, kept, trials, samples)
+    design = designed(base, ground, filter, design, certificate, failure, attacked, levels)
+    data = _core.replay(
+        design,
+        measurements=y,
+        truth=None if truth is None else numbers("truth", truth),
+        trials=trials,
+        first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
+        seed=arguments.whole("seed", seed, 0, 2**64 - 1),
+        threads=threads_of(filter, attacks, threads),
+        start=None if start is None else arguments.table("start", start),
+        attacks=attacks,
+        link=links,
+        keep=kept,
+        **known,
+        progress=arguments.callback("progress", progress),
+    )
+    run = recorded(data, base, ground, filter, design, attacks, wanted, known)
+    run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
+    both = made_of(trials, first_trial, seed, start, attacks, links, kept, design, wanted)
+    return with_recipe(run, {"driver": "replay"} | both)

@@ -1,0 +1,168 @@
+"""Simulate a plant, attack it, filter it."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from garrison import _core, arguments
+from garrison.drivers.common import (
+    KEEP,
+    KEEPABLE,
+    MOST_TRIALS,
+    Attacks,
+    Progress,
+    designed,
+    made_of,
+    recorded,
+    require_room,
+    threads_of,
+    with_recipe,
+)
+from garrison.numeric import numbers
+from garrison.objects import plain_data
+from garrison.record import Run
+from garrison.varying import Inputs, VaryingModel, inputs_of, parted
+from garrison.varying_network import VaryingNetwork, links_of
+from garrison.words import hinted, require_order
+
+
+@hinted
+def simulate(
+    model: _core.Model | VaryingModel,
+    network: _core.Network | VaryingNetwork,
+    filter: _core.Filter,
+    *,
+    steps: int,
+    inputs: Inputs = None,
+    attack: Attacks = (),
+    trials: int = 1,
+    first_trial: int = 0,
+    seed: int = 0,
+    x0: ArrayLike | None = None,
+    start: ArrayLike | None = None,
+    start_error: float = 0.0,
+    noise: str | ArrayLike = "auto",
+    link: Mapping[str, float] | None = None,
+    keep: Iterable[str] = KEEP,
+    threads: int = 0,
+    progress: Progress | None = None,
+    conditions: bool = True,
+    certificate: str = "none",
+    failure: float = 1e-6,
+    attacked: int | None = None,
+    levels: tuple[float, float] | None = None,
+    design: _core.Design | None = None,
+) -> Run:
+    """Simulate the plant, attack it, filter it.
+
+    Parameters
+    ----------
+    model : Model or VaryingModel
+        The plant and its sensors.
+    network : Network or VaryingNetwork
+        Who hears whom.
+    filter : Filter
+        One of garrison.filters, or a filter of your own.
+    steps : int
+        Samples, >= 1.
+    inputs : (steps, p) array, table or function of t, optional
+        Known inputs of a model with B: row t is u(t), which leads from time t to t + 1. A pandas table with columns
+        named as the model's inputs is matched by name. Estimates, errors and bounds are those of the state
+        (docs/adr/0016); what lies in messages say is said of the state without the inputs' response.
+    attack : Attack or sequence of them
+        Applied in order.
+    trials : int
+        Independent repetitions, >= 1.
+    first_trial : int
+        Trial k of this run has the bits of trial first_trial + k of a run from 0, so that a run can be had in
+        parts; first_trial + trials <= 2^24.
+    x0 : (n,) array, optional
+        True initial state, default 0; (N, n) in families whose agents drive plants of their own, default: where
+        they should be.
+    start : (n,) or (N, n) array, optional
+        Initial estimate, common or one per agent, default 0.
+    start_error : float
+        Moves `start` by a random vector of at most that length per trial, >= 0.
+    noise : {"auto", "uniform", "extreme", "normal", "none"} or array
+        "uniform" within the model's bounds, "extreme" at them. Families whose agents drive plants of their own
+        have laws of their own, and take recorded disturbances, one row per time 0..steps, in place of a law
+        (garrison.platoon).
+    seed : int
+        Of noise, attacks and links, >= 0. Equal arguments give bit-identical results.
+    link : dict, optional
+        drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says); cuts:
+        a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
+        (sample, round, sender, receiver).
+    keep : iterable of str
+        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets).
+    threads : int
+        0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
+        (garrison.Filter, garrison.attacks.custom) always run in one.
+    progress : callable, optional
+        progress(done, total) is called at most once per percent.
+    conditions : bool
+        Evaluate the filter's conditions first, and put the required ones that are not met into the run's
+        `warnings`.
+    certificate : {"none", "local", "flooded", "direct"}
+        What to certify at run time, see `prepare`.
+    failure : float
+        Probability in [0, 1), per agent and sample, that a certified bound is wrong; 0 = never, with bounded
+        noise.
+    attacked : int, optional
+        Most sources that lie, >= 0; default the filter's parameter of that name.
+    levels : tuple of two floats, optional
+        (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
+        (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
+    design : Design, optional
+        Made before of these very three (`prepare` does that).
+
+    Returns
+    -------
+    Run
+        Arrays (trial, time, agent, ..), time 0..steps.
+
+    Raises
+    ------
+    InvalidInput
+        Something does not fit; the message says which, and what was expected.
+    """
+    steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
+    base, series = parted(model)
+    ground, links = links_of(network, arguments.link(link), steps)
+    require_order("simulate", base, ground, filter)
+    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, steps), "series": series}
+    wanted = arguments.flag("conditions", conditions)
+    attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
+    require_room(base, filter, kept, trials, steps)
+    design = designed(base, ground, filter, design, certificate, failure, attacked, levels)
+    data = _core.simulate(
+        design,
+        steps=steps,
+        x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
+        start_error=arguments.moderate("start_error", start_error),
+        noise=noise if isinstance(noise, str) else "auto",
+        disturbances=np.zeros((0, 0)) if isinstance(noise, str) else arguments.table("noise", noise),
+        trials=trials,
+        first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
+        seed=arguments.whole("seed", seed, 0, 2**64 - 1),
+        threads=threads_of(filter, attacks, threads),
+        start=None if start is None else arguments.table("start", start),
+        attacks=attacks,
+        link=links,
+        keep=kept,
+        **known,
+        progress=arguments.callback("progress", progress),
+    )
+    run = recorded(data, base, ground, filter, design, attacks, wanted, known)
+    drawn = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
+    own = {
+        "driver": "simulate",
+        "steps": steps,
+        "x0": plain_data(x0),
+        "start_error": float(start_error),
+        "noise": drawn,
+    }
+    both = made_of(trials, first_trial, seed, start, attacks, links, kept, design, wanted)
+    return with_recipe(run, own | both)
