@@ -112,11 +112,16 @@ py::list from_infos(const std::vector<ParamInfo>& infos) {
 
 void bind_core(py::module_& m) {
   auto& error = py::register_exception<Error>(m, "Error");
-  py::register_exception<InvalidInput>(m, "InvalidInput",
-                                       py::make_tuple(error, py::handle(PyExc_ValueError)));
+  error.doc() = "What garrison refuses, and cannot do; catch this one for all.";
+  py::register_exception<InvalidInput>(m, "InvalidInput", py::make_tuple(error, py::handle(PyExc_ValueError)))
+      .doc() =
+      "Something that was given does not fit: which, what was got, what was expected. A ValueError, too.";
   py::register_exception<DesignInfeasible>(m, "DesignInfeasible",
-                                           py::make_tuple(error, py::handle(PyExc_ValueError)));
-  py::register_exception<IoError>(m, "IoError", py::make_tuple(error, py::handle(PyExc_OSError)));
+                                           py::make_tuple(error, py::handle(PyExc_ValueError)))
+      .doc() =
+      "No gains exist, or none were found, for what was asked: why, and what to change. A ValueError, too.";
+  py::register_exception<IoError>(m, "IoError", py::make_tuple(error, py::handle(PyExc_OSError))).doc() =
+      "A file cannot be read or written: which, and why. An OSError, too.";
 
   bind_budget(m);
   bind_model(m);

@@ -6,7 +6,7 @@ Marks of reStructuredText in docstrings (|x|, x', A_t, *) are meant literally.
 import re
 
 _MARKS = re.compile(r"([\\*`|_]|:(?=:|$))")
-_SECTIONS = ("Parameters", "Returns", "Raises")
+_SECTIONS = ("Attributes", "Parameters", "Returns", "Raises")
 
 
 def process(_app: object, _kind: str, _name: str, _thing: object, _options: object, lines: list[str]) -> None:

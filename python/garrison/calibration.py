@@ -33,20 +33,35 @@ _ENOUGH, _BLOCKS = 16.0, 20
 class Calibration(Result):
     """A filter whose false alarms on clean records are as frequent as asked.
 
-    filter: the same with the nominal rate `nominal` in place of `asked`. tests: of all sensors together, over which
-    the rate is taken; got, before: share of alarms among them now, and with the filter as it was given. by_part: the
-    share now in each fifth of the records: what a later record may differ by. judged: there are enough alarms that do
-    not come together (storms, overlapping windows) to judge so rare an alarm; where there are not, the rate on other
-    records may be another one altogether.
-    thresholds (N, 3): of every sensor's statistic the level that it exceeds at the rate asked for, and an interval
-    that holds the true one with 95 % if the tests are independent (tests over overlapping windows are not: take it as
-    optimistic); nan where there are too few tests. model: with noise bounds that hold on these records too; the
-    next record breaks one of them with a chance of `exceeds` at most, if it is like these. levels: (z1, z2) of the
-    certificates for `attacked` sensors and the rate asked for; None where they do not exist (several states, or
-    too few records).
-
     All of it holds for records like the ones it was made from: a season, an instrument or a climate that they do not
     contain voids it.
+
+    Attributes
+    ----------
+    filter : Filter
+        The same with the nominal rate `nominal` in place of `asked`.
+    asked, nominal : float
+        Rates of false alarms, in (0, 1).
+    before, got : float
+        Share of alarms among the tests with the filter as it was given, and now.
+    by_part : tuple of float
+        The share now in each fifth of the records: what a later record may differ by.
+    tests : int
+        Of all sensors together, over which the rates are taken.
+    judged : bool
+        There are enough alarms that do not come together (storms, overlapping windows) to judge so rare an alarm;
+        where there are not, the rate on other records may be another one altogether.
+    thresholds : (N, 3) array
+        Of every sensor's statistic the level that it exceeds at the rate asked for, and an interval that holds the true
+        one with 95 % if the tests are independent (tests over overlapping windows are not: take it as optimistic); nan
+        where there are too few tests.
+    model : Model
+        With noise bounds that hold on these records too.
+    exceeds : float
+        The next record breaks one of them with this chance at most, if it is like these.
+    levels : tuple of float or None
+        (z1, z2) of the certificates for `attacked` sensors and the rate asked for; None where they do not exist
+        (several states, or too few records).
     """
 
     filter: _core.Filter

@@ -17,9 +17,12 @@ from garrison.words import hinted, hinted_methods, refusal, require_order, shown
 class Check(Result):
     """What `check` found. A condition that fails is data, not an error.
 
-    conditions: dicts with name, value, needed, holds, meaning, required (False: it only
-    sharpens the result). quantities: dicts with name, value (nan = does
-    not exist), meaning.
+    Attributes
+    ----------
+    conditions : list of dict
+        name, value, needed, holds, meaning, required (False: it only sharpens the result).
+    quantities : list of dict
+        name, value (nan = does not exist), meaning.
     """
 
     conditions: list[dict[str, Any]]

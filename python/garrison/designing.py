@@ -42,10 +42,24 @@ class Choice(Result):
 @hinted_methods
 @dataclass(frozen=True, eq=False, repr=False)
 class Designed(Result):
-    """filter: as designed. error: the asymptotic bound that it certifies (theorem 1 item 3), unit of the state.
+    """A filter for a goal, and what other choices would cost and give.
 
-    attacked: liars that it stands. curve: what fewer and more rounds cost and give, feasible ones only. fewest_rounds:
-    with which anything is certified at all.
+    Attributes
+    ----------
+    goal : str
+        As it was asked for.
+    filter : Filter
+        As designed.
+    attacked : int
+        Liars that it stands.
+    error : float
+        The asymptotic bound that it certifies (theorem 1 item 3), unit of the state.
+    chosen : Choice
+        Its point of the curve.
+    fewest_rounds : int
+        With which anything is certified at all.
+    curve : list of Choice
+        What fewer and more rounds cost and give, feasible ones only.
     """
 
     goal: str

@@ -18,9 +18,17 @@ from garrison.words import hinted, hinted_methods, refusal, shown
 class Exposed(Result):
     """What the measurements prove.
 
-    sources: who can lie, names, or numbers of agents. proved (samples, sources): shown to lie at that sample.
-    refuted (samples,): more than `attacked` lie there, and nobody is named. sets: how many samples were judged by all
-    sets of honest sources (W3); the others by leverages (W2), which expose less.
+    Attributes
+    ----------
+    sources : list
+        Who can lie: names, or numbers of agents.
+    proved : (samples, sources) array of bool
+        Shown to lie at that sample.
+    refuted : (samples,) array of bool
+        More than `attacked` lie there, and nobody is named.
+    sets : int
+        How many samples were judged by all sets of honest sources (W3); the others by leverages (W2), which expose
+        less.
     """
 
     sources: list[Any]

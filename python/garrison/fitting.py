@@ -57,7 +57,14 @@ class Whiteness(Result):
 class Fit(Result):
     """A model identified from clean records.
 
-    model: with unit rows, noise bounds and covariances. records: what it was fitted to.
+    Attributes
+    ----------
+    model : Model
+        With unit rows, noise bounds and covariances.
+    identified : object
+        Season, scale and matrices, as they were found.
+    records : Records
+        What it was fitted to.
     """
 
     model: _core.Model

@@ -26,8 +26,18 @@ _NOISE = 0.01
 class FullFit(Fit):
     """A vector autoregression: every station's deviation from its season is a state, with `order` samples of the past.
 
-    model: states named as the stations, B for known inputs. autoregression: order, residuals and the likelihoods that
-    chose the order. inputs: names of the columns that are known inputs.
+    Attributes
+    ----------
+    model : Model
+        States named as the stations, B for known inputs.
+    identified : object
+        Season, scale and matrices, as they were found.
+    records : Records
+        What it was fitted to, the stations alone.
+    autoregression : object
+        order, residuals and the likelihoods that chose the order.
+    inputs : tuple of str
+        Names of the columns that are known inputs.
     """
 
     autoregression: _core.Autoregression

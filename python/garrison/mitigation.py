@@ -33,9 +33,18 @@ class Switch(Result):
 @hinted_methods
 @dataclass(eq=False, repr=False)
 class Mitigated(Result):
-    """What came out: estimates (time, agent, n) and errors (time, agent) over all segments, time 0 first.
+    """What came out of a replay in which agents with an alarm measure something else.
 
-    segments: (first sample, measured states, run) between switches; each is designed anew.
+    Attributes
+    ----------
+    estimate : (time, agent, n) array
+        Over all segments, time 0 first.
+    error : (time, agent) array
+        The same.
+    switches : list of Switch
+        Whose alarm made it measure something else, and when.
+    segments : list of (first sample, measured states, run)
+        Between switches; each is designed anew.
     """
 
     estimate: Array

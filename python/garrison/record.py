@@ -56,15 +56,47 @@ _TAKEN |= {"state_unit", "output_unit", "input_unit"}
 class Run(metaclass=Hinting):
     """Arrays of a finished run, indexed [trial, time, agent, ...]; time 0 is the start, nan = does not exist.
 
-    truth (trial, time, n), or (trial, time, agent, n) of agents with states of their own; estimate (trial, time, agent,
-    n); error, bound, statistic, threshold (trial, time, agent); bound_kind (trial, time, agent): values of
-    garrison.BoundKind, which say where a bound comes from, or why it is inf or nan; published: with a certificate, the
-    bound of the filter's family alone; verdict (trial, time, agent): values of garrison.Verdict; measurements (trial,
-    time 1.., output; from time 0 in families with a sample at the start), as the network received them; inputs (step,
-    input): known ones, row t led from time t to t + 1; varying: what of the plant changed, by name (VaryingModel);
-    signals: name -> (trial, time, agent). An array that was not kept, or that cannot
-    exist (errors without truth), is None. Runs compare with ==, copy and pickle;
-    `save` and `Run.load` keep everything.
+    An array that was not kept, or that cannot exist (errors without truth), is None. Runs compare with ==, copy and
+    pickle; `save` and `Run.load` keep everything.
+
+    Attributes
+    ----------
+    model, network, filter : Model, Network, Filter
+        What ran.
+    truth : (trial, time, n) array
+        (trial, time, agent, n) of agents with states of their own.
+    estimate : (trial, time, agent, n) array
+        Of the state, by every agent.
+    error, bound : (trial, time, agent) array
+        Distance of the estimate to the truth, and what it is at most.
+    bound_kind : (trial, time, agent) array
+        Values of garrison.BoundKind, which say where a bound comes from, or why it is inf or nan.
+    published : (trial, time, agent) array
+        With a certificate, the bound of the filter's family alone.
+    statistic, threshold : (trial, time, agent) array
+        Of the test of each agent's sensor.
+    verdict : (trial, time, agent) array
+        Values of garrison.Verdict.
+    measurements : (trial, time 1.., output) array
+        As the network received them; from time 0 in families with a sample at the start.
+    inputs : (step, input) array
+        Known ones; row t led from time t to t + 1.
+    varying : dict
+        What of the plant changed, by name (VaryingModel).
+    signals : dict
+        Name -> (trial, time, agent) array.
+    accusations : list of (trial, time, sets)
+        The agents that each agent takes for attacked, whenever one of the sets changed.
+    details : list of (trial, time, agent, name, values)
+        Lists of the family (sets, gains), whenever one of them changed.
+    counters : dict
+        Lost, late, forged and refused messages, missing and non-finite measurements, overflows.
+    warnings : list of str
+        Doubts about this run, for people.
+    bytes_per_step : int
+        Payload of all messages of one sample, when none is lost.
+    made : dict
+        What made the run, as plain data: driver, seed, attacks, links, ... (`again`).
     """
 
     def __init__(

@@ -19,9 +19,18 @@ from garrison.words import hinted, hinted_methods, refusal
 class Resilience(Result):
     """One number of shared entries. Errors are exact, means over the cycle of the periodic steady state.
 
-    shared: entries l per message; bytes_per_step: payload of all messages of a sample; mse: mean over agents of the
-    squared error; mse_attacked: the same under the worst coordinated covariance of the given energy; radius: of the
-    error dynamics, unstable from 1 on (both errors are then inf).
+    Attributes
+    ----------
+    shared : int
+        Entries l per message.
+    bytes_per_step : int
+        Payload of all messages of a sample.
+    mse : float
+        Mean over agents of the squared error.
+    mse_attacked : float
+        The same under the worst coordinated covariance of the given energy.
+    radius : float
+        Of the error dynamics, unstable from 1 on (both errors are then inf).
     """
 
     shared: int

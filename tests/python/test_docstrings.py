@@ -1,6 +1,7 @@
 """Public functions say in numpydoc form what they take, give and raise; the site shows it."""
 
 import ast
+import dataclasses
 import inspect
 import re
 from collections.abc import Callable
@@ -14,6 +15,11 @@ from conftest import ROOT
 FUNCTIONS = [name for name in gr.__all__ if inspect.isfunction(getattr(gr, name))]
 #: classes of the core that everybody makes
 CLASSES = {"Model": gr.Model, "Network": gr.Network}
+#: what functions return
+RESULTS = [name for name in gr.__all__ if dataclasses.is_dataclass(getattr(gr, name))]
+ERRORS = [
+    name for name in gr.__all__ if isinstance(getattr(gr, name), type) and issubclass(getattr(gr, name), Exception)
+]
 
 
 def section(function: Callable[..., Any], name: str) -> list[str]:
@@ -23,11 +29,11 @@ def section(function: Callable[..., Any], name: str) -> list[str]:
     return found[1].splitlines() if found else []
 
 
-def documented(function: Callable[..., Any]) -> dict[str, list[str]]:
-    """Name of each documented parameter -> the lines about it."""
+def documented(function: Callable[..., Any], what: str = "Parameters") -> dict[str, list[str]]:
+    """Name of each documented parameter, or attribute -> the lines about it."""
     out: dict[str, list[str]] = {}
     names: list[str] = []
-    for line in section(function, "Parameters"):
+    for line in section(function, what):
         if line and not line.startswith(" "):
             names = [name.strip().lstrip("*") for name in line.partition(" : ")[0].split(",")]
             out |= {name: [] for name in names}
@@ -65,6 +71,26 @@ def test_constructors_are_documented(name: str) -> None:
     taken = [a.arg for a in (*made.args.args, *made.args.kwonlyargs) if a.arg != "self"]
     assert list(documented(CLASSES[name])) == taken
     assert section(CLASSES[name], "Raises")
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_attribute_of_a_result_is_documented(name: str) -> None:
+    result = getattr(gr, name)
+    found = documented(result, "Attributes")
+    assert set(found) == {field.name for field in dataclasses.fields(result)}
+    assert all(found.values()), f"attributes without a text: {[k for k, lines in found.items() if not lines]}"
+
+
+def test_every_attribute_of_a_run_is_documented() -> None:
+    model = gr.Model([[1.0]], [[1.0]], process_bound=0.1, measurement_bound=0.1)
+    run = gr.simulate(model, gr.Network([], agents=1), gr.filters.ScalarGain(), steps=1)
+    found = documented(gr.Run, "Attributes")
+    assert set(found) == set(vars(run)) and all(found.values())
+
+
+@pytest.mark.parametrize("name", ERRORS)
+def test_errors_say_what_they_are(name: str) -> None:
+    assert (getattr(gr, name).__doc__ or "").endswith(".")
 
 
 def test_a_missing_parameter_is_seen() -> None:

@@ -81,16 +81,24 @@ __all__: list[str] = [
 ]
 
 class Error(Exception):
-    pass
+    """
+    What garrison refuses, and cannot do; catch this one for all.
+    """
 
 class InvalidInput(Error, ValueError):
-    pass
+    """
+    Something that was given does not fit: which, what was got, what was expected. A ValueError, too.
+    """
 
 class DesignInfeasible(Error, ValueError):
-    pass
+    """
+    No gains exist, or none were found, for what was asked: why, and what to change. A ValueError, too.
+    """
 
 class IoError(Error, OSError):
-    pass
+    """
+    A file cannot be read or written: which, and why. An OSError, too.
+    """
 
 class budget:
     """

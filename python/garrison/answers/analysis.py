@@ -27,15 +27,41 @@ if TYPE_CHECKING:
 @hinted_methods
 @dataclass(eq=False, repr=False)
 class Analysis(Result):
-    """Answers about a model on a network. Sensors are single measured numbers; `sensors` has their names.
+    """Answers about a model on a network. Sensors are single measured numbers.
 
-    limits: the most liars for each guarantee. over_time, one_sample: the fewest sensors whose loss leaves a part of the
-    state unseen, ever or in one sample. critical: sensors whose loss alone does that. unbounded: agents that can drift
-    without limit, unseen by any detector. leverage: per sensor, the share of its reading that no other one checks in
-    one sample, 0..1; None where one sample does not determine the state. harm: per number of liars a certified error.
-    substitutes: per sensor, the states that it could measure instead, by the zeros alone. critical_links,
-    critical_agents: whose loss alone parts the network. additions: the cheapest sensors found for one more liar.
-    advice: about links. unfinished: questions for which the time was too short.
+    Attributes
+    ----------
+    title : str
+        For tables and pictures.
+    sensors : list of str
+        Names of the sensors.
+    limits : list of Limit
+        The most liars for each guarantee.
+    over_time, one_sample : Removal
+        The fewest sensors whose loss leaves a part of the state unseen, ever or in one sample.
+    critical : list of str
+        Sensors whose loss alone does that.
+    unbounded : list of str
+        Agents that can drift without limit, unseen by any detector.
+    leverage : list of float or None
+        Per sensor, the share of its reading that no other one checks in one sample, 0..1; None where one sample does
+        not determine the state.
+    harm : list of dict
+        Per number of liars a certified error.
+    substitutes : list of list of str
+        Per sensor, the states that it could measure instead, by the zeros alone.
+    critical_links, critical_agents : list
+        Whose loss alone parts the network.
+    additions : list of Addition
+        The cheapest sensors found for one more liar.
+    advice : list of str
+        About links.
+    unfinished : list of str
+        Questions for which the time was too short.
+    network : Network
+        As it was given.
+    agent_names : list of str
+        Names of the agents.
     """
 
     title: str

@@ -19,12 +19,29 @@ Array = NDArray[np.float64]
 class Certified(Result):
     """What is sure of the state at every sample: |x_i - center_i| <= box_i for all i, and ||x - center|| <= radius.
 
-    center, box (samples, n), radius (samples,): inf where the measurements so far cannot answer, nan where they refute
-    that at most `attacked` sources lie, or the model. proved: per sample the sources shown to lie. method: "bank" (one
-    Kalman filter per set of sources left out, over all samples so far) or "window" (one regression over the last
-    `window` samples). steady (n,): half widths that the bank never exceeds once its start has decayed, inf where no
-    certificate stays bounded; None with windows, or where there are too many sets to tell. failure: probability that
-    the region of a sample is wrong.
+    Attributes
+    ----------
+    center, box : (samples, n) array
+        inf where the measurements so far cannot answer, nan where they refute that at most `attacked` sources lie, or
+        the model.
+    radius : (samples,) array
+        The same of the ball.
+    proved : list of list of str
+        Per sample the sources shown to lie.
+    sources : list of str
+        Their names.
+    attacked : int
+        Most sources that lie.
+    failure : float
+        Probability that the region of a sample is wrong.
+    method : str
+        "bank" (one Kalman filter per set of sources left out, over all samples so far) or "window" (one regression
+        over the last `window` samples).
+    window : int
+        Samples of a regression.
+    steady : (n,) array or None
+        Half widths that the bank never exceeds once its start has decayed, inf where no certificate stays bounded; None
+        with windows, or where there are too many sets to tell.
     """
 
     center: Array

@@ -36,14 +36,21 @@ def empty(status: str) -> Row:
 @hinted_methods
 @dataclass(eq=False, repr=False)
 class Comparison(Result):
-    """rows: a dict per filter and attack ("none" first), None where something does not exist for it.
+    """Errors, alarms, bounds and costs of filters and baselines under attacks.
 
-    q50, q95, q99: quantiles of the errors of honest agents' estimates from the attack's start on, over agents, samples
-    and trials. detection_delay: samples until an attacked agent is accused, median over the trials where one was;
-    false_alarms: agents accused per trial
-    while they were honest. bound_share, inside_bound: samples with an error bound, and errors
-    within it, 0..1. bytes_per_sample: of all messages. microseconds: per agent and sample, conditions and design left
-    out. status: "ok", or why there are no numbers.
+    Attributes
+    ----------
+    title : str
+        For tables and pictures.
+    attacked : list of int
+        Agents that lie.
+    rows : list of dict
+        One per filter and attack ("none" first), None where something does not exist for it. q50, q95, q99: quantiles
+        of the errors of honest agents' estimates from the attack's start on, over agents, samples and trials.
+        detection_delay: samples until an attacked agent is accused, median over the trials where one was.
+        false_alarms: agents accused per trial while they were honest. bound_share, inside_bound: samples with an error
+        bound, and errors within it, 0..1. bytes_per_sample: of all messages. microseconds: per agent and sample,
+        conditions and design left out. status: "ok", or why there are no numbers.
     """
 
     title: str

@@ -34,10 +34,22 @@ _LASTS, _LANES = 5.0, 8
 @hinted_methods
 @dataclass(eq=False, repr=False)
 class Sweep(Result):
-    """trials: one row (a dict) per point, filter, condition and trial; points: one per point, filter and condition.
+    """What a sweep over values of a scenario found.
 
-    keys: what was varied. refused, lost: points that were refused, trials that were lost. folder: with trials.csv,
-    points.csv (and .parquet where pyarrow is installed), sweep.json and the parts.
+    Attributes
+    ----------
+    title : str
+        For tables and pictures.
+    keys : list of str
+        What was varied.
+    trials : list of dict
+        One row per point, filter, condition and trial.
+    points : list of dict
+        One row per point, filter and condition.
+    refused, lost : list of str
+        Points that were refused, trials that were lost.
+    folder : Path
+        With trials.csv, points.csv (and .parquet where pyarrow is installed), sweep.json and the parts.
     """
 
     title: str
