@@ -293,7 +293,7 @@ struct GARRISON_EXPORT Saturation {
       s.proved.insert(l.id);
       look_for_refutation(g, s);
     }
-    if (bounds_errors(g)) s.size = std::max(kFading * s.size, largest(estimate, nn));
+    if (t % kLooks == 0 && bounds_errors(g)) s.size = std::max(kFading * s.size, largest(estimate, nn));
     s.verdict = proved || accused                                         ? Verdict::attacked
                 : used == 0                                               ? Verdict::silent
                 : limited > 0                                             ? Verdict::suspected
@@ -463,8 +463,10 @@ struct GARRISON_EXPORT Saturation {
  private:
   /// Part of the numbers that rounding of many samples may change.
   static constexpr double kRounding = 1e-12;
-  /// Per sample: errors that rounding made fade no slower, or the bounds are far above them.
-  static constexpr double kFading = 0.999;
+  /// Samples from one look at the size of an estimate to the next: kRounding allows for its growth.
+  static constexpr int kLooks = 8;
+  /// Per look: errors that rounding made fade no slower, or the bounds are far above them.
+  static constexpr double kFading = 0.992;
 
   static bool bounds_errors(const Gains& g) noexcept { return g.bounded || !g.table.empty(); }
   static double largest(const double* x, int n) noexcept {
