@@ -41,19 +41,23 @@ class LeastSquares {
       to_frame_.col(k) = eigen_.eigenvectors().col(k) / std::sqrt(values(k));
     return true;
   }
-  /// The rest of it, after `factor` of the same rows. Refined once: what rounding of G leaves is then less
-  /// than what rounding of the measurements does.
+  /// The rest of it, after `factor` of the same rows. Where rounding counts it is refined once: what rounding
+  /// of G leaves is then less than what rounding of the measurements does. It counts always (`exact`), as
+  /// where noise is bounded by nothing, or where measurements are far larger than their noise.
   template <class Uses>
-  bool locate(const Rows& rows, const Uses& uses) {
+  bool locate(const Rows& rows, const Uses& uses, bool exact = false) {
     c_.setZero();
-    move_to_least(rows, uses);
-    move_to_least(rows, uses);
+    const double largest = start(rows, uses);
+    rounds_ = exact || largest > kFarAboveNoise * kFarAboveNoise;
+    if (rounds_) refine(rows, uses);
     return c_.allFinite();
   }
 
   const Vector& state() const { return c_; }
-  /// What rounding changes a measurement of this row and C_j state() by: a part of their largest term.
+  /// What rounding changes a measurement of this row and C_j state() by: a part of their largest term; 0
+  /// where it does not count.
   double rounding(const Rows& rows, int j) const {
+    if (!rounds_) return 0.0;
     constexpr double kUnits = 8.0 * std::numeric_limits<double>::epsilon();
     const double* const c = rows.c(j).data();
     double largest = std::abs(rows.y(j));
@@ -71,17 +75,36 @@ class LeastSquares {
   double variance(Eigen::Index k) const { return to_frame_.row(k).squaredNorm(); }
 
  private:
-  /// One step from c_ by the residuals there.
+  /// Deviations; noise of the measurements is then a million times what rounding does to them.
+  static constexpr double kFarAboveNoise = 1e6;
+
+  /// From zero; the largest y_j^2 / R_j.
   template <class Uses>
-  void move_to_least(const Rows& rows, const Uses& uses) {
+  double start(const Rows& rows, const Uses& uses) {
+    double largest = 0.0;
+    step(rows, uses, [&](int j, const double*) {
+      largest = std::max(largest, rows.y(j) * rows.y(j) / rows.variance(j));
+      return rows.y(j);
+    });
+    return largest;
+  }
+  /// Once more, by the residuals.
+  template <class Uses>
+  void refine(const Rows& rows, const Uses& uses) {
+    step(rows, uses, [&](int j, const double* c) {
+      double residual = rows.y(j);
+      for (Eigen::Index k = 0; k < c_.size(); ++k) residual -= c[k] * c_[k];
+      return residual;
+    });
+  }
+  template <class Uses, class Residual>
+  void step(const Rows& rows, const Uses& uses, const Residual& residual) {
     const Eigen::Index n = g_.size();
     g_.setZero();
     for (int j = 0; j < rows.size(); ++j) {
       if (!uses(j)) continue;
       const double* const c = rows.c(j).data();
-      double residual = rows.y(j);
-      for (Eigen::Index k = 0; k < n; ++k) residual -= c[k] * c_[k];
-      const double weighted = residual / rows.variance(j);
+      const double weighted = residual(j, c) / rows.variance(j);
       for (Eigen::Index k = 0; k < n; ++k) g_[k] += weighted * c[k];
     }
     u_.noalias() = to_frame_.transpose().lazyProduct(g_);
@@ -91,6 +114,7 @@ class LeastSquares {
   Eigen::SelfAdjointEigenSolver<Matrix> eigen_;
   Matrix G_, to_frame_;
   Vector c_, g_, u_;
+  bool rounds_ = false;  // rounding counts
 };
 
 }  // namespace garrison::certificate::detail

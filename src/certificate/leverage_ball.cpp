@@ -153,7 +153,7 @@ void LeverageWorkspace::Room::choose_frame(const Rows& rows) {
 /// Step 3, the sums per source: false when a number is lost to overflow.
 bool LeverageWorkspace::Room::fit_rows(const Rows& rows, const Assumption& a) {
   const auto kept = [&](int j) { return keeps(rows, j); };
-  if (!frame->fit.locate(rows, kept)) return false;
+  if (!frame->fit.locate(rows, kept, a.bounded)) return false;
   std::fill(influence.begin(), influence.end(), 0.0);
   if (a.bounded) std::fill(noise.begin(), noise.end(), 0.0);
   rounding = 0.0;
