@@ -16,7 +16,7 @@ namespace {
 /// Arguments in which nan says that something is missing, or inf that something is impossible.
 bool may_be_missing(const std::string& which) {
   static const std::set<std::string, std::less<>> names{
-      "cost", "delta", "disturbances", "measured", "measurements", "raw", "residuals", "truth", "y"};
+      "cost", "delta", "disturbances", "measured", "measurements", "raw", "residuals", "truth", "y", "z"};
   const auto begin = which.find_last_of('.') + 1;
   return names.count(which.substr(begin, which.find('[', begin) - begin)) != 0;
 }

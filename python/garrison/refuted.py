@@ -15,6 +15,8 @@ _TIMES, _SURE = 1.5, 4.0
 _SENSORS = 3
 #: most sensors that measure the same and are compared with each other
 _EQUAL = 64
+#: part of measurements that rounding may change
+_ROUNDING = 1e-12
 
 
 def of_rate(filter: _core.Filter, statistic: Array | None, threshold: Array | None) -> list[str]:
@@ -61,6 +63,18 @@ def of_certificates(kind: NDArray[np.generic] | None, failure: float) -> list[st
     ]
 
 
+def of_sources(model: _core.Model, filter: _core.Filter) -> list[str]:
+    """A line when a filter counts attacked agents, and a source stands behind several of them."""
+    shared = shared_sources(model)
+    if not isinstance(filter.params.get("attacked"), int) or not shared:
+        return []
+    return [
+        f"sources of the model stand behind several agents ({', '.join(shared[:3])}): `attacked` of the filter counts "
+        "agents, and its bounds and accusations hold for so many of them, not for so many sources; give it as many as "
+        "the sources can falsify"
+    ]
+
+
 def of_bounds(
     model: _core.Model,
     filter: _core.Filter,
@@ -75,13 +89,14 @@ def of_bounds(
     attacked: most sources that may lie at a time, where the filter does not say it of its sensors. inputs: of the run,
     the last row leads to the last sample. constant: A holds at all times, and all inputs are known.
     """
-    own = filter.params.get("attacked")
-    liars = own if isinstance(own, int) else attacked
+    told = filter.params.get("attacked")
+    own = isinstance(told, int) and not shared_sources(model)  # it counts agents
+    liars = told if own else attacked
     bounds = np.asarray(model.measurement_bound, dtype=float)
     if measurements is None or liars is None or len(bounds) != model.agents:
         return []
     for_good = bool(filter.params.get("detector", False))
-    most = _pairs(model, measurements[0], bounds, for_good=for_good) if isinstance(own, int) else 0
+    most = _pairs(model, measurements[0], bounds, for_good=for_good) if own else 0
     if most > liars:
         return [
             f"{most} pairs of sensors that measure the same differ by more than measurement_bound allows, and only "
@@ -93,7 +108,7 @@ def of_bounds(
         attacked=liars,
         for_good=for_good,
         constant=constant,
-        owner=[] if isinstance(own, int) else _sources(model),
+        owner=[] if own else _sources(model),
         inputs=np.zeros((0, 0)) if inputs is None else inputs[len(inputs) - len(measurements[0]) + 1 :],
     )
     if refuted is None:
@@ -116,6 +131,16 @@ def _sources(model: _core.Model) -> list[int]:
     """A number per measurement, the same for those of one source; [] where every agent is one."""
     numbered: dict[str, int] = {}
     return [numbered.setdefault(name, len(numbered)) for name in model.sources]
+
+
+def shared_sources(model: _core.Model) -> list[str]:
+    """Names of the sources that stand behind outputs of several agents."""
+    behind: dict[str, set[int]] = {}
+    names = iter(model.sources)
+    for agent, C in enumerate(model.C):
+        for _, name in zip(C, names, strict=False):
+            behind.setdefault(name, set()).add(agent)
+    return [name for name, agents in behind.items() if len(agents) > 1]
 
 
 def _pairs(model: _core.Model, measurements: Array, bounds: Array, *, for_good: bool) -> int:
@@ -149,7 +174,7 @@ def _in_one_sample(y: Array, bounds: Array) -> NDArray[np.int64]:
     ordered = np.sort(np.where(np.isfinite(y), y, np.nan), axis=1)  # nan at the end
     known = np.isfinite(ordered).sum(axis=1)
     count = np.zeros(len(y), dtype=np.int64)
-    limit = 2.0 * float(bounds.max()) * (1.0 + 1e-9)
+    limit = 2.0 * float(bounds.max()) * (1.0 + 1e-9) + _ROUNDING * np.where(np.isfinite(y), np.abs(y), 0.0).max(axis=1)
     samples = np.arange(len(y))
     for k in range(y.shape[1] // 2):
         top = known - 1 - k
@@ -164,7 +189,8 @@ def _for_good(y: Array, bounds: Array) -> int:
     count = 0
     for i in range(y.shape[1]):
         for j in range(i):
-            if {i, j} <= free and (np.abs(y[:, i] - y[:, j]) > (bounds[i] + bounds[j]) * (1.0 + 1e-9)).any():
+            limit = (bounds[i] + bounds[j]) * (1.0 + 1e-9) + _ROUNDING * np.maximum(np.abs(y[:, i]), np.abs(y[:, j]))
+            if {i, j} <= free and (np.abs(y[:, i] - y[:, j]) > limit).any():
                 free -= {i, j}
                 count += 1
     return count

@@ -2,6 +2,7 @@
 #include "garrison/engine/design_file.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "garrison/certificate/online/certifier.hpp"
 #include "garrison/engine/agent.hpp"
@@ -195,6 +196,14 @@ bool covers(const AnyFilter& filter, int attacked) {
   return own == params.end() || !std::holds_alternative<std::int64_t>(own->second) ||
          attacked <= std::get<std::int64_t>(own->second);
 }
+/// It counts agents, so it says nothing where a source stands behind several of them.
+bool sources_within_agents(const certificate::Plan& plan) {
+  std::map<int, std::size_t> agent_of;
+  for (std::size_t k = 0; k < plan.ids.size(); ++k)
+    for (int r = plan.first[k]; r < plan.first[k + 1]; ++r)
+      if (agent_of.emplace(plan.source[static_cast<std::size_t>(r)], k).first->second != k) return false;
+  return true;
+}
 
 }  // namespace
 
@@ -231,7 +240,7 @@ std::shared_ptr<const Prepared> certified(const Prepared& prepared, const certif
     refuse("certificate", "one for " + prepared.filter().name(), "none",
            "its agents have a state each, which the others do not measure; it reports bounds of its own");
   certificate::Plan plan = certificate::make_plan(wanted, prepared.model(), prepared.network());
-  plan.family = covers(prepared.filter(), wanted.attacked);
+  plan.family = covers(prepared.filter(), wanted.attacked) && sources_within_agents(plan);
   return prepared.with(std::make_shared<const certificate::Plan>(std::move(plan)));
 }
 

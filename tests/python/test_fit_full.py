@@ -1,5 +1,6 @@
 """fit(states="all"): every station a state, known inputs, the order that the records have."""
 
+import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -115,6 +116,16 @@ def test_the_command_writes_a_model_that_scenarios_read(folder: Path, capsys: py
     assert model == fitted.model and names == ["east", "west"]
     with pytest.raises(gr.InvalidInput, match="attacked: got 1"):
         fitted.to_json(1)
+
+
+def test_missing_records_are_left_out(folder: Path) -> None:
+    records = read_records(folder / "records.csv")
+    whole = gr.fit(records, states="all", inputs=["valve"], harmonics=0, order=2)
+    values = records.values.copy()
+    values[100, 0] = values[200:220, 1] = np.nan
+    found = gr.fit(dataclasses.replace(records, values=values), states="all", inputs=["valve"], harmonics=0, order=2)
+    assert np.allclose(found.model.A, whole.model.A, atol=0.02)
+    assert np.isnan(found.autoregression.residuals[100:103]).any(axis=1).all()  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(

@@ -86,3 +86,14 @@ def test_saturation(options: dict[str, Any], size: float, process: float) -> Non
         assert beyond(run) == 0, seed
         assert not run.accusations or not any(any(sets) for _, _, sets in run.accusations)
     assert bounds > 1000
+
+
+@pytest.mark.parametrize("size", [1e3, 1e5, 1e6, 1e7])
+def test_equal_sensors_of_large_states_do_not_refute_true_bounds(size: float) -> None:
+    model = gr.Model([[1.0]], [[1.0]] * 11, process_bound=0.001, measurement_bound=0.0027)
+    for detector in (False, True):
+        filter = gr.filters.Saturation(threshold=0.5, rounds=12, attacked=2, initial_error=2.0, detector=detector)
+        for seed in range(10):
+            start = {"x0": [size], "start": [size], "noise": "extreme", "seed": seed}
+            run = gr.simulate(model, gr.Network.complete(11), filter, steps=60, **start)
+            assert not any("measurement_bound" in line for line in run.warnings), (seed, run.warnings)

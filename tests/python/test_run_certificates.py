@@ -351,3 +351,17 @@ def test_understated_noise_bounds_raise_a_doubt_about_the_certificate() -> None:
         told += any("contradict" in w for w in gr.replay(small, net, filter, **asked).warnings)
         assert not any("contradict" in w for w in gr.replay(true, net, filter, **asked).warnings)
     assert told == 5
+
+
+def test_a_source_behind_several_agents_voids_bounds_that_count_agents() -> None:
+    sources = ["gps", "gps", *"cdefgh"]
+    model = gr.Model([[1.0]], [[1.0]] * 8, process_bound=0.01, measurement_bound=0.1, sources=sources)
+    filter = gr.filters.Saturation(threshold=0.7, rounds=12, attacked=1, initial_error=2.0)
+    lie = gr.attacks.Bias(agents=[0, 1], value=5.0)
+    options = {"steps": 200, "attack": lie, "noise": "extreme", "seed": 1}
+    promise = {"certificate": "flooded", "failure": 0.0, "attacked": 1}
+    run = gr.simulate(model, gr.Network.complete(8), filter, **options, **promise)
+    assert run.error is not None and run.bound is not None and run.bound_kind is not None
+    assert (run.error <= run.bound)[:, 1:].all() and not (run.bound_kind == gr.BoundKind.PUBLISHED).any()
+    assert any("stand behind several agents (gps)" in line for line in run.warnings)
+    assert not any("pairs of sensors" in line or "contradict" in line for line in run.warnings)

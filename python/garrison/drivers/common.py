@@ -76,6 +76,7 @@ def recorded(
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
     if "A" in series or "C" in series:
         run.warnings.append("the plant changes in time: no theorem and no condition of a filter covers it")
+    run.warnings += refuted.of_sources(model, filter)
     run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
     run.warnings += doubts.of_alarms(filter, run.shape[1] - 1)
     run.warnings += doubts.of_losses(run.bound, run.verdict, run.counters)

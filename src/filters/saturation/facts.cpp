@@ -15,8 +15,11 @@ constexpr double kCleanGamma = 1e-14;  // complete graphs: rounding leaves 1e-17
 namespace {
 /// What a table for Gaussian noise goes with.
 void require_gaussian(const Saturation::Params& p) {
-  if (!(p.failure > 0.0 && p.failure < 1.0))
-    refuse("saturation.failure", text(p.failure), "a probability in (0, 1) with horizon");
+  // Agents and samples share it; below that quantiles do not exist.
+  constexpr double kLeast = 1e-200;
+  if (!(p.failure >= kLeast && p.failure < 1.0))
+    refuse("saturation.failure", text(p.failure), "a probability in [1e-200, 1) beside horizon",
+           "1e-6, say; for noise within bounds leave out failure and horizon");
   if (p.horizon < 1)
     refuse("saturation.horizon", std::to_string(p.horizon), "a number of samples >= 1 with failure",
            "all of them share the failure probability");
