@@ -36,7 +36,7 @@ void round_trip(const char* family, Message message, int agents) {
 }
 
 void bodies() {
-  Saturation::Message<2> s{Vec<2>(1.0 / 3.0, -0.0), true, AgentSet(11)};
+  Saturation::Message<2> s{Vec<2>(1.0 / 3.0, -0.0), true, {}, AgentSet(11)};
   s.proved.insert(2);
   s.proved.insert(10);
   round_trip("saturation", s, 11);

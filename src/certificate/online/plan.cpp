@@ -16,6 +16,9 @@ namespace {
 // Shares of the failure probability: see Plan.
 constexpr double kSampleShare = 0.75 / (3.0 * (kChoice + 2));
 constexpr double kAgeingShare = 0.25 / (kChoice + 1);
+// Bounds of noise, with room for what rounding does to measurements of states a million times as large: where
+// inputs are known, what is left of these measurements is small, and does not show it.
+constexpr double kRounded = 1.0 + 1e-8;
 
 void require_wanted(const Wanted& wanted, const Model& model) {
   if (!(wanted.failure >= 0.0 && wanted.failure < 1.0))
@@ -97,7 +100,7 @@ void age_table(Plan& plan, const Model& model) {
   const int most = ages_of(model.A());
   const auto aged = gaussian ? Propagation::gaussian(model.A(), most, noise.process_covariance,
                                                      kAgeingShare * plan.wanted.failure)
-                             : Propagation::bounded(model.A(), most, noise.process_bound);
+                             : Propagation::bounded(model.A(), most, kRounded * noise.process_bound);
   for (int k = 0; k <= most; ++k) {
     plan.norm.push_back(aged.norm(k));
     plan.added.push_back(aged.added(k));
@@ -141,7 +144,7 @@ Plan make_plan(const Wanted& wanted, const Model& model, const Network& network)
     for (int r = 0; r < model.outputs(i); ++r) {
       const int row = model.offset(i) + r;
       if (model.noise().measurement_bound.size() > 0)
-        plan.width(row) = plan.deterministic() ? model.noise().measurement_bound(i) : 0.0;
+        plan.width(row) = plan.deterministic() ? kRounded * model.noise().measurement_bound(i) : 0.0;
       plan.variance(row) = variance_of(model, i, r, plan.width(row));
     }
     plan.first.push_back(model.offset(i) + model.outputs(i));
