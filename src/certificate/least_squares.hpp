@@ -42,8 +42,9 @@ class LeastSquares {
     return true;
   }
   /// The rest of it, after `factor` of the same rows. Where rounding counts it is refined once: what rounding
-  /// of G leaves is then less than what rounding of the measurements does. It counts always (`exact`), as
-  /// where noise is bounded by nothing, or where measurements are far larger than their noise.
+  /// of G leaves is then less than what rounding of the measurements does. It counts where that is
+  /// asked for (`exact`: the bound of the noise may be 0), and where measurements are far larger than their
+  /// noise.
   template <class Uses>
   bool locate(const Rows& rows, const Uses& uses, bool exact = false) {
     c_.setZero();

@@ -123,9 +123,11 @@ def test_missing_records_are_left_out(folder: Path) -> None:
     whole = gr.fit(records, states="all", inputs=["valve"], harmonics=0, order=2)
     values = records.values.copy()
     values[100, 0] = values[200:220, 1] = np.nan
-    found = gr.fit(dataclasses.replace(records, values=values), states="all", inputs=["valve"], harmonics=0, order=2)
+    found: Any = gr.fit(
+        dataclasses.replace(records, values=values), states="all", inputs=["valve"], harmonics=0, order=2
+    )
     assert np.allclose(found.model.A, whole.model.A, atol=0.02)
-    assert np.isnan(found.autoregression.residuals[100:103]).any(axis=1).all()  # type: ignore[attr-defined]
+    assert np.isnan(found.autoregression.residuals[100:103]).any(axis=1).all()
 
 
 @pytest.mark.parametrize(

@@ -242,7 +242,8 @@ def test_without_measurement_noise_a_false_alarm_ends_within_tens_of_samples(dro
             seed=seed,
             link={"drop": drop},
         )
-        attacked = run.verdict[0] == gr.Verdict.ATTACKED  # type: ignore[index]
+        assert run.verdict is not None
+        attacked = run.verdict[0] == gr.Verdict.ATTACKED
         alarms += int(attacked.any())
         length = np.zeros(6, dtype=int)
         for sample in attacked:

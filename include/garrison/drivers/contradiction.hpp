@@ -2,7 +2,6 @@
 // What recorded measurements say against the noise bounds of a model: a pass over a record that has ended.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "garrison/core/model.hpp"
