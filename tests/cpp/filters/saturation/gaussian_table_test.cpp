@@ -3,12 +3,9 @@
 // that was asked for at most.
 #include <doctest/doctest.h>
 
-#include <cstring>
-
-#include "../../agents_by_hand.hpp"
+#include "by_parts.hpp"
 #include "garrison/certificate/quantiles.hpp"
 #include "garrison/drivers/simulate.hpp"
-#include "garrison/engine/design_file.hpp"
 #include "worst_case.hpp"
 
 using namespace garrison;
@@ -134,27 +131,7 @@ TEST_CASE("TG: bounds up to the horizon and none beyond, for noise of which only
 TEST_CASE("TG: agents driven by bytes have the bits of the engine, from a part of a design") {
   const Model model = gaussian_model(5);
   const Network network = Network::ring(5);
-  const auto prepared = make_filter("saturation", parameters(true))->prepare(model, network);
-  RunOptions o;
-  o.attacks = {bias(Schedule(10, {3}), 0.6)};
-  const Record run = simulate(*prepared, {60, Vector::Zero(2), 0.5}, o);
-  test::AgentsByHand agents(*prepared, network);
-  for (int i = 0; i < 5; ++i) {
-    agents.all()[static_cast<std::size_t>(i)] = read_part(write_part(*prepared, i));
-    REQUIRE(agents[i].reset(Vector(Eigen::Map<const Vector>(run.estimate.data() + 2 * i, 2))) ==
-            Refusal::none);
-  }
-  for (int t = 1; t <= 60; ++t) {
-    agents.step(t, [&](int i) {
-      return Vector::Constant(1, run.measurements[static_cast<std::size_t>(5 * (t - 1) + i)]);
-    });
-    for (int i = 0; i < 5; ++i) {
-      const Report report = agents[i].report();
-      const auto at = static_cast<std::size_t>(5 * t + i);
-      REQUIRE(std::memcmp(&report.bound, &run.bound[at], sizeof(double)) == 0);
-      REQUIRE(std::memcmp(&report.threshold, &run.threshold[at], sizeof(double)) == 0);
-    }
-  }
+  test::run_by_parts(*make_filter("saturation", parameters(true))->prepare(model, network), 60);
 }
 
 TEST_CASE("TG: check prints what holds to the end, and what does not go together is refused by name") {

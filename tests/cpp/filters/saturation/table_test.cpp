@@ -5,12 +5,9 @@
 
 #include <doctest/doctest.h>
 
-#include <cstring>
-
-#include "../../agents_by_hand.hpp"
 #include "../../random_system.hpp"
+#include "by_parts.hpp"
 #include "garrison/drivers/simulate.hpp"
-#include "garrison/engine/design_file.hpp"
 #include "garrison/filters/saturation/filter.hpp"
 
 using namespace garrison;
@@ -200,27 +197,7 @@ TEST_CASE("agents driven by bytes read the table as the engine does, from a part
                     {"adaptive", adaptive}};
     if (!adaptive) params.insert({{"threshold", 0.5}, {"detector", true}});
     const auto prepared = make_filter("saturation", params)->prepare(model, network);
-    RunOptions o;
-    o.attacks = {bias(Schedule(10, {3}), 0.6)};
-    const Record run = simulate(*prepared, {200, Vector::Zero(2), 0.5}, o);
-    test::AgentsByHand agents(*prepared, network);
-    for (int i = 0; i < 5; ++i) {
-      agents.all()[static_cast<std::size_t>(i)] = read_part(write_part(*prepared, i));
-      REQUIRE(agents[i].reset(Vector(Eigen::Map<const Vector>(run.estimate.data() + 2 * i, 2))) ==
-              Refusal::none);
-    }
-    for (int t = 1; t <= 200; ++t) {
-      agents.step(t, [&](int i) {
-        return Vector::Constant(1, run.measurements[static_cast<std::size_t>(5 * (t - 1) + i)]);
-      });
-      for (int i = 0; i < 5; ++i) {
-        const Report report = agents[i].report();
-        const auto at = static_cast<std::size_t>(5 * t + i);
-        REQUIRE(std::memcmp(&report.bound, &run.bound[at], sizeof(double)) == 0);
-        REQUIRE(static_cast<std::uint8_t>(report.kind) == run.bound_kind[at]);
-        REQUIRE(std::memcmp(&report.threshold, &run.threshold[at], sizeof(double)) == 0);
-      }
-    }
+    const Record run = test::run_by_parts(*prepared, 200);
     const auto informed = static_cast<std::uint8_t>(CertificateKind::informed);
     CHECK((run.bound_kind[static_cast<std::size_t>(5 * 200)] == informed) == !adaptive);
   }
