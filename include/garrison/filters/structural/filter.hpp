@@ -75,6 +75,7 @@ struct GARRISON_EXPORT Structural {
 
   using Heard = structural::Heard;
   using Gains = structural::Gains;
+  using Memory = structural::Memory;
   template <int n>
   using State = structural::State<n>;
   template <int n>
@@ -113,6 +114,7 @@ struct GARRISON_EXPORT Structural {
     }
     fresh.pace = g.rho > 0.0 && g.rho < 1.0 ? -1.0 / std::log(g.rho) : 0.0;
     fresh.senders.assign(fresh.left_out.size(), 0);
+    fresh.covariances.assign(fresh.left_out.size(), nullptr);
     fresh.missing.assign(fresh.left_out.size(), 0);
     fresh.accused.resize(l.agents);
     s = std::move(fresh);
@@ -155,7 +157,11 @@ struct GARRISON_EXPORT Structural {
     const Seen seen = predict(l, g, s, inbox, m);
     const bool settled = s.rest == 0 && s.start == 0 && seen.estimates;
     const bool carried = carries(g) && (g.isolate || !(settled && seen.measurements));
-    if (carried) run_widest_of<PredictSpread<n>, n>(&l, &g, &s, &inbox);
+    if (carried) {
+      for (std::size_t at = 0; at < inbox.size(); ++at) s.covariances[at] = inbox[at].covariance.data();
+      constexpr int m = spread_dimension(n);
+      run_widest_of<PredictSpread<m>, m>(&l, &g, static_cast<Memory*>(&s), inbox.size());
+    }
     const double* c = row(g, l.id, nn);
     s.innovation = measured ? s.y - dot(g, l.id, s.prior, nn) : kNaN;
     bool over = false;
@@ -271,21 +277,29 @@ struct GARRISON_EXPORT Structural {
     bool estimates = true;
     bool measurements = true;
   };
-  /// The bound of the error, in registers as wide as the machine's.
+  /// The bound of the error, in registers as wide as the machine's where its rows fill them; other dimensions
+  /// share one piece of code.
+  static constexpr int spread_dimension(int n) { return n == 2 || n == 4 || n == 8 ? n : Dynamic; }
   template <int n>
   struct PredictSpread {
     template <int B>
-    GARRISON_INLINE static void run(const Local* l, const Gains* g, State<n>* s,
-                                    const Inbox<Message<n>>* inbox) noexcept {
-      predict_spread<B>(*l, *g, *s, *inbox);
+    GARRISON_INLINE static void run(const Local* l, const Gains* g, Memory* s, std::size_t heard) noexcept {
+      predict_spread<B, n>(*l, *g, *s, heard);
     }
   };
   template <int n>
   struct UpdateSpread {
     template <int B>
-    GARRISON_INLINE static void run(const Local* l, const Gains* g, State<n>* s) noexcept {
-      update_spread<B>(*l, *g, *s);
+    GARRISON_INLINE static void run(const Local* l, const Gains* g, Memory* s) noexcept {
+      update_spread<B, n>(*l, *g, *s);
     }
+  };
+  /// What one sample says about whom to use: (4) gathers it.
+  struct Doubts {
+    bool carried;         ///< the bound of the error is carried
+    bool out = false;     ///< a measurement was left out
+    bool heeded = false;  ///< one was used
+    double growth = 1.0;  ///< of the bound of the error
   };
   /// Whether y_j is due.
   static bool expects(const Gains& g, const Heard& j) noexcept { return j.first >= 0 && g.sensing(j.id); }
@@ -324,12 +338,10 @@ struct GARRISON_EXPORT Structural {
   template <int n>
   static Seen predict(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
                       Message<n>& m) noexcept;
-  template <int n>
-  static double own_weight(const Heard* heard, const State<n>& s) noexcept;
+  static double own_weight(const Heard* heard, const Memory& s) noexcept;
   /// Jensen: A (sum_j W_ij P_j) A' + E >= cov(e before the update), into the first n x n of `work`.
   template <int B, int n>
-  static void predict_spread(const Local& l, const Gains& g, State<n>& s,
-                             const Inbox<Message<n>>& inbox) noexcept;
+  static void predict_spread(const Local& l, const Gains& g, Memory& s, std::size_t messages) noexcept;
   /// (4) where all that came is used: own measurement, then those of the others in order of id.
   template <int n>
   static void update_estimate(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
@@ -341,7 +353,11 @@ struct GARRISON_EXPORT Structural {
                      bool carried) noexcept;
   /// P_i = G prior G' + sum of what the noises add, G = I - sum K_i c_j c_j', over what is not missing.
   template <int B, int n>
-  static void update_spread(const Local& l, const Gains& g, State<n>& s) noexcept;
+  static void update_spread(const Local& l, const Gains& g, Memory& s) noexcept;
+  /// The measurement of Heard `e` is not used, `by_level`: because it is over its level.
+  static void leave(const Local& l, const Gains& g, Memory& s, int e, bool by_level, Doubts& doubts) noexcept;
+  /// The measurement of Heard `e` is used, with `isolate`.
+  static void take_back(const Local& l, const Gains& g, Memory& s, int e, bool carried) noexcept;
   /// Whether a measurement that is heard is over its level, the bound of what is expected of it being
   /// `prior`.
   template <int n>
@@ -350,21 +366,16 @@ struct GARRISON_EXPORT Structural {
   /// One test of `value`, of which `std` is the deviation (`exact`) or bounds it: sets statistic and
   /// threshold, true for an alarm. The matrix of a window is that of the stationary error; while a gap is
   /// behind it, the sample alone is tested.
-  template <int n>
-  static bool examine(const Gains& g, State<n>& s, std::size_t id, double value, double std,
+  static bool examine(const Gains& g, Memory& s, std::size_t id, double value, double std,
                       bool exact) noexcept;
   /// The memory of the tests: the verdict.
-  template <int n>
-  static void judge(const Local& l, const Gains& g, State<n>& s, bool over) noexcept;
+  static void judge(const Local& l, const Gains& g, Memory& s, bool over) noexcept;
   /// Counts how long the error is not stationary: after a gap (`whole` is false) until what it added to P has
   /// fallen below 1 % of the deviation.
-  template <int n>
-  static void pass(const Local& l, const Gains& g, State<n>& s, bool whole) noexcept;
-  template <int n>
-  static void remember(const Gains& g, State<n>& s, double residual) noexcept;
+  static void pass(const Local& l, const Gains& g, Memory& s, bool whole) noexcept;
+  static void remember(const Gains& g, Memory& s, double residual) noexcept;
   /// v'S^-1 v over the window, NaN until it is full.
-  template <int n>
-  static double window_statistic(const Gains& g, const State<n>& s, std::size_t id) noexcept;
+  static double window_statistic(const Gains& g, const Memory& s, std::size_t id) noexcept;
 };
 
 }  // namespace garrison

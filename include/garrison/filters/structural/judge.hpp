@@ -7,9 +7,8 @@
 
 namespace garrison {
 
-template <int n>
-bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double value, double std,
-                         bool exact) noexcept {
+inline bool Structural::examine(const Gains& g, Memory& s, std::size_t id, double value, double std,
+                                bool exact) noexcept {
   s.threshold = kNaN;
   s.statistic = std::abs(value);
   s.coarse = false;
@@ -34,8 +33,7 @@ bool Structural::examine(const Gains& g, State<n>& s, std::size_t id, double val
   return s.statistic >= s.threshold;
 }
 
-template <int n>
-void Structural::judge(const Local& l, const Gains& g, State<n>& s, bool over) noexcept {
+inline void Structural::judge(const Local& l, const Gains& g, Memory& s, bool over) noexcept {
   const bool absent = g.accuse_missing && l.outputs > 0 && std::isnan(s.y);
   if (!absent && std::isnan(s.threshold)) {
     const bool could_be = !std::isnan(s.y) && s.start == 0;
@@ -56,8 +54,7 @@ void Structural::judge(const Local& l, const Gains& g, State<n>& s, bool over) n
   if (s.alarm) s.accused.insert(l.id);
 }
 
-template <int n>
-void Structural::remember(const Gains& g, State<n>& s, double residual) noexcept {
+inline void Structural::remember(const Gains& g, Memory& s, double residual) noexcept {
   if (std::isnan(residual)) {
     s.broken = s.broken || s.start == 0;
     s.filled = s.oldest = 0;
@@ -71,8 +68,7 @@ void Structural::remember(const Gains& g, State<n>& s, double residual) noexcept
   s.broken = s.broken && s.filled < g.window;
 }
 
-template <int n>
-double Structural::window_statistic(const Gains& g, const State<n>& s, std::size_t id) noexcept {
+inline double Structural::window_statistic(const Gains& g, const Memory& s, std::size_t id) noexcept {
   const auto w = static_cast<std::size_t>(g.window);
   if (s.filled < g.window || g.precision.empty()) return kNaN;
   const double* S = g.precision.data() + id * w * w;

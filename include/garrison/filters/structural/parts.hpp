@@ -96,10 +96,8 @@ struct Gains {
     v("has_sensor", has_sensor);
   }
 };
-template <int n>
-struct State {
-  Vec<n> x;
-  Vec<n> prior;
+/// What an agent remembers besides its estimate.
+struct Memory {
   double y = kNaN;
   double residual = kNaN;
   double innovation = kNaN;
@@ -122,8 +120,10 @@ struct State {
   // What follows from the gains, and is not part of a snapshot: I - sum K_i c_j c_j', column by column, and
   // sum R_jj K_i c_j (K_i c_j)', when no measurement is missing; n x n each.
   std::vector<double> whole;
-  double pace = 0.0;         // samples in which the deviation of an error falls by the factor e
-  std::vector<int> senders;  // of this sample: the Heard behind each message of the inbox
+  double pace = 0.0;  // samples in which the deviation of an error falls by the factor e
+  // Of this sample: the Heard behind each message of the inbox, and its packed covariance.
+  std::vector<int> senders;
+  std::vector<const double*> covariances;
   std::vector<int> missing;  // Heard whose measurement is not used, the first `gone`
   int gone = 0;
   AgentSet accused;
@@ -131,8 +131,6 @@ struct State {
   template <class V>
   void visit(V& v) {
     const int window = std::max<int>(1, static_cast<int>(last.size()));
-    v("estimate", x);
-    v("prior", prior);
     v("y", y);
     v("residual", residual);
     v("innovation", innovation);
@@ -152,6 +150,18 @@ struct State {
     v("left_out", left_out);
     v("P", P);
     v("accused", accused);
+  }
+};
+template <int n>
+struct State : Memory {
+  Vec<n> x;
+  Vec<n> prior;
+
+  template <class V>
+  void visit(V& v) {
+    v("estimate", x);
+    v("prior", prior);
+    Memory::visit(v);
   }
 };
 template <int n>

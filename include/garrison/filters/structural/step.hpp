@@ -123,16 +123,15 @@ Structural::Seen Structural::predict(const Local& l, const Gains& g, State<n>& s
   return seen;
 }
 
-template <int n>
-double Structural::own_weight(const Heard* heard, const State<n>& s) noexcept {
+inline double Structural::own_weight(const Heard* heard, const Memory& s) noexcept {
   double own = heard->weight;
   for (int k = 0; k < s.gone; ++k) own += heard[s.missing[static_cast<std::size_t>(k)]].weight;
   return own;
 }
 
 template <int B, int n>
-GARRISON_INLINE void Structural::predict_spread(const Local& l, const Gains& g, State<n>& s,
-                                                const Inbox<Message<n>>& inbox) noexcept {
+GARRISON_INLINE void Structural::predict_spread(const Local& l, const Gains& g, Memory& s,
+                                                std::size_t messages) noexcept {
   const int nn = dimension<n>(l);
   const std::size_t size = structural::entries(nn);
   double* prior = s.work.data();
@@ -142,8 +141,8 @@ GARRISON_INLINE void Structural::predict_spread(const Local& l, const Gains& g, 
   structural::Sums<n == Dynamic ? Dynamic : n * (n + 1) / 2> sums(half);
   double* const lower = sums.data();
   std::fill_n(lower, structural::packed(nn), 0.0);
-  for (std::size_t at = 0; at < inbox.size(); ++at)
-    structural::add_packed<n>(inbox[at].covariance.data(), heard[s.senders[at]].weight, nn, lower);
+  for (std::size_t at = 0; at < messages; ++at)
+    structural::add_packed<n>(s.covariances[at], heard[s.senders[at]].weight, nn, lower);
   structural::unpack<n>(lower, nn, mean);
   const double own = own_weight(heard, s);
   for (std::size_t k = 0; k < size; ++k) mean[k] += own * s.P[k];
@@ -163,50 +162,18 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
   double* const x = sums.data();
   for (int k = 0; k < nn; ++k) x[k] = s.prior[k];
   if (carried && g.isolate) std::fill_n(more, size, 0.0);
-  // That a measurement was over its level says of an honest sensor that the estimate is off.
-  bool out = false;
-  bool heeded = false;
-  double growth = 1.0;
-  const auto leave = [&](int e, bool by_level) {
-    const Heard& j = heard[e];
-    char& before = s.left_out[static_cast<std::size_t>(e)];
-    out = true;
-    const bool used_before = before != Trust::out && before != Trust::out_again;
-    const bool again = before != Trust::trusted && before != Trust::out;
-    if (carried) growth = std::max(growth, again ? kHaste : g.doubt[static_cast<std::size_t>(j.id)]);
-    if (by_level && used_before && carried) {
-      const double* c = row(g, j.id, nn);
-      const double spread =
-          structural::quadratic<Dynamic>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
-      if (spread > 0.0) structural::add_seen_outer(prior, c, g.surprise / spread, nn, more);
-    }
-    before = again ? Trust::out_again : Trust::out;
-  };
-  const auto take_back = [&](int e) {
-    char& trust = s.left_out[static_cast<std::size_t>(e)];
-    if (trust == Trust::out) {
-      const auto id = static_cast<std::size_t>(heard[e].id);
-      const double* c = row(g, heard[e].id, nn);
-      const double usual = kBlind * g.innovation_std[id];
-      const bool far = carried && structural::quadratic<Dynamic>(prior, c, nn) + g.noise[id] > usual * usual;
-      trust = far ? Trust::followed : Trust::trusted;
-    } else if (trust == Trust::out_again) {
-      trust = Trust::returning;
-    } else if (trust == Trust::returning && s.rest == 0) {
-      trust = Trust::trusted;
-    }
-  };
+  Doubts doubts{carried};
   const auto use = [&](int e, double innovation) {
-    heeded = true;
+    doubts.heeded = true;
     const double* column = g.columns.data() + heard[e].first;
     for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
-    if (g.isolate) take_back(e);
+    if (g.isolate) take_back(l, g, s, e, carried);
   };
   const auto miss = [&](int e) { s.missing[static_cast<std::size_t>(s.gone++)] = e; };
   if (used) {
     use(0, s.innovation);
   } else {
-    if (!std::isnan(s.y)) leave(0, true);
+    if (!std::isnan(s.y)) leave(l, g, s, 0, true, doubts);
     miss(0);
   }
   for (std::size_t at = 0; at < inbox.size(); ++at) {
@@ -215,29 +182,69 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     const auto& letter = inbox[at];
     if (j.first < 0) continue;
     if (!letter.measured) {
-      if (letter.withheld && g.isolate) leave(e, false);
+      if (letter.withheld && g.isolate) leave(l, g, s, e, false, doubts);
       miss(e);
       continue;
     }
     const double innovation = letter.numbers[nn] - dot(g, j.id, s.prior, nn);
     if (g.isolate && carried && s.start == 0 && surprising<n>(g, j, prior, innovation, nn)) {
-      leave(e, true);
+      leave(l, g, s, e, true, doubts);
       miss(e);
     } else {
       use(e, innovation);
     }
   }
   if constexpr (n != Dynamic) std::copy_n(x, nn, s.x.data());
-  if (!carried) return !out;
-  if (out && !heeded) growth = std::max(growth, kNobody);
+  if (!carried) return !doubts.out;
+  if (doubts.out && !doubts.heeded) doubts.growth = std::max(doubts.growth, kNobody);
   if (g.isolate)
-    for (std::size_t k = 0; k < size; ++k) prior[k] = growth * (prior[k] + more[k]);
-  run_widest_of<UpdateSpread<n>, n>(&l, &g, &s);
-  return !out;
+    for (std::size_t k = 0; k < size; ++k) prior[k] = doubts.growth * (prior[k] + more[k]);
+  constexpr int m = spread_dimension(n);
+  run_widest_of<UpdateSpread<m>, m>(&l, &g, static_cast<Memory*>(&s));
+  return !doubts.out;
+}
+
+inline void Structural::leave(const Local& l, const Gains& g, Memory& s, int e, bool by_level,
+                              Doubts& doubts) noexcept {
+  const int nn = l.states;
+  const Heard& j = g.heard[static_cast<std::size_t>(g.offsets[static_cast<std::size_t>(l.id)] + e)];
+  const double* prior = s.work.data();
+  double* more = s.work.data() + structural::entries(nn);
+  char& before = s.left_out[static_cast<std::size_t>(e)];
+  doubts.out = true;
+  const bool used_before = before != Trust::out && before != Trust::out_again;
+  const bool again = before != Trust::trusted && before != Trust::out;
+  if (doubts.carried)
+    doubts.growth = std::max(doubts.growth, again ? kHaste : g.doubt[static_cast<std::size_t>(j.id)]);
+  if (by_level && used_before && doubts.carried) {
+    // That a measurement was over its level says of an honest sensor that the estimate is off.
+    const double* c = row(g, j.id, nn);
+    const double spread =
+        structural::quadratic<Dynamic>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
+    if (spread > 0.0) structural::add_seen_outer(prior, c, g.surprise / spread, nn, more);
+  }
+  before = again ? Trust::out_again : Trust::out;
+}
+
+inline void Structural::take_back(const Local& l, const Gains& g, Memory& s, int e, bool carried) noexcept {
+  char& trust = s.left_out[static_cast<std::size_t>(e)];
+  if (trust == Trust::out) {
+    const Heard& j = g.heard[static_cast<std::size_t>(g.offsets[static_cast<std::size_t>(l.id)] + e)];
+    const auto id = static_cast<std::size_t>(j.id);
+    const double* c = row(g, j.id, l.states);
+    const double usual = kBlind * g.innovation_std[id];
+    const bool far =
+        carried && structural::quadratic<Dynamic>(s.work.data(), c, l.states) + g.noise[id] > usual * usual;
+    trust = far ? Trust::followed : Trust::trusted;
+  } else if (trust == Trust::out_again) {
+    trust = Trust::returning;
+  } else if (trust == Trust::returning && s.rest == 0) {
+    trust = Trust::trusted;
+  }
 }
 
 template <int B, int n>
-GARRISON_INLINE void Structural::update_spread(const Local& l, const Gains& g, State<n>& s) noexcept {
+GARRISON_INLINE void Structural::update_spread(const Local& l, const Gains& g, Memory& s) noexcept {
   const int nn = dimension<n>(l);
   const std::size_t size = structural::entries(nn);
   const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
@@ -267,10 +274,9 @@ bool Structural::surprising(const Gains& g, const Heard& j, const double* prior,
   return variance > 0.0 && std::abs(innovation) >= g.sample_level * std::sqrt(variance);
 }
 
-template <int n>
-void Structural::pass(const Local& l, const Gains& g, State<n>& s, bool whole) noexcept {
+inline void Structural::pass(const Local& l, const Gains& g, Memory& s, bool whole) noexcept {
   if (s.start > 0) --s.start;
-  const int nn = dimension<n>(l);
+  const int nn = l.states;
   if (!whole) {
     double ratio = 1.0;
     const double* settled = carries(g) ? stationary(g, l.id, nn) : nullptr;
