@@ -2,6 +2,7 @@
 // Analysis and design of the structural filter.
 #include "bindings.hpp"
 #include "budget.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/structural/detection.hpp"
 #include "garrison/filters/structural/filter.hpp"
 #include "garrison/filters/structural/gains.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/solvers.hpp"
+#include "garrison/core/spectrum.hpp"
 
 namespace garrison {
 
@@ -19,8 +20,7 @@ Matrix lyapunov(const MatrixRef& M, const MatrixRef& F) {
     if (more.cwiseAbs().maxCoeff() <= 1e-18 * size) return 0.5 * (X + X.transpose());
     power = power * power;
   }
-  const double radius = Eigen::EigenSolver<Matrix>(M, false).eigenvalues().cwiseAbs().maxCoeff();
-  refuse("spectral radius of the error matrix", text(radius), "below 1 (Schur stable)",
+  refuse("spectral radius of the error matrix", text(spectral_radius(M)), "below 1 (Schur stable)",
          "there is no steady state");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "require.hpp"
 
-#include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 
 namespace garrison::certificate::detail {
 
@@ -12,7 +12,7 @@ void require_covariance(const char* which, const MatrixRef& P, Eigen::Index size
   const Matrix scaled = P / scale;
   if ((scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9)
     refuse(which, "a matrix that is not symmetric", "a covariance");
-  const double least = Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  const double least = garrison::detail::least_eigenvalue(scaled);
   if (least < -1e-9) refuse(which, "an eigenvalue " + text(least * scale), "a positive semidefinite matrix");
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 #include "garrison/core/params.hpp"
 
 namespace garrison {
@@ -31,7 +31,7 @@ void require_covariance(const std::string& which, const Matrix& m, Eigen::Index 
   const double scale = m.cwiseAbs().maxCoeff();
   if (!m.isApprox(m.transpose(), 1e-12))
     refuse(which, "a matrix that is not symmetric", "a symmetric one", "use (M + M') / 2");
-  const double least = Eigen::SelfAdjointEigenSolver<Matrix>(m, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  const double least = detail::least_eigenvalue(m);
   if (least < -1e-12 * scale)
     refuse(which, "least eigenvalue " + text(least), "a positive semidefinite covariance", "check its sign");
 }

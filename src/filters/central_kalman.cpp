@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/central_kalman.hpp"
 
+#include "core/spectrum.hpp"
 #include "garrison/core/response.hpp"
 #include "kalman_estimate.hpp"
 
@@ -54,7 +55,8 @@ Matrix filtered(const Model& model, const MatrixRef& measurements, const VectorR
   const Matrix C = model.stacked();
   const Series& series = known.series;
   Matrix process_root;
-  if (series.process_covariance.empty()) process_root = kalman::root(model.noise().process_covariance);
+  if (series.process_covariance.empty())
+    process_root = detail::covariance_root(model.noise().process_covariance);
   Matrix estimates(measurements.rows() + 1, n);
   kalman::Estimate now{x0, std::sqrt(start_variance) * Matrix::Identity(n, n)};
   estimates.row(0) = now.x;
@@ -63,7 +65,8 @@ Matrix filtered(const Model& model, const MatrixRef& measurements, const VectorR
     const auto at = static_cast<std::size_t>(t);
     const int sample = static_cast<int>(t) + 1;
     const Matrix& A = series.A_at(model, sample);
-    if (!series.process_covariance.empty()) process_root = kalman::root(series.process_covariance[at]);
+    if (!series.process_covariance.empty())
+      process_root = detail::covariance_root(series.process_covariance[at]);
     now.predict(model.inputs() == 0
                     ? Vector(A * now.x)
                     : driven(A, now.x, series.B_at(model, sample), known.inputs.row(t).transpose()),

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/spectrum.hpp"
 #include "kalman_estimate.hpp"
 
 namespace garrison {
@@ -63,8 +64,8 @@ Matrix extended_kalman(const NonlinearPlant& plant, const MatrixRef& measurement
   require(plant, measurements, x0, P0, inputs);
   const Index n = x0.size();
   const Index m = measurements.cols();
-  const Matrix process_root = kalman::root(plant.process_covariance);
-  kalman::Estimate now{x0, kalman::root(P0)};
+  const Matrix process_root = detail::covariance_root(plant.process_covariance);
+  kalman::Estimate now{x0, detail::covariance_root(P0)};
   Matrix estimates(measurements.rows() + 1, n);
   estimates.row(0) = now.x;
   for (Index r = 0; r < measurements.rows(); ++r) {

@@ -91,11 +91,6 @@ void correct_robustly(Estimate& now, const Outputs& o, double huber) {
 
 }  // namespace
 
-Matrix root(const Matrix& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(covariance);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
 void Estimate::take_time(double rows) {
   constexpr double kWorthAsking = 1e6;  // multiplications, about a millisecond
   const auto n = static_cast<double>(x.size());

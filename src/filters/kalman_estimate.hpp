@@ -9,9 +9,6 @@
 
 namespace garrison::kalman {
 
-/// A symmetric square root of a covariance (also a singular one).
-Matrix root(const Matrix& covariance);
-
 /// Outputs of one time, linear about some state: y = C x + offset + noise, of variances R. `offset` is empty
 /// where it is zero.
 struct Outputs {

@@ -8,6 +8,7 @@
 #include "garrison/analysis/lyapunov.hpp"
 #include "garrison/analysis/observability.hpp"
 #include "garrison/analysis/poles.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/engine/filter_of.hpp"
 
 namespace garrison {
@@ -178,8 +179,7 @@ Check Lfre::check(const Params& params, const Model& model, const Network& netwo
     }
     sources += 1.0;
     const Matrix closed = model.A() - g.observer[i] * model.C(static_cast<int>(i));
-    slowest =
-        std::max(slowest, Eigen::EigenSolver<Matrix>(closed, false).eigenvalues().cwiseAbs().maxCoeff());
+    slowest = std::max(slowest, spectral_radius(closed));
     // Steady error per unit of measurement noise: sqrt(tr X), X = (A - H c) X (A - H c)' + H H'.
     loudest = std::max(loudest, std::sqrt(steady_trace(closed, g.observer[i] * g.observer[i].transpose())));
   }

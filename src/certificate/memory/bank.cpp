@@ -9,18 +9,11 @@
 #include "bank_sources.hpp"
 #include "choices.hpp"
 #include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 #include "ellipsoid_union.hpp"
 
 namespace garrison::certificate {
-namespace {
-
-/// L with L L' = P, from the eigenvalues: P may be singular.
-Matrix root(const MatrixRef& P) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen{Matrix(P)};
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 namespace detail {
 
@@ -98,8 +91,8 @@ void Bank::restart(const Region& region) {
   const double reach = ellipsoid ? region.stretch : region.radius;
   detail::require_least(ellipsoid ? "stretch" : "radius", reach, 0.0);
   if (ellipsoid) detail::require_covariance("shape", region.shape, states());
-  const Matrix Psi =
-      ellipsoid ? Matrix(reach * root(region.shape)) : Matrix(reach * Matrix::Identity(states(), states()));
+  const Matrix Psi = ellipsoid ? Matrix(reach * garrison::detail::covariance_root(region.shape))
+                               : Matrix(reach * Matrix::Identity(states(), states()));
   const Vector c0 = region.center;
   all_members(c0, Matrix::Zero(states(), states()), Psi);
 }
@@ -277,7 +270,8 @@ void Bank::merge(int most, const WindowLevels& z) {
     std::vector<int> accused;
     std::set_intersection(first.accused.begin(), first.accused.end(), other.accused.begin(),
                           other.accused.end(), std::back_inserter(accused));
-    other = {region.center, Matrix::Zero(n, n), region.stretch * root(region.shape), sources, accused};
+    other = {region.center, Matrix::Zero(n, n),
+             region.stretch * garrison::detail::covariance_root(region.shape), sources, accused};
     std::rotate(members_.begin() + static_cast<std::ptrdiff_t>(at),
                 members_.begin() + static_cast<std::ptrdiff_t>(at) + 1, members_.end());
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/solvers.hpp"
+#include "garrison/core/spectrum.hpp"
 
 namespace garrison::certificate::detail {
 
@@ -31,8 +32,7 @@ std::optional<Matrix> steady_covariance(const MatrixRef& A, const MatrixRef& C, 
   const Matrix S = C * P * C.transpose() + Matrix(R.asDiagonal());
   const Matrix closed = A * (I - P * C.transpose() * Eigen::LLT<Matrix>(S).solve(C));
   if (!closed.allFinite()) return {};
-  const auto modes = Eigen::EigenSolver<Matrix>(closed, false).eigenvalues();
-  if (!(modes.cwiseAbs().maxCoeff() < 1.0 - 1e-9)) return {};
+  if (!(spectral_radius(closed) < 1.0 - 1e-9)) return {};
   const Matrix next = closed * P * A.transpose() + Q;
   if (!((next - P).cwiseAbs().maxCoeff() <= 1e-6 * P.cwiseAbs().maxCoeff())) return {};  // not the solution
   return P;

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 
 namespace garrison::partial_sharing {
 namespace {
@@ -146,7 +147,7 @@ void check_attack(const Setting& s, const MatrixRef& Sigma, const std::vector<in
              "zero outside the Byzantine agents", "name it in byzantine, or clear its rows and columns");
   }
   if (largest == 0.0) return;
-  const double least = Eigen::SelfAdjointEigenSolver<Matrix>(Sigma, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  const double least = garrison::detail::least_eigenvalue(Sigma);
   if (least < -1e-10 * largest)
     refuse("Sigma", "least eigenvalue " + text(least), "a positive semidefinite covariance");
 }

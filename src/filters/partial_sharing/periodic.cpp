@@ -2,6 +2,7 @@
 // Over one cycle of selections the error dynamics are one matrix: its radius decides, and doubling solves.
 
 #include "core/solvers.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/partial_sharing/errors.hpp"
 
 namespace garrison::partial_sharing {
@@ -21,8 +22,7 @@ Matrix monodromy(const std::vector<Sparse>& steps) {
 
 double radius_of(const Matrix& product, int period) {
   if (!product.allFinite()) return kInfinity;
-  const double largest = Eigen::EigenSolver<Matrix>(product, false).eigenvalues().cwiseAbs().maxCoeff();
-  return std::pow(largest, 1.0 / period);
+  return std::pow(spectral_radius(product), 1.0 / period);
 }
 
 void require_stable(const Setting& s, const Matrix& product) {

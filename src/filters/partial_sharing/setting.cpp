@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 
 namespace garrison::partial_sharing {
 namespace {
@@ -18,7 +19,7 @@ Matrix start_covariance(const PartialSharing::Params& p, int m) {
   if (!P.allFinite()) refuse("start_covariance (P0)", "a number that is not finite", "finite numbers");
   if ((P - P.transpose()).cwiseAbs().maxCoeff() > 1e-12 * P.cwiseAbs().maxCoeff())
     refuse("start_covariance (P0)", "a matrix that is not symmetric", "a symmetric one");
-  const double least = Eigen::SelfAdjointEigenSolver<Matrix>(P, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  const double least = detail::least_eigenvalue(P);
   if (least < -1e-12 * P.cwiseAbs().maxCoeff())
     refuse("start_covariance (P0)", "least eigenvalue " + text(least), "a positive semidefinite matrix");
   return (P + P.transpose()) / 2.0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 #include "garrison/filters/partial_sharing/errors.hpp"
 
 namespace garrison::partial_sharing {
@@ -28,10 +29,6 @@ Matrix lambda_III(const Setting& s, const LocalGains& g, int agent) {
   const Matrix h = white_rows(s, agent);
   const Matrix I = Matrix::Identity(s.states(), s.states());
   return (I + h.transpose() * (h * g.P)).partialPivLu().inverse();
-}
-
-double least(const Matrix& M) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(M, Eigen::EigenvaluesOnly).eigenvalues()(0);
 }
 
 template <class Block>
@@ -68,7 +65,7 @@ struct Decrease {
   }
   bool holds(double gamma) const {
     for (std::size_t f = 0; f < phases.size(); ++f)
-      if (least(at(gamma, f)) < -kSlack) return false;
+      if (garrison::detail::least_eigenvalue(at(gamma, f)) < -kSlack) return false;
     return true;
   }
 };
@@ -89,7 +86,7 @@ namespace {
 double information(const Matrix& L) {
   const double rounding =
       16.0 * static_cast<double>(L.rows()) * std::numeric_limits<double>::epsilon() * L.norm();
-  const double found = least(L);
+  const double found = garrison::detail::least_eigenvalue(L);
   return found > rounding ? found : 0.0;
 }
 
@@ -114,7 +111,7 @@ double gamma_star(const Setting& s, const std::vector<LocalGains>& gains, double
     for (int j = 0; j < s.agents(); ++j)
       spread.block(i * m, j * m, m, m) = laplacian(i, j) * Matrix::Identity(m, m);
   const Matrix coupled = spread.transpose() * middle * spread;
-  const double strongest = -least(-(coupled + coupled.transpose()) / 2.0);
+  const double strongest = -garrison::detail::least_eigenvalue(-(coupled + coupled.transpose()) / 2.0);
   if (!(strongest > 0.0) || !(fraction > 0.0)) return kInfinity;
   return std::sqrt(std::max(weakest, 0.0) / (fraction * strongest));
 }

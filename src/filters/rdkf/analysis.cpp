@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 
 namespace garrison::rdkf {
 namespace {
@@ -21,21 +22,11 @@ double norm2(const Matrix& m) {
   return m.size() == 0 ? 0.0 : Eigen::JacobiSVD<Matrix>(m).singularValues()(0);
 }
 
-double radius(const Matrix& m) {
-  return Eigen::EigenSolver<Matrix>(m, false).eigenvalues().cwiseAbs().maxCoeff();
-}
-
 /// Largest lambda with det(S - lambda B) = 0, B positive definite.
 double pencil_max(const Matrix& S, const Matrix& B) {
   return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(S, B, Eigen::EigenvaluesOnly)
       .eigenvalues()
       .maxCoeff();
-}
-
-/// R with R R' = S, which may be singular up to rounding.
-Matrix root(const Matrix& S) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(S);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 Matrix inverse(const Matrix& S) { return Eigen::LLT<Matrix>(S).solve(Matrix::Identity(S.rows(), S.cols())); }
@@ -179,7 +170,8 @@ Constants constants(const Setting& s, const SteadyState& steady, double lambda, 
     const Matrix& M = s.M[k];
     const Matrix moved = s.A.transpose() * Eigen::LLT<Matrix>(steady.Pbar[k]).solve(s.A);
     const Matrix symmetric = 0.5 * (moved + moved.transpose());
-    const Matrix S = root(steady.P[k]);  // P^-1 of precise measurements holds nothing but these
+    const Matrix S = garrison::detail::covariance_root(
+        steady.P[k]);  // P^-1 of precise measurements holds nothing but these
     const Matrix relative = S.transpose() * symmetric * S;
     c.rate = std::max(
         c.rate,
@@ -207,10 +199,10 @@ Constants constants(const Setting& s, const SteadyState& steady, double lambda, 
   c.dkf_error_radius = c.prior_error_radius = kNaN;
   c.persistent_bound = Vector::Constant(N, kNaN);
   if (N * s.states() > kMostStacked) return c;
-  c.dkf_error_radius = radius(error_matrix(s, steady, steady.P));
+  c.dkf_error_radius = spectral_radius(error_matrix(s, steady, steady.P));
   const std::vector<Matrix> Qinv = inverses(steady.Q);
   const Matrix T0 = error_matrix(s, steady, Qinv);
-  c.prior_error_radius = radius(T0);
+  c.prior_error_radius = spectral_radius(T0);
   c.persistent_bound.setConstant(kInfinity);
   if (c.prior_error_radius >= 1.0 - kRadiusMargin) return c;
   std::vector<Matrix> push;

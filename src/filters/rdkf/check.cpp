@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "core/solvers.hpp"
 #include "garrison/analysis/modes.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/rdkf/analysis.hpp"
 #include "garrison/filters/rdkf/filter.hpp"
 #include "penalties.hpp"
@@ -15,10 +15,6 @@ using namespace rdkf;
 constexpr int kLong = 20;
 /// Radius of A above which the plant counts as unstable: that of a rotation is 1 up to rounding.
 constexpr double kUnstable = 1.0 + 1e-9;
-
-double radius(const Matrix& A) {
-  return Eigen::EigenSolver<Matrix>(A, false).eigenvalues().cwiseAbs().maxCoeff();
-}
 
 /// Existence of the covariances (theorem III.1). False: nothing else can be computed.
 bool existence(Check& c, const Model& model, const Network& network) {
@@ -47,7 +43,7 @@ void fixed_point(Check& c, const SteadyState& steady) {
 }
 
 void rates(Check& c, const Model& model, const Constants& k) {
-  const double a = radius(model.A());
+  const double a = spectral_radius(model.A());
   c.quantities.push_back({"radius of A", a, "spectral radius of the plant"});
   c.conditions.push_back({"gamma < 1", k.rate, "< 1", k.rate < 1.0,
                           "errors of (7) shrink: V_k <= gamma V_{k-1} (not in the paper)"});
@@ -83,7 +79,7 @@ void under_attack(Check& c, const Model& model, const Constants& k) {
                               ? "nobody has a sensor that counts"
                               : "a start with max e'P^-1 e at most this converges like gamma without attack "
                                 "(theorem III.3, corrected and refined)"});
-  if (radius(model.A()) > kUnstable)
+  if (spectral_radius(model.A()) > kUnstable)
     c.quantities.push_back(
         {"basin of theorem III.3", k.level.corrected,
          "unstable plant: a start far outside may diverge, without any error raised; this is the "
@@ -116,7 +112,7 @@ Check Dkf::check(const Params&, const Model& model, const Network& network) {
 }
 
 std::vector<std::string> Rdkf::warnings(const Model& model, const VerdictLog& log) {
-  if (log.verdict.empty() || radius(model.A()) <= kUnstable) return {};
+  if (log.verdict.empty() || spectral_radius(model.A()) <= kUnstable) return {};
   int trials = 0;
   int longest = 0;
   for (int trial = 0; trial < log.trials; ++trial) {

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/filters/rdkf/steady_state.hpp"
 
+#include "analysis/extended.hpp"
 #include "analysis/policy_iteration.hpp"
 #include "core/solvers.hpp"
 #include "garrison/core/budget.hpp"
 
 namespace garrison::rdkf {
 namespace {
+
+using detail::Extended;
+using detail::extended;
+using detail::inverse_root;
+using detail::product;
 
 constexpr double kGrown = 1e14;  // times the largest entry of Sw and of (C'Sv^-1C)^-1
 /// Sweeps after which a recursion that still changes is left to Newton's method.
@@ -21,21 +27,26 @@ Matrix inverse(const Matrix& S) {
   return 0.5 * (inv + inv.transpose());
 }
 
+Matrix inverse_root(const Matrix& Q) {
+  return Eigen::LLT<Matrix>(Q).matrixU().solve(Matrix::Identity(Q.rows(), Q.cols()));
+}
+Matrix square(const Matrix& S) { return S * S.transpose(); }
+Extended square(const Extended& S) { return product(S, S.transpose()); }
+
 /// (Q + M'M)^-1 from a root of Q^-1, row by row of M (Potter): where M is huge, because measurements have
-/// hardly any noise, the sum would hold nothing of Q.
-template <class T>
-Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> updated(
-    const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>& Q, const Matrix& M) {
-  using Wide = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
-  using Column = Eigen::Matrix<T, Eigen::Dynamic, 1>;
-  Wide S = Eigen::LLT<Wide>(Q).matrixU().solve(Wide::Identity(Q.rows(), Q.cols()));
+/// hardly any noise, the sum would hold nothing of Q. Q: Matrix or Extended.
+template <class Wide>
+Wide updated(const Wide& Q, const Matrix& M) {
+  using T = typename Wide::Scalar;
+  using Column = Eigen::Matrix<T, Dynamic, 1>;
+  Wide S = inverse_root(Q);
   for (Eigen::Index r = 0; r < M.rows(); ++r) {
     const Column a = S.transpose() * M.row(r).transpose().template cast<T>();
     const T whole = T(1) + a.squaredNorm();
     const Column moved = S * a;
     S.noalias() -= moved * (a / (whole + std::sqrt(whole))).transpose();
   }
-  const Wide P = S * S.transpose();
+  const Wide P = square(S);
   return T(0.5) * (P + P.transpose());
 }
 
@@ -60,7 +71,7 @@ std::vector<Matrix> fused(const Setting& s, const std::vector<Matrix>& P) {
 
 std::vector<Matrix> sweep(const Setting& s, const std::vector<Matrix>& P) {
   std::vector<Matrix> next = fused(s, P);
-  for (std::size_t i = 0; i < next.size(); ++i) next[i] = updated<double>(next[i], s.M[i]);
+  for (std::size_t i = 0; i < next.size(); ++i) next[i] = updated(next[i], s.M[i]);
   return next;
 }
 
@@ -137,24 +148,26 @@ class Fusion : public detail::RiccatiMap {
   explicit Fusion(const Setting& s) : s_(s) {}
 
   detail::Matrices residual(const detail::Matrices& P) override {
-    const Wide A = s_.A.cast<long double>();
-    std::vector<Wide> information;
-    for (std::size_t j = 0; j < P.size(); ++j)
-      information.push_back(
-          inverted(A * P[j].cast<long double>() * A.transpose() + s_.Sw[j].cast<long double>()));
+    const Extended A = extended(s_.A);
+    std::vector<Extended> information;
+    for (std::size_t j = 0; j < P.size(); ++j) {
+      const Extended prior = detail::congruence(A, extended(P[j])) + extended(s_.Sw[j]);
+      information.push_back(square(inverse_root(prior)));
+    }
     weights_.assign(P.size(), {});
     detail::Matrices r;
     for (std::size_t i = 0; i < P.size(); ++i) {
       const auto& heard = s_.neighbours[i];
-      Wide sum = Wide::Zero(s_.A.rows(), s_.A.cols());
+      Extended sum = Extended::Zero(s_.A.rows(), s_.A.cols());
       for (const int j : heard) sum += information[static_cast<std::size_t>(j)];
       sum /= static_cast<long double>(heard.size());
-      const Wide next = updated<long double>(sum, s_.M[i]);
-      r.push_back((next - P[i].cast<long double>()).cast<double>());
-      for (const int j : heard)
-        weights_[i].push_back((next * information[static_cast<std::size_t>(j)] * A /
-                               std::sqrt(static_cast<long double>(heard.size())))
-                                  .cast<double>());
+      const Extended next = updated(sum, s_.M[i]);
+      r.push_back((next - extended(P[i])).cast<double>());
+      const long double root = std::sqrt(static_cast<long double>(heard.size()));
+      for (const int j : heard) {
+        const Extended weight = product(product(next, information[static_cast<std::size_t>(j)]), A);
+        weights_[i].push_back((weight / root).cast<double>());
+      }
     }
     return r;
   }
@@ -171,12 +184,6 @@ class Fusion : public detail::RiccatiMap {
   }
 
  private:
-  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-  static Wide inverted(const Wide& S) {
-    const Wide inv = Eigen::LLT<Wide>(S).solve(Wide::Identity(S.rows(), S.cols()));
-    return 0.5L * (inv + inv.transpose());
-  }
-
   const Setting& s_;
   std::vector<std::vector<Matrix>> weights_;  // sqrt(d_i) L_ij A, in the order of N_i
 };

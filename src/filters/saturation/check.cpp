@@ -8,6 +8,7 @@
 #include "core/solvers.hpp"
 #include "facts.hpp"
 #include "garrison/analysis/observability.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/saturation/adaptive.hpp"
 #include "garrison/filters/saturation/design.hpp"
 #include "garrison/filters/saturation/feasibility.hpp"
@@ -148,17 +149,16 @@ void add_adaptive(Check& c, const Setting& s, double varpi) {
   const AdaptiveStep none = adaptive_next(s, varpi, 0.0, 0.0);
   const AdaptiveStep from_rho = adaptive_next(s, varpi, 1.0, 0.0);
   const AdaptiveStep from_p = adaptive_next(s, varpi, 0.0, 1.0);
-  Eigen::Matrix2d step;
+  Matrix step(2, 2);
   step << from_rho.rho - none.rho, from_p.rho - none.rho, from_rho.p - none.p, from_p.p - none.p;
-  const double radius = step.eigenvalues().cwiseAbs().maxCoeff();
+  const double radius = spectral_radius(step);
   const bool settles = radius < 1.0 - kRadiusMargin;
   c.conditions.push_back(
       {"radius of the adaptive bounds < 1", radius, "< 1", settles,
        settles ? "threshold and bounds settle"
                : "threshold and bounds grow without end, nothing is limited in the long run; take a fixed "
                  "threshold, more rounds, or a smaller attacked"});
-  const Eigen::Vector2d limit =
-      (Eigen::Matrix2d::Identity() - step).partialPivLu().solve(Eigen::Vector2d(none.rho, none.p));
+  const Vector limit = (Matrix::Identity(2, 2) - step).partialPivLu().solve(Vector{{none.rho, none.p}});
   c.quantities.push_back(
       {"asymptotic bound", settles ? limit.sum() : kNaN,
        settles ? "limsup ||error|| with the adaptive threshold" : "the bounds do not settle"});

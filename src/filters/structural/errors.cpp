@@ -6,6 +6,7 @@
 
 #include "blocks.hpp"
 #include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 #include "garrison/analysis/lyapunov.hpp"
 
 namespace garrison::structural {
@@ -49,11 +50,6 @@ ErrorDynamics error_dynamics(const Setting& s, const GainMatrices& K) {
     }
   }
   return d;
-}
-
-double spectral_radius(const MatrixRef& M) {
-  if (M.rows() == 0) return 0.0;
-  return Eigen::EigenSolver<Matrix>(M, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
 Stationary stationary(const Setting& s, const GainMatrices& K, int lags) {
@@ -164,9 +160,7 @@ CovarianceBound covariance_bound(const Setting& s, const GainMatrices& K, bool p
       for (Index j = 0; j < N; ++j)
         if (s.U(i, j) != 0.0) Db.block(i * n, j, n, 1) = s.C.row(j).transpose();
     // |Db R Db'| = largest eigenvalue of R^(1/2) Db'Db R^(1/2) = that of Db'Db R.
-    Eigen::SelfAdjointEigenSolver<Matrix> of_R(s.R);
-    const Matrix root = of_R.eigenvectors() * of_R.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-    const double norm = norm2(Db * root);
+    const double norm = norm2(Db * garrison::detail::covariance_root(s.R));
     c.Rbar_norm = norm * norm;
   }
   const auto agents = static_cast<double>(N);

@@ -7,6 +7,7 @@
 
 #include "blocks.hpp"
 #include "garrison/analysis/modes.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/structural/detection.hpp"
 #include "garrison/filters/structural/gains.hpp"
 
@@ -66,7 +67,7 @@ double doubt_without(const Setting& s, Index i, double rho) {
   double lost = 0.0;
   for (const auto& mode : unseen_modes(s.A, others, 1.0)) lost = std::max(lost, std::abs(mode));
   if (lost > 0.0) return kDoubt * std::max(1.0, lost * lost);
-  const double growth = std::max(1.0, structural::spectral_radius(s.A));
+  const double growth = std::max(1.0, spectral_radius(s.A));
   return std::min(kDoubt * growth * growth, rho > 0.0 ? 1.0 / std::sqrt(rho) : kInfinity);
 }
 

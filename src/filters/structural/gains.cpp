@@ -9,6 +9,7 @@
 #include "blocks.hpp"
 #include "core/solvers.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/structural/errors.hpp"
 
 namespace garrison::structural {

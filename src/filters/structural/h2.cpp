@@ -7,6 +7,7 @@
 
 #include "blocks.hpp"
 #include "garrison/core/budget.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/structural/errors.hpp"
 #include "garrison/filters/structural/gains.hpp"
 

@@ -2,6 +2,7 @@
 // Coupled Riccati recursion, joint Kalman recursion, projection.
 #include <cmath>
 
+#include "analysis/extended.hpp"
 #include "analysis/policy_iteration.hpp"
 #include "blocks.hpp"
 #include "core/solvers.hpp"
@@ -123,19 +124,19 @@ class CoupledMap : public garrison::detail::RiccatiMap {
       : s_(s), coupled_(coupled), closed_(static_cast<std::size_t>(s.N())) {}
 
   std::vector<Matrix> residual(const std::vector<Matrix>& P) override {
-    using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-    const Wide A = s_.A.cast<long double>();
+    using garrison::detail::congruence, garrison::detail::Extended, garrison::detail::extended,
+        garrison::detail::product;
+    const Extended A = extended(s_.A);
     std::vector<Matrix> r;
     Matrix prior;
     for (std::size_t i = 0; i < P.size(); ++i) {
       coupled_.update(i, P, prior);
       // An error of the gain counts by its square only; the rest needs the digits.
-      const Wide K = coupled_.gain(i).cast<long double>();
-      const Wide keep = Wide::Identity(s_.n(), s_.n()) - K * coupled_.view(i).H.cast<long double>();
-      const Wide exact = s_.E.cast<long double>() + A * coupled_.mixed<Wide>(i, P) * A.transpose();
-      const Wide next =
-          keep * exact * keep.transpose() + K * coupled_.view(i).noise.cast<long double>() * K.transpose();
-      r.push_back((next - P[i].cast<long double>()).cast<double>());
+      const Extended K = extended(coupled_.gain(i));
+      const Extended keep = Extended::Identity(s_.n(), s_.n()) - product(K, extended(coupled_.view(i).H));
+      const Extended exact = extended(s_.E) + congruence(A, coupled_.mixed<Extended>(i, P));
+      const Extended next = congruence(keep, exact) + congruence(K, extended(coupled_.view(i).noise));
+      r.push_back((next - extended(P[i])).cast<double>());
       closed_[i] = keep.cast<double>() * s_.A;
     }
     return r;

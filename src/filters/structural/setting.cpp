@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/solvers.hpp"
+#include "core/spectrum.hpp"
 
 namespace garrison::structural {
 namespace {
@@ -33,7 +33,7 @@ void require_covariance(const std::string& which, const Matrix& M, Eigen::Index 
   const double scale = M.cwiseAbs().maxCoeff();
   if ((M - M.transpose()).cwiseAbs().maxCoeff() > 1e-12 * scale)
     refuse(which, "a matrix that is not symmetric", "a symmetric covariance", "use (M + M') / 2");
-  const double least = Eigen::SelfAdjointEigenSolver<Matrix>(M, Eigen::EigenvaluesOnly).eigenvalues()(0);
+  const double least = garrison::detail::least_eigenvalue(M);
   if (least < -1e-12 * scale)
     refuse(which, "least eigenvalue " + text(least), "a positive semidefinite covariance", "check its sign");
 }

@@ -14,8 +14,6 @@ struct GARRISON_EXPORT ErrorDynamics {
 };
 GARRISON_EXPORT ErrorDynamics error_dynamics(const Setting& s, const GainMatrices& K);
 
-/// Largest modulus of an eigenvalue of a square matrix.
-GARRISON_EXPORT double spectral_radius(const MatrixRef& M);
 /// rho(Ahat) without forming it: Arnoldi's method on the blocks, for N n in the thousands.
 GARRISON_EXPORT double error_radius(const Setting& s, const GainMatrices& K);
 

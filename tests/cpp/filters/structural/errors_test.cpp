@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "core/solvers.hpp"
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/structural/detection.hpp"
 #include "garrison/filters/structural/gains.hpp"
 #include "random_setting.hpp"

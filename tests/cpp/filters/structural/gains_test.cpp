@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "garrison/core/spectrum.hpp"
 #include "garrison/filters/structural/errors.hpp"
 #include "random_setting.hpp"
 
