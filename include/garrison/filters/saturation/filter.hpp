@@ -41,9 +41,8 @@
 #include "garrison/core/params.hpp"
 #include "garrison/core/trials.hpp"
 #include "garrison/filters/consensus_params.hpp"
-#include "garrison/filters/saturation/adaptive.hpp"
-#include "garrison/filters/saturation/data_free.hpp"
-#include "garrison/filters/saturation/detector.hpp"
+#include "garrison/filters/saturation/bounds.hpp"
+#include "garrison/filters/saturation/parts.hpp"
 #include "garrison/kernel/average.hpp"
 #include "garrison/kernel/block.hpp"
 
@@ -71,101 +70,12 @@ struct GARRISON_EXPORT Saturation {
     static auto fields();
   };
 
-  /// What design leaves for the run: shared by all agents.
-  struct Gains {
-    double alpha = 0.0;
-    std::vector<double> omega;  ///< Chebyshev weight per round; empty = plain rounds
-    int rounds = 0;
-    bool bounded = false;  ///< setting and q0 below are valid
-    bool detector = false;
-    bool sharp_index = false;
-    bool adaptive = false;
-    bool accuse_missing = false;
-    double varpi = kNaN;  ///< theorem 3; adaptive threshold only
-    double q0 = kNaN;     ///< (8)
-    double p0 = kNaN;     ///< (8)
-    double beta = kInfinity;
-    saturation::Setting setting;
-    saturation::DataFree table;  ///< empty = not asked for
-
-    template <class V>
-    void visit(V& v) {
-      v("alpha", alpha);
-      v("omega", omega);
-      v.range("rounds", rounds, 0, 1000000);
-      v("bounded", bounded);
-      v("detector", detector);
-      v("sharp_index", sharp_index);
-      v("adaptive", adaptive);
-      v("accuse_missing", accuse_missing);
-      v("varpi", varpi);
-      v("q0", q0);
-      v("p0", p0);
-      v("beta", beta);
-      v("setting", setting);
-      v("table", table);
-    }
-  };
-
+  using Gains = saturation::Gains;
+  using Memory = saturation::Memory;
   template <int n>
-  struct State {
-    Vec<n> x;                  // xhat_i(t)
-    double innovation = kNaN;  // the largest of this agent's outputs
-    double level = kNaN;       // in force at t: phi_i of the detector, or the adaptive beta
-    double rho = kNaN;         // rho or rhobar_i at t-1
-    double p = kNaN;           // p at t-1
-    double size = 0.0;         // largest number of the latest estimates, where there are bounds
-    std::int64_t t = 0;        // sample of x
-    int d = 0;                 // |I_i(t-1)|
-    std::int64_t full = -1;    // sample at whose end all attackers were proved here; -1 = not yet
-    int which = -1;            // of Gains::table.proved
-    bool started = false;      // rho and p have moved on from the start
-    bool refuted = false;      // more are proved than can be attacked
-    bool intact = true;        // no message is missing behind this estimate, and the start was covered
-    Verdict verdict = Verdict::not_tested;
-    AgentSet proved;                       // I_i
-    std::unique_ptr<double[]> prediction;  // room for A xhat_i(t-1) where n is not known when compiling
-    std::unique_ptr<double[]> previous;    // the estimate one round ago; Chebyshev only
-    std::unique_ptr<saturation::LossRecord> loss;  // with `recovery`
-
-    template <class V>
-    void visit(V& v) {
-      v("estimate", x);
-      v("innovation", innovation);
-      v("level", level);
-      v("rho", rho);
-      v("p", p);
-      v("size", size);
-      v.range("t", t, 0, INT64_MAX / 4);
-      v.range("d", d, 0, INT32_MAX);
-      v.range("full", full, -1, INT64_MAX / 4);
-      v.range("which", which, -1, INT32_MAX);
-      v("started", started);
-      v("refuted", refuted);
-      v("intact", intact);
-      v.choice("verdict", verdict, kVerdicts);
-      v("proved", proved);
-      if (loss != nullptr) v("recovery", *loss);
-    }
-  };
-
+  using State = saturation::State<n>;
   template <int n>
-  struct Message {
-    Vec<n> x;
-    bool intact = true;
-    saturation::LossNote loss;  // with `recovery`, in place of `intact`
-    AgentSet proved;
-
-    template <class V>
-    void visit(V& v) {
-      v.numbers("estimate", x);
-      if (loss.kept())
-        loss.visit(v);
-      else
-        v.flag("intact", intact);
-      v.set("proved", proved);
-    }
-  };
+  using Message = saturation::Message<n>;
 
   /// Step and weights of the rounds, for drivers that average the whole network at once.
   struct Averaging {
@@ -278,7 +188,8 @@ struct GARRISON_EXPORT Saturation {
       } else if (informed) {
         injected = h;  // (b) all attackers are known, no test
         ++used;
-      } else if (tests && exceeds(std::abs(h), s.level, std::abs(y[r]) + std::abs(expected_y) + s.size)) {
+      } else if (tests &&
+                 saturation::exceeds(std::abs(h), s.level, std::abs(y[r]) + std::abs(expected_y) + s.size)) {
         accused = true;  // (c) proof (15)
       } else {
         injected = std::max(-beta, std::min(h, beta));  // (d) = k h with k of (4), without 0/0
@@ -367,17 +278,11 @@ struct GARRISON_EXPORT Saturation {
     r.threshold = g.detector ? s.level : beta_now(g, s);
     if (g.bounded && s.intact && !(g.detector && s.proved.size() >= g.setting.attacked))
       r.bound = rho_now(g, s) + p_now(g, s);
-    if (recovers(s)) offer(recovered_bound(l, g, s), CertificateKind::recovered, r);
+    if (recovers(s)) saturation::offer(recovered_bound(l, g, s), CertificateKind::recovered, r);
     if (covered(g, s)) offer_table(l, g, s, r);
-    r.bound += kRounding * (s.size + r.bound);
+    r.bound += saturation::kRounding * (s.size + r.bound);
     return r;
   }
-  template <int n>
-  static void offer_table(const Local& l, const Gains& g, const State<n>& s, Report& r) noexcept {
-    offer(g.table.bound(l.id, s.t), CertificateKind::table, r);
-    if (s.full >= 0) offer(g.table.bound_after(l.id, s.t, s.which, s.full), CertificateKind::informed, r);
-  }
-
   template <int n>
   static const Vec<n>& estimate(const State<n>& s) noexcept {
     return s.x;
@@ -417,40 +322,6 @@ struct GARRISON_EXPORT Saturation {
     std::copy(std::begin(all), std::end(all), out);
   }
 
-  /// beta in force at t.
-  template <int n>
-  static double beta_now(const Gains& g, const State<n>& s) noexcept {
-    return g.adaptive ? s.level : s.loss != nullptr ? s.loss->clip : g.beta;
-  }
-
-  /// Whether the data-free table holds for this estimate.
-  template <int n>
-  static bool covered(const Gains& g, const State<n>& s) noexcept {
-    return !g.table.empty() && s.intact && !s.refuted;
-  }
-  /// Whether theorem L holds for it instead.
-  template <int n>
-  static bool recovers(const State<n>& s) noexcept {
-    return s.loss != nullptr && !s.intact && !s.refuted;
-  }
-
-  /// Moves rho and p to t-1 and sets the level in force at t; data-free without the detector.
-  template <int n>
-  static void advance_bounds(const Gains& g, State<n>& s) noexcept {
-    const double rho = rho_now(g, s);
-    s.p = p_now(g, s);
-    s.rho = rho;
-    s.started = true;
-    if (g.adaptive) s.level = saturation::adaptive_threshold(g.setting, s.rho, s.p);
-    if (!g.detector) return;
-    s.d = s.proved.size();
-    if (s.full < 0 && knows_all(g, s) && g.table.proved.sets() > 0) {
-      s.full = s.t;  // the sample before this one
-      s.which = g.table.proved.find(s.proved);
-    }
-    s.level = saturation::detection_threshold(g.setting, s.rho, s.p);
-  }
-
   /// Writes the message that this agent sends before its next round.
   template <int n>
   static void send(const State<n>& s, Message<n>& m) noexcept {
@@ -461,24 +332,16 @@ struct GARRISON_EXPORT Saturation {
   }
 
  private:
-  /// Part of the numbers that rounding of many samples may change.
-  static constexpr double kRounding = 1e-12;
-  /// Samples from one look at the size of an estimate to the next: kRounding allows for its growth.
+  /// Samples from one look at the size of an estimate to the next: saturation::kRounding allows for its
+  /// growth.
   static constexpr int kLooks = 8;
   /// Per look: errors that rounding made fade no slower, or the bounds are far above them.
   static constexpr double kFading = 0.992;
 
-  static bool bounds_errors(const Gains& g) noexcept { return g.bounded || !g.table.empty(); }
   static double largest(const double* x, int n) noexcept {
     double found = 0.0;
     for (int k = 0; k < n; ++k) found = std::max(found, std::abs(x[k]));
     return found;
-  }
-  /// Takes over a bound that is less than what is there, which NaN is not.
-  static void offer(double bound, CertificateKind kind, Report& r) noexcept {
-    if (r.bound <= bound || !(bound < kInfinity)) return;
-    r.bound = bound;
-    r.kind = kind;
   }
   /// ||a - b||.
   static double distance(const double* a, const double* b, int nn) noexcept {
@@ -488,9 +351,6 @@ struct GARRISON_EXPORT Saturation {
   }
   // recovering.hpp: of an agent that a message was lost behind, with `recovery`. What is rare must not slow
   // down what is not.
-  /// On the error of the estimate of sample s.t.
-  template <int n>
-  GARRISON_COLD static double recovered_bound(const Local& l, const Gains& g, const State<n>& s) noexcept;
   /// The relayed bound after `sense`.
   template <int n>
   GARRISON_COLD static void relay_update(const Local& l, const Gains& g, State<n>& s, const double* estimate,
@@ -500,12 +360,6 @@ struct GARRISON_EXPORT Saturation {
   /// Whether a message of this sample is missing, here or behind what another agent sent.
   template <int n>
   GARRISON_COLD static bool gap(const Inbox<Message<n>>& inbox) noexcept;
-  /// Levels of sample s.t; whether the agent tests.
-  template <int n>
-  GARRISON_COLD static bool take_levels(const Local& l, const Gains& g, State<n>& s) noexcept;
-  template <int n>
-  GARRISON_COLD static double recovered_alarm_level(const Local& l, const Gains& g,
-                                                    const State<n>& s) noexcept;
   /// After a round in which something was missing, here or behind what was heard: relays bounds and merges
   /// what is known of earlier losses. s.loss->old: the estimate before the round.
   template <int n>
@@ -515,48 +369,6 @@ struct GARRISON_EXPORT Saturation {
   template <int n>
   GARRISON_COLD static void relay_median(const Local& l, const Gains& g, State<n>& s,
                                          const Inbox<Message<n>>& inbox) noexcept;
-  template <int n>
-  GARRISON_COLD static void start_anew(const Local& l, const Gains& g, State<n>& s) noexcept;
-  /// As many sensors are proved as can be attacked: the others need no test.
-  template <int n>
-  static bool knows_all(const Gains& g, const State<n>& s) noexcept {
-    return g.detector && !s.refuted && s.d >= g.setting.attacked;
-  }
-  template <int n>
-  static void look_for_refutation(const Gains& g, State<n>& s) noexcept {
-    if (g.detector) s.refuted = s.proved.size() > g.setting.attacked;
-  }
-  /// k_i of (4), the least of this agent's outputs; 0 when nothing was used.
-  template <int n>
-  static double gain_now(const Gains& g, const State<n>& s) noexcept {
-    if (s.verdict == Verdict::attacked || s.verdict == Verdict::silent) return 0.0;
-    const double h = std::abs(s.innovation);
-    return s.verdict == Verdict::suspected && h > beta_now(g, s) ? beta_now(g, s) / h : 1.0;
-  }
-
-  /// h > phi (15) beyond rounding of numbers of this size: for n = 1 the bound (16) is attained, a bare ">"
-  /// accuses honest sensors.
-  static bool exceeds(double h, double phi, double size) noexcept {
-    return std::isinf(h) || h > phi + kRounding * (phi + size);
-  }
-
-  /// rho(t) of (7), rhobar_i(t) of (14) or rho_t of the adaptive threshold, from the values at t-1.
-  template <int n>
-  static double rho_now(const Gains& g, const State<n>& s) noexcept {
-    if (!g.bounded || !s.started) return s.rho;
-    if (g.adaptive) return saturation::adaptive_next(g.setting, g.varpi, s.rho, s.p).rho;
-    if (!g.detector)
-      return saturation::rho_bar_next(g.setting, g.q0, s.rho, g.p0, 0);  // (7): p0 instead of p(t-1)
-    return saturation::rho_bar_next(g.setting, g.q0, s.rho, s.p, g.sharp_index ? s.proved.size() : s.d);
-  }
-  /// p(t) of (10), or of the adaptive threshold.
-  template <int n>
-  static double p_now(const Gains& g, const State<n>& s) noexcept {
-    if (!g.bounded || !s.started) return s.p;
-    // The level that all agents share; an agent's own may be lower.
-    const double beta = g.adaptive ? saturation::adaptive_threshold(g.setting, s.rho, s.p) : g.beta;
-    return saturation::disagreement_next(g.setting, s.p, beta);
-  }
 };
 
 }  // namespace garrison

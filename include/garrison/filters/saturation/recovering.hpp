@@ -9,11 +9,6 @@
 namespace garrison {
 
 template <int n>
-double Saturation::recovered_bound(const Local& l, const Gains& g, const State<n>& s) noexcept {
-  return g.table.recovered(l.id, s.t, *s.loss);
-}
-
-template <int n>
 void Saturation::relay_update(const Local& l, const Gains& g, State<n>& s, const double* estimate,
                               const double* prediction) noexcept {
   s.loss->bound = g.table.losses.growth * s.loss->bound + g.table.losses.noise +
@@ -33,27 +28,6 @@ bool Saturation::gap(const Inbox<Message<n>>& inbox) noexcept {
   bool found = !inbox.complete();
   for (std::size_t k = 0; k < inbox.size(); ++k) found = found || !inbox[k].loss.whole();
   return found;
-}
-
-template <int n>
-bool Saturation::take_levels(const Local& l, const Gains& g, State<n>& s) noexcept {
-  saturation::LossRecord& r = *s.loss;
-  const auto [honest, clip] = g.table.levels_after(l.id, s.t, r, r.bound, g.beta);
-  r.state = g.table.losses.excess.rebase(r.state, s.t - 1);
-  r.lost = false;
-  r.clip = clip;
-  if (!(honest < kInfinity)) return false;
-  s.level = honest;
-  return g.detector && !s.refuted;
-}
-
-template <int n>
-double Saturation::recovered_alarm_level(const Local& l, const Gains& g, const State<n>& s) noexcept {
-  const saturation::LossRecord& r = *s.loss;
-  const double bound = g.table.recovered(l.id, s.t, r);
-  const auto [honest, clip] = g.table.levels_after(l.id, s.t + 1, r, bound, g.beta);
-  if (honest < kInfinity) return g.detector || g.adaptive ? honest : clip;
-  return g.adaptive ? saturation::innovation_bound(g.setting, rho_now(g, s), p_now(g, s)) : g.beta;
 }
 
 template <int n>
@@ -103,11 +77,6 @@ void Saturation::relay_median(const Local& l, const Gains& g, State<n>& s,
   }
   r.lost = true;
   start_anew(l, g, s);
-}
-
-template <int n>
-void Saturation::start_anew(const Local& l, const Gains& g, State<n>& s) noexcept {
-  s.loss->state = certificate::Recovery::lost(s.t, s.loss->bound, g.table.bound(l.id, s.t));
 }
 
 }  // namespace garrison

@@ -41,6 +41,8 @@ TEST_CASE("the saturation filter refuses with which, got, expected") {
   CHECK_THROWS_WITH_AS(prepare(with(kBounded, "step", 5.0)), doctest::Contains("diverge"), InvalidInput);
   CHECK_THROWS_WITH_AS(prepare(with({{"threshold", 1.0}}, "detector", true)),
                        doctest::Contains("initial_error"), InvalidInput);
+  CHECK_THROWS_WITH_AS(prepare(with({{"threshold", 1.0}}, "accuse_missing", true)),
+                       doctest::Contains("false without detector"), InvalidInput);
   CHECK_THROWS_WITH_AS(prepare(kBounded, Model(kModel.A(), kRows)), doctest::Contains("process_bound"),
                        InvalidInput);
   std::vector<Matrix> longer = kRows;
