@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// lambda_2 and lambda_max of the Laplacian: dense for small networks, Lanczos for large ones.
+// lambda_2 and lambda_max of the Laplacian: dense for small networks, Lanczos for large ones, with a
+// factorisation where that stays sparse.
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <optional>
 
+#include "core/hops.hpp"
+#include "core/lanczos.hpp"
 #include "core/solvers.hpp"
 #include "garrison/core/network.hpp"
 
@@ -16,43 +21,21 @@ constexpr int kLanczosSteps = 300;
 constexpr double kLanczosAccuracy = 1e-13;
 /// Of where to shift to: the error of a Ritz value is the square of its residual.
 constexpr double kShiftAccuracy = 1e-4;
+/// Of both ends at once, from products with the Laplacian itself.
+constexpr double kPlainAccuracy = 1e-9;
+/// lambda_2, in lambda_max, that a difference of such numbers gives without loss.
+constexpr double kClear = 1e-3;
 
-using Sparse = Eigen::SparseMatrix<double>;
+/// Factors may have more numbers than an int counts.
+using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
 
-/// Estimate of the largest eigenvalue of a symmetric operator on the space orthogonal to the all-ones vector,
-/// by Lanczos with full reorthogonalisation; stops when the residual of the Ritz vector is `accuracy` of it.
 double largest_eigenvalue(Eigen::Index size, double accuracy,
                           const std::function<Vector(const Vector&)>& apply) {
-  const auto deflate = [](Vector& v) { v.array() -= v.mean(); };
-  Vector q(size);
-  for (Eigen::Index i = 0; i < size; ++i) q(i) = std::sin(1.0 + 12.9898 * static_cast<double>(i));
-  deflate(q);
-  q.normalize();
-  const int most = static_cast<int>(std::min<Eigen::Index>(kLanczosSteps, size - 1));
-  Matrix basis(size, most);
-  Vector alpha = Vector::Zero(most);
-  Vector beta = Vector::Zero(most);
-  double value = 0.0;
-  for (int k = 0; k < most; ++k) {
-    basis.col(k) = q;
-    Vector r = apply(q);
-    alpha(k) = q.dot(r);
-    deflate(r);
-    for (int pass = 0; pass < 2; ++pass) r -= basis.leftCols(k + 1) * (basis.leftCols(k + 1).transpose() * r);
-    beta(k) = r.norm();
-    if (k % 8 == 7 || k + 1 == most || beta(k) < 1e-300) {
-      Eigen::SelfAdjointEigenSolver<Matrix> ritz;
-      ritz.computeFromTridiagonal(alpha.head(k + 1), beta.head(k), Eigen::ComputeEigenvectors);
-      value = ritz.eigenvalues()(k);
-      if (beta(k) * std::abs(ritz.eigenvectors()(k, k)) <= accuracy * std::abs(value)) break;
-    }
-    q = r / beta(k);
-  }
-  return value;
+  return detail::largest_eigenvalue(size, accuracy, kLanczosSteps, apply).value;
 }
 
 Sparse sparse_laplacian(const Network& network) {
-  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<Eigen::Triplet<double, std::int64_t>> entries;
   for (int i = 0; i < network.agents(); ++i) {
     entries.emplace_back(i, i, network.degree(i));
     for (const int j : network.neighbours(i)) entries.emplace_back(i, j, -1.0);
@@ -78,6 +61,28 @@ double top_eigenvalue(const Sparse& lap) {
   }
 }
 
+/// Whether everybody is near everybody over many links: such networks fill a factor, and the ends of their
+/// spectra stand out.
+bool looks_well_connected(const Network& network) {
+  const auto N = static_cast<std::size_t>(network.agents());
+  if (network.edges().size() < 2 * N) return false;
+  const detail::Hops hops = detail::hops_from(network, 0);
+  return hops.reaches_all && hops.furthest <= 2.0 * std::log2(static_cast<double>(N));
+}
+
+/// Both ends by products alone; nothing where that takes too many.
+std::optional<LaplacianSpectrum> by_products(const Sparse& lap) {
+  const auto top = detail::largest_eigenvalue(lap.rows(), kPlainAccuracy, kLanczosSteps,
+                                              [&](const Vector& v) { return Vector(lap * v); });
+  if (!top.settled) return {};
+  const double shift = 2.0 * top.value;  // the accuracy is a part of what is left
+  const auto low = detail::largest_eigenvalue(lap.rows(), kPlainAccuracy, kLanczosSteps,
+                                              [&](const Vector& v) { return Vector(shift * v - lap * v); });
+  const double lambda2 = shift - low.value;
+  if (!low.settled || lambda2 < kClear * top.value) return {};
+  return LaplacianSpectrum{lambda2, top.value};
+}
+
 }  // namespace
 
 LaplacianSpectrum Network::laplacian_spectrum() const {
@@ -89,6 +94,8 @@ LaplacianSpectrum Network::laplacian_spectrum() const {
     return {std::max(values(1), 0.0), values(agents() - 1)};
   }
   const Sparse lap = sparse_laplacian(*this);
+  if (looks_well_connected(*this))
+    if (const auto both = by_products(lap)) return *both;
   const double lambda_max = top_eigenvalue(lap);
   if (!connected()) return {0.0, lambda_max};
   // lambda_2 = 1 / largest eigenvalue of the pseudo-inverse. Grounding agent 0 makes the Laplacian

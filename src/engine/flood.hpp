@@ -3,9 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
-#include "garrison/core/network.hpp"
+#include "core/hops.hpp"
 
 namespace garrison::detail {
 
@@ -18,20 +19,10 @@ class Flood {
   Flood(const Network& network, int most) {
     const int N = network.agents();
     if (N > kMostAgents) return;
-    std::vector<int> queue;
     for (int i = 0; i < N; ++i) {
-      auto& from = hops_.emplace_back(static_cast<std::size_t>(N), -1);
-      from[static_cast<std::size_t>(i)] = 0;
-      queue.assign(1, i);
-      for (std::size_t at = 0; at < queue.size(); ++at)
-        for (const int j : network.neighbours(queue[at])) {
-          int& hops = from[static_cast<std::size_t>(j)];
-          if (hops >= 0) continue;
-          hops = from[static_cast<std::size_t>(queue[at])] + 1;
-          queue.push_back(j);
-          if (hops > most) return;
-        }
-      if (queue.size() < static_cast<std::size_t>(N)) return;
+      detail::Hops hops = detail::hops_from(network, i);
+      if (!hops.reaches_all || hops.furthest > most) return;
+      hops_.push_back(std::move(hops.to));
     }
     reaches_all_ = true;
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/hops.hpp"
 #include "core/solvers.hpp"
 #include "facts.hpp"
 #include "garrison/analysis/observability.hpp"
@@ -42,16 +43,7 @@ bool scalar_unit_rows(const Model& model) {
 /// Samples until what one agent knows has reached everybody: at most twice the distance to the farthest from
 /// agent 0.
 int spread_of(const Network& network, int rounds) {
-  std::vector<int> distance(static_cast<std::size_t>(network.agents()), -1);
-  std::vector<int> queue{0};
-  distance[0] = 0;
-  for (std::size_t k = 0; k < queue.size(); ++k)
-    for (const int j : network.neighbours(queue[k])) {
-      if (distance[static_cast<std::size_t>(j)] >= 0) continue;
-      distance[static_cast<std::size_t>(j)] = distance[static_cast<std::size_t>(queue[k])] + 1;
-      queue.push_back(j);
-    }
-  const int across = 2 * distance[static_cast<std::size_t>(queue.back())];
+  const int across = 2 * garrison::detail::hops_from(network, 0).furthest;
   return rounds > 0 ? (across + rounds - 1) / rounds : 0;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "core/hops.hpp"
 #include "facts.hpp"
 #include "garrison/certificate/gaussian_table.hpp"
 #include "garrison/certificate/quantiles.hpp"
@@ -113,20 +114,8 @@ std::function<Nominal()> gaussian(const certificate::Kernels& kernels,
 /// Hops between the agents that are furthest apart; of a connected network.
 int diameter(const Network& network) {
   int furthest = 0;
-  const auto N = static_cast<std::size_t>(network.agents());
-  for (int from = 0; from < network.agents(); ++from) {
-    std::vector<int> hops(N, -1);
-    std::vector<int> queue{from};
-    hops[static_cast<std::size_t>(from)] = 0;
-    for (std::size_t at = 0; at < queue.size(); ++at)
-      for (const int j : network.neighbours(queue[at])) {
-        int& found = hops[static_cast<std::size_t>(j)];
-        if (found >= 0) continue;
-        found = hops[static_cast<std::size_t>(queue[at])] + 1;
-        queue.push_back(j);
-      }
-    furthest = std::max(furthest, hops[static_cast<std::size_t>(queue.back())]);
-  }
+  for (int from = 0; from < network.agents(); ++from)
+    furthest = std::max(furthest, garrison::detail::hops_from(network, from).furthest);
   return furthest;
 }
 

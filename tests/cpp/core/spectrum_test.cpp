@@ -49,6 +49,40 @@ TEST_CASE("multiple eigenvalues and irregular graphs, above the dense limit") {
   }
 }
 
+TEST_CASE("well-connected networks, whose factors fill, take products alone") {
+  for (const auto& [N, p] : {std::pair{900, 0.02}, {900, 0.2}, {1200, 0.01}}) {
+    CAPTURE(N);
+    CAPTURE(p);
+    const Network net = Network::erdos_renyi(N, p, 3);
+    REQUIRE(net.connected());
+    check_equal(net.laplacian_spectrum(), dense(net));
+  }
+  // Two dense halves over one link: many products would be needed for lambda_2.
+  std::vector<Edge> edges;
+  for (int i = 0; i < 300; ++i)
+    for (int j = i + 1; j < 300; ++j) edges.insert(edges.end(), {{i, j}, {300 + i, 300 + j}});
+  edges.emplace_back(0, 300);
+  const Network halves(600, edges);
+  check_equal(halves.laplacian_spectrum(), dense(halves));
+}
+
+TEST_CASE("a large network of chords, whose factor no memory holds") {
+  const int N = 1 << 15;
+  const int most = 14;
+  std::vector<Edge> edges;
+  for (int k = 0; k < most; ++k)
+    for (int i = 0; i < N; ++i) edges.emplace_back(i, (i + (1 << k)) % N);
+  LaplacianSpectrum expected{kInfinity, 0.0};
+  for (int j = 1; j < N; ++j) {
+    double value = 0.0;
+    for (int k = 0; k < most; ++k)
+      value += 2.0 - 2.0 * std::cos(2.0 * std::numbers::pi * (static_cast<double>(j) * (1 << k) / N));
+    expected.lambda2 = std::min(expected.lambda2, value);
+    expected.lambda_max = std::max(expected.lambda_max, value);
+  }
+  check_equal(Network(N, edges).laplacian_spectrum(), expected);
+}
+
 TEST_CASE("a graph in two parts has lambda_2 = 0, and says who is cut off") {
   for (const int N : {6, 500}) {
     std::vector<Edge> edges;
