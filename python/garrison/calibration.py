@@ -1,5 +1,7 @@
 """Levels from clean records: what was asked for on paper, and what has to be asked for to get it on real data."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """Who lies, from the measurements of a sample alone: the witness as a detector (W3, W2; docs/certificates.md)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from math import comb
 from typing import Any

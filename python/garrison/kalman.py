@@ -1,5 +1,7 @@
 """Kalman filters that see measurements as they come: the baselines that everybody is compared with. No bounds."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Detection and mitigation in one run: Algorithm 1 of the structural paper goes on through the switch of sensors."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any

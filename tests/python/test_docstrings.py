@@ -131,3 +131,8 @@ def test_the_site_shows_sections_as_lists(monkeypatch: pytest.MonkeyPatch) -> No
     plain = ["One.", "", "Two."]
     plain_docstrings.process(None, "", "", None, None, plain)
     assert plain == ["One.", "", "Two.", ""]
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_signatures_name_array_types_by_one_word(name: str) -> None:
+    assert "_SupportsArray" not in str(inspect.signature(getattr(gr, name)))

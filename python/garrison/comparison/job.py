@@ -1,5 +1,7 @@
 """One run of a comparison: a filter of the library, or a baseline, under one attack."""
 
+from __future__ import annotations
+
 import time
 from dataclasses import dataclass
 from typing import Any

@@ -1,5 +1,7 @@
 """gr.compare: who is how far off, finds whom, says what, and costs how much, under every attack."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """What simulate and replay share: what they are given, and the run that they return."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable
 from typing import Any
 

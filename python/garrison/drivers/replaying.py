@@ -1,5 +1,7 @@
 """Feed recorded measurements to a filter."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 from typing import Any
 

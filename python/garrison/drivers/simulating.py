@@ -1,5 +1,7 @@
 """Simulate a plant, attack it, filter it."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 from typing import Any
 
