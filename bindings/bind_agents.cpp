@@ -232,6 +232,20 @@ void bind_agents(py::module_& m) {
       .def_property_readonly(
           "accused", [](const PyAgent& a) { return a->accused(); }, "Agents that this one has accused.")
       .def_property_readonly(
+          "proved", [](const PyAgent& a) { return a->proved(); },
+          "Sources that its certificate with memory has shown to be attacked, numbered in the order of their "
+          "first\n"
+          "measurement in the network.")
+      .def_property_readonly(
+          "box",
+          [](const PyAgent& a) {
+            std::vector<double> box(static_cast<std::size_t>(a->states()));
+            a->box(box);
+            const auto size = static_cast<py::ssize_t>(box.size());
+            return owned(std::move(box), {size});
+          },
+          "(n,) bounds on the error of each coordinate; `bound` is that of all together.")
+      .def_property_readonly(
           "control", [](const PyAgent& a) { return a->control(); },
           "Control input applied until the next sample; nan if the family has none.")
       .def_property_readonly(

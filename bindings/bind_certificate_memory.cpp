@@ -277,6 +277,9 @@ void bind_bank(py::module_& m) {
           },
           py::arg("c0"), py::arg("P0"), py::arg("r0"),
           "(x - c0)' P0^-1 (x - c0) <= r0^2 before the first update. Raises InvalidInput.")
+      .def("start_unknown", &Bank::start_unknown,
+           "All members anew with nothing known of x: no region before the rows of all living members have\n"
+           "determined it.")
       .def(
           "update",
           [](Bank& b, const VectorRef& y, double z1, double z2, double zc, const std::optional<Matrix>& A,

@@ -14,12 +14,13 @@ namespace {
 constexpr const char* kSpreads[] = {"local", "flooded", "direct"};
 
 std::optional<certificate::Wanted> wanted_of(const std::string& name, double failure, int attacked,
-                                             const std::pair<double, double>& levels) {
+                                             const std::pair<double, double>& levels, bool memory) {
   if (name == "none") return std::nullopt;
   certificate::Wanted wanted;
   wanted.failure = failure;
   wanted.attacked = attacked;
   std::tie(wanted.z1, wanted.z2) = levels;
+  wanted.memory = memory;
   const auto* const found = std::find(std::begin(kSpreads), std::end(kSpreads), name);
   if (found == std::end(kSpreads)) {
     std::vector<std::string> known{"none"};
@@ -62,8 +63,8 @@ void bind_designs(py::module_& m) {
   py::class_<Prepared, std::shared_ptr<Prepared>>(m, "Design", "A filter designed for one model and network.")
       .def(py::init([](const Model& model, const Network& network, const FilterHandle& filter,
                        const std::string& certificate, double failure, int attacked,
-                       const std::pair<double, double>& levels) {
-             const auto wanted = wanted_of(certificate, failure, attacked, levels);
+                       const std::pair<double, double>& levels, bool memory) {
+             const auto wanted = wanted_of(certificate, failure, attacked, levels, memory);
              return within_budget(kInfinity, [&] {
                auto prepared = filter.filter->prepare(model, network);
                if (wanted) prepared = certified(*prepared, *wanted);
@@ -71,7 +72,8 @@ void bind_designs(py::module_& m) {
              });
            }),
            py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("certificate") = "none",
-           py::arg("failure") = 1e-6, py::arg("attacked") = 0, py::arg("levels") = std::pair(0.0, 0.0))
+           py::arg("failure") = 1e-6, py::arg("attacked") = 0, py::arg("levels") = std::pair(0.0, 0.0),
+           py::arg("memory") = false)
       .def_property_readonly(
           "certificate",
           [](const Prepared& p) -> py::object {
@@ -81,9 +83,11 @@ void bind_designs(py::module_& m) {
             py::dict found(py::arg("certificate") = kSpreads[static_cast<std::size_t>(wanted.spread)],
                            py::arg("failure") = wanted.failure, py::arg("attacked") = wanted.attacked);
             if (wanted.z1 > 0.0) found["levels"] = std::pair(wanted.z1, wanted.z2);
+            if (wanted.memory) found["memory"] = true;
             return found;
           },
-          "What its runs certify (certificate, failure, attacked, and levels if given); None = nothing but "
+          "What its runs certify (certificate, failure, attacked, levels and memory if given); None = "
+          "nothing but "
           "the family's own "
           "bound.")
       .def_property_readonly("model", &Prepared::model)

@@ -69,8 +69,8 @@ RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int thre
     else
       refuse_unknown("link", name, known);
   }
-  o.keep = {false, false, false, false, false};
-  const std::vector<std::string> keepable{"estimate", "report", "signals", "measurements", "details"};
+  o.keep = {false, false, false, false, false, false};
+  const std::vector<std::string> keepable{"estimate", "report", "signals", "measurements", "details", "box"};
   for (const std::string& name : keep) {
     if (name == "estimate")
       o.keep.estimate = true;
@@ -82,6 +82,8 @@ RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int thre
       o.keep.measurements = true;
     else if (name == "details")
       o.keep.details = true;
+    else if (name == "box")
+      o.keep.report = o.keep.box = true;
     else
       refuse_unknown("keep", name, keepable);
   }
@@ -120,6 +122,7 @@ py::dict from_record(Record&& r) {
   put("estimate", r.estimate, {K, T, N, n});
   put("error", r.error, {K, T, N});
   put("bound", r.bound, {K, T, N});
+  put("box", r.box, {K, T, N, n});
   put("published", r.published, {K, T, N});
   put("bound_kind", r.bound_kind, {K, T, N});
   put("statistic", r.statistic, {K, T, N});
@@ -130,6 +133,9 @@ py::dict from_record(Record&& r) {
   py::list accusations;
   for (const auto& a : r.accusations) accusations.append(py::make_tuple(a.trial, a.time, a.sets));
   d["accusations"] = accusations;
+  py::list proved;
+  for (const auto& a : r.proved) proved.append(py::make_tuple(a.trial, a.time, a.sets));
+  d["proved"] = proved;
   d["warnings"] = r.warnings;
   py::list details;
   for (const auto& entry : r.details)

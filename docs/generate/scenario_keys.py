@@ -86,6 +86,7 @@ MEANINGS = {
         "spread": '"none"; "local": from the measurements of an agent and its neighbours; '
         '"flooded": from all that the rounds bring; "direct": as "local", where agents may lie in their messages',
         "failure": "probability per agent and sample that it is wrong, for Gaussian noise; 0: for bounded noise",
+        "memory": "certify from all measurements so far, too: the same liars at all times",
         "levels": 'z1 and z2 that clean records exceed at the rate `failure`, or "calibrated": those of the fit',
         "attacked": "most attacked sensors at a time; left out: that of the filter",
     },

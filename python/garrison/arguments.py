@@ -181,7 +181,9 @@ SPREADS = ("none", "local", "flooded", "direct")
 ONE_SPREAD = ", ".join(f'"{name}"' for name in SPREADS[:-1]) + f' or "{SPREADS[-1]}"'
 
 
-def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any, levels: Any = None) -> dict[str, Any]:
+def certificate(
+    filter: _core.Filter, name: Any, failure: Any, attacked: Any, levels: Any = None, memory: Any = False
+) -> dict[str, Any]:
     """What to certify: `attacked` is the filter's own where it has one."""
     if not isinstance(name, str):
         raise refusal("certificate", shown(name), ONE_SPREAD)
@@ -190,6 +192,10 @@ def certificate(filter: _core.Filter, name: Any, failure: Any, attacked: Any, le
         out["attacked"] = whole("attacked", attacked, 0)
     if levels is not None:
         out["levels"] = pair_of_levels(levels)
+    if flag("memory", memory):
+        out["memory"] = True
+    if name == "none" and "memory" in out:
+        raise refusal("memory", 'True with certificate "none"', "False", f"{ONE_SPREAD} says what an agent remembers")
     if name == "none":
         return {}
     if "attacked" not in out and "attacked" not in filter.params:

@@ -20,6 +20,7 @@ class BoundKind(Word):
     REFUTED = 8  #: none (nan): the data contradict "at most so many are attacked"
     LIARS = 9  #: none (nan): agents lie in their messages, and bounds rest on what they say
     VARYING = 10  #: none (nan): A or C changes in time, and the filter's theorem needs a constant plant
+    MEMORY = 11  #: all measurements that reached the agent so far
 
     @property
     def why(self) -> str:

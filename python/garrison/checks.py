@@ -79,6 +79,7 @@ def check(
     failure: float = 1e-6,
     attacked: int | None = None,
     levels: tuple[float, float] | None = None,
+    memory: bool = False,
 ) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
 
@@ -104,6 +105,8 @@ def check(
     levels : tuple of two floats, optional
         (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
         (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
+    memory : bool
+        Certify from all measurements so far, too, see `prepare`.
 
     Returns
     -------
@@ -117,6 +120,6 @@ def check(
     """
     require_order("check", model, network, filter)
     conditions, quantities = _core.check(model, network, filter, number("seconds", seconds))
-    if wanted := arguments.certificate(filter, certificate, failure, attacked, levels):
+    if wanted := arguments.certificate(filter, certificate, failure, attacked, levels, memory):
         quantities += expected_certificate(_core.Design(model, network, filter, **wanted))
     return Check(conditions, quantities)

@@ -28,6 +28,7 @@ def dimensions(run: Run) -> dict[str, tuple[str, ...]]:
     return {
         "truth": ("trial", "time", "agent", "state") if own else ("trial", "time", "state"),
         "estimate": (*_PER_AGENT, "state"),
+        "box": (*_PER_AGENT, "state"),
         "measurements": ("trial", "sample", "output"),
         "inputs": ("step", "input"),
         "varying_A": ("step", "state", "state_before"),
@@ -78,7 +79,9 @@ def dataset(run: Run, arrays: dict[str, Any]) -> Any:
     dims, unit = dimensions(run), common_unit(run.model)
     variables: dict[str, Any] = {}
     for name, values in arrays.items():
-        about: dict[str, Any] = {"units": unit} if unit and name in ("truth", "estimate", "error", "bound") else {}
+        about: dict[str, Any] = (
+            {"units": unit} if unit and name in ("truth", "estimate", "error", "bound", "box") else {}
+        )
         if name == "verdict":
             about = {
                 "flag_values": [int(v) for v in Verdict],

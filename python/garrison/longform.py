@@ -41,7 +41,11 @@ def common_unit(model: _core.Model) -> str:
 
 def units(run: Run) -> dict[str, str]:
     """Unit by the name of a column, where it is known."""
-    found = {name: unit for state, unit in run.model.units.items() for name in (_column(state), f"true_{state}")}
+    found = {
+        name: unit
+        for state, unit in run.model.units.items()
+        for name in (_column(state), f"true_{state}", f"box_{state}")
+    }
     if unit := common_unit(run.model):
         found |= dict.fromkeys(("error", "bound", "published"), unit)
     return found
@@ -67,6 +71,8 @@ def columns(run: Run) -> dict[str, Any]:
         truth = run.truth if family_of(run.filter).own_plants else run.truth[:, :, None]
         whole = np.broadcast_to(truth, (trials, times, agents, truth.shape[-1]))
         out |= {f"true_{name}": whole[..., k].ravel() for k, name in enumerate(states)}
+    if run.box is not None:
+        out |= {f"box_{name}": run.box[..., k].ravel() for k, name in enumerate(states)}
     for name in _REPORTED:
         if getattr(run, name) is not None:
             out[name] = getattr(run, name).ravel()

@@ -35,7 +35,7 @@ class Prepared(metaclass=Hinting):
 
     @property
     def certificate(self) -> dict[str, Any] | None:
-        """What its runs and agents certify: certificate, failure, attacked; None = the filter's own bound alone."""
+        """What its runs and agents certify: arguments of `prepare`; None = the filter's own bound alone."""
         found = self._design.certificate
         return None if found is None else dict(found)
 
@@ -128,6 +128,7 @@ def prepare(
     failure: float = 1e-6,
     attacked: int | None = None,
     levels: tuple[float, float] | None = None,
+    memory: bool = False,
 ) -> Prepared:
     """Design the filter for this model and network, once.
 
@@ -154,6 +155,12 @@ def prepare(
     levels : tuple of two floats, optional
         (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
         (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
+    memory : bool
+        Certify from all measurements so far, too, not from those of one sample alone: a bank of filters at every
+        agent (docs/certificates.md, section 9; kind `MEMORY`), whose bounds also exist where one sample does not
+        determine the state, and get ever sharper. Stronger assumptions: the liars are always the same, and noise
+        is white, with the covariances of the model. After a refutation, a restart or a gap of more than 1000
+        samples it starts anew. Takes failure > 0, without `levels`.
 
     Returns
     -------
@@ -168,5 +175,5 @@ def prepare(
         No gains exist.
     """
     require_order("prepare", model, network, filter)
-    wanted = arguments.certificate(filter, certificate, failure, attacked, levels)
+    wanted = arguments.certificate(filter, certificate, failure, attacked, levels, memory)
     return Prepared(_core.Design(model, network, filter, **wanted))

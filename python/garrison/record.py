@@ -35,6 +35,7 @@ ARRAYS = (
     "error",
     "bound",
     "bound_kind",
+    "box",
     "published",
     "statistic",
     "threshold",
@@ -42,7 +43,7 @@ ARRAYS = (
 )
 
 #: what a run keeps besides arrays and objects
-_LISTS = ("accusations", "details", "counters", "warnings", "bytes_per_step")
+_LISTS = ("accusations", "proved", "details", "counters", "warnings", "bytes_per_step")
 #: beginning of a signal's name in a saved run
 _SIGNAL = "signal_"
 #: and of what changed of the plant
@@ -71,6 +72,8 @@ class Run(metaclass=Hinting):
         Distance of the estimate to the truth, and what it is at most.
     bound_kind : (trial, time, agent) array
         Values of garrison.BoundKind, which say where a bound comes from, or why it is inf or nan.
+    box : (trial, time, agent, n) array
+        What the error of each coordinate is at most.
     published : (trial, time, agent) array
         With a certificate, the bound of the filter's family alone.
     statistic, threshold : (trial, time, agent) array
@@ -87,6 +90,9 @@ class Run(metaclass=Hinting):
         Name -> (trial, time, agent) array.
     accusations : list of (trial, time, sets)
         The agents that each agent takes for attacked, whenever one of the sets changed.
+    proved : list of (trial, time, sets)
+        With a certificate with memory: the names of the sources that each agent's has shown to be attacked, whenever
+        one of the sets changed; agents where the model names no sources.
     details : list of (trial, time, agent, name, values)
         Lists of the family (sets, gains), whenever one of them changed.
     counters : dict
@@ -120,6 +126,7 @@ class Run(metaclass=Hinting):
         self.error: Array | None = data.get("error")
         self.bound: Array | None = data.get("bound")
         self.bound_kind: NDArray[np.uint8] | None = data.get("bound_kind")
+        self.box: Array | None = data.get("box")
         self.published: Array | None = data.get("published")
         self.statistic: Array | None = data.get("statistic")
         self.threshold: Array | None = data.get("threshold")
@@ -130,6 +137,8 @@ class Run(metaclass=Hinting):
         )
         #: (trial, time, sets): the agents that each agent takes for attacked, whenever one of the sets changed
         self.accusations: list[tuple[int, int, list[list[int]]]] = data["accusations"]
+        #: (trial, time, sets): the sources that each agent's certificate has shown to be attacked
+        self.proved: list[tuple[int, int, list[list[str]]]] = data.get("proved", [])
         #: (trial, time, agent, name, values): lists of the family (sets, gains), whenever one of them changed
         self.details: list[tuple[int, int, int, str, list[float]]] = data["details"]
         #: lost, late, forged and refused messages, missing and non-finite measurements, overflows
@@ -311,9 +320,9 @@ class Run(metaclass=Hinting):
         """A pandas.DataFrame in long form (extra: pandas): one row per trial, time and agent.
 
         Columns trial, time, agent (its name where the network has names), the estimate x0, x1, ... and the truth
-        true_x0, ... (state names where the model has them), error, bound, statistic, threshold, verdict (as a word),
-        and the signals that were kept; a signal or state whose name another column has is called signal_<name> or
-        state_<name>. `attrs["units"]`: units of columns by name, where the model has them.
+        true_x0, ... (state names where the model has them), the box box_x0, ..., error, bound, statistic, threshold,
+        verdict (as a word), and the signals that were kept; a signal or state whose name another column has is called
+        signal_<name> or state_<name>. `attrs["units"]`: units of columns by name, where the model has them.
         """
         from garrison.longform import frame
 
@@ -351,9 +360,10 @@ def _restored(data: bytes, name: str) -> Run:
 def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: str) -> Run:
     """The run of a document and arrays, signals marked by their prefix."""
     try:
-        objects = document["objects"]
+        objects, document = document["objects"], {"proved": []} | document
         content: dict[str, Any] = {key: document[key] for key in _LISTS} | {"made": document.get("made", {})}
         content["accusations"] = [(k, t, sets) for k, t, sets in content["accusations"]]
+        content["proved"] = [(k, t, sets) for k, t, sets in content["proved"]]
         content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
         parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
         changed = {key.removeprefix(_VARYING): value for key, value in found.items() if key.startswith(_VARYING)}

@@ -13,7 +13,8 @@ Recorder::Recorder(const Prepared& prepared, int steps, bool truth_known, const 
       vouch_(options.message_attacks.empty()),
       direct_(prepared.certificate() != nullptr &&
               prepared.certificate()->wanted.spread == certificate::Spread::direct),
-      outputs_(static_cast<std::size_t>(prepared.model().total_outputs())) {
+      outputs_(static_cast<std::size_t>(prepared.model().total_outputs())),
+      remembers_(prepared.certificate() != nullptr && prepared.certificate()->wanted.memory) {
   const Model& model = prepared.model();
   const AnyFilter& filter = prepared.filter();
   Record& r = record_;
@@ -40,6 +41,7 @@ Recorder::Recorder(const Prepared& prepared, int steps, bool truth_known, const 
   if (keep_.report) {
     r.bound.resize(rows * N);
     r.bound_kind.resize(rows * N);
+    if (keep_.box) r.box.resize(rows * N * n);
     if (prepared.certificate() != nullptr) r.published.resize(rows * N);
     r.statistic.resize(rows * N);
     r.threshold.resize(rows * N);
@@ -54,6 +56,7 @@ Recorder::Recorder(const Prepared& prepared, int steps, bool truth_known, const 
     lists_.resize(trials);
   }
   last_.resize(trials);
+  proved_.assign(trials, std::vector<std::vector<int>>(N));
   counts_.resize(trials);
 }
 
@@ -113,6 +116,7 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
   if (keep_.report) {
     frame.bound = record_.bound.data() + at * N;
     frame.bound_kind = record_.bound_kind.data() + at * N;
+    if (!record_.box.empty()) frame.box = record_.box.data() + at * size();
     if (!record_.published.empty()) frame.published = record_.published.data() + at * N;
     frame.statistic = record_.statistic.data() + at * N;
     frame.threshold = record_.threshold.data() + at * N;
@@ -125,6 +129,7 @@ void Recorder::take(int trial, int t, const Runner& runner, const double* truth,
   if (!vouch_ && frame.bound != nullptr) disown(frame);
   if (truth != nullptr) errors(at, frame.estimate, truth);
   if (keep_.report) accusations(trial, t, runner);
+  if (keep_.report && remembers_ && (vouch_ || direct_)) proofs(trial, t, runner);
   if (keep_.details) details(trial, t, runner);
   if (t >= record_.first_sample) count(trial, t, y);
 }
@@ -134,11 +139,13 @@ void Recorder::disown(const Frame& frame) const {
   const auto of_measurements = [](std::uint8_t kind) {
     const auto k = static_cast<CertificateKind>(kind);
     return k == CertificateKind::witness || k == CertificateKind::relayed || k == CertificateKind::too_few ||
-           k == CertificateKind::refuted;
+           k == CertificateKind::refuted || k == CertificateKind::memory;
   };
+  const auto n = static_cast<std::size_t>(record_.states);
   for (std::size_t i = 0; i < static_cast<std::size_t>(record_.agents); ++i) {
     if (direct_ && of_measurements(frame.bound_kind[i])) continue;
     frame.bound[i] = kNaN;
+    if (frame.box != nullptr) std::fill_n(frame.box + i * n, n, kNaN);
     frame.bound_kind[i] = static_cast<std::uint8_t>(CertificateKind::liars);
   }
 }
@@ -165,6 +172,20 @@ void Recorder::accusations(int trial, int t, const Runner& runner) {
   }
   const std::lock_guard lock(mutex_);
   record_.accusations.push_back(std::move(entry));
+}
+
+void Recorder::proofs(int trial, int t, const Runner& runner) {
+  auto& last = proved_[static_cast<std::size_t>(trial)];
+  bool changed = t == 0;
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    const std::span<const int> now = runner.proved(static_cast<int>(i));
+    if (std::equal(now.begin(), now.end(), last[i].begin(), last[i].end())) continue;
+    last[i].assign(now.begin(), now.end());
+    changed = true;
+  }
+  if (!changed) return;
+  const std::lock_guard lock(mutex_);
+  record_.proved.push_back({trial, t, last});
 }
 
 void Recorder::details(int trial, int t, const Runner& runner) {
@@ -202,9 +223,10 @@ Record Recorder::release() {
   }
   if (finished_ > 0) record_.bytes_per_step = (bytes_ + finished_ / 2) / finished_;
   // Threads finish trials in any order; the record must not depend on it.
-  std::sort(record_.accusations.begin(), record_.accusations.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.trial, a.time) < std::tie(b.trial, b.time);
-  });
+  for (auto* sets : {&record_.accusations, &record_.proved})
+    std::sort(sets->begin(), sets->end(), [](const auto& a, const auto& b) {
+      return std::tie(a.trial, a.time) < std::tie(b.trial, b.time);
+    });
   std::sort(record_.details.begin(), record_.details.end(), [](const auto& a, const auto& b) {
     return std::tie(a.trial, a.time, a.agent, a.name) < std::tie(b.trial, b.time, b.agent, b.name);
   });

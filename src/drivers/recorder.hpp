@@ -70,6 +70,7 @@ class Recorder {
   bool errors(std::size_t row, const double* estimate, const double* truth);
   void disown(const Frame& frame) const;
   void accusations(int trial, int t, const Runner& runner);
+  void proofs(int trial, int t, const Runner& runner);
   void details(int trial, int t, const Runner& runner);
 
   Record record_;
@@ -80,7 +81,9 @@ class Recorder {
   bool direct_;  // the certificate does not rest on what agents say of others
   std::size_t outputs_;
   std::vector<Counts> counts_;                           // per trial
+  bool remembers_;                                       // agents prove sources to be attacked
   std::vector<std::vector<AgentSet>> last_;              // per trial: the sets at the last accusation
+  std::vector<std::vector<std::vector<int>>> proved_;    // per trial and agent
   std::vector<std::vector<std::vector<double>>> lists_;  // per trial, [agent * details + detail]
   std::vector<std::vector<double>> estimates_;           // per trial, when estimates are not kept
   std::mutex mutex_;

@@ -24,6 +24,10 @@ struct CertifiedNetwork::Agents {
   void plan_at_once(const certificate::Plan& plan, const Network& network, int rounds,
                     const std::vector<int>& listeners);
   bool all_alike() const;
+  /// Flooded, from one sample without losses on: one agent stands for all. Banks have a past of their own.
+  bool one_for_all() const {
+    return alike && certifiers.front()->flooded() && !certifiers.front()->has_bank();
+  }
   std::int64_t bytes_of_first_regions(int rounds, const std::vector<int>& listeners) const;
 };
 
@@ -114,7 +118,7 @@ void CertifiedNetwork::begin(std::int64_t t, const double* y) {
 void CertifiedNetwork::start() {
   if (y_ == nullptr) return;
   auto& all = all_->certifiers;
-  if (all_->alike && all.front()->flooded())
+  if (all_->one_for_all())
     for (std::size_t i = 1; i < all.size(); ++i) all[i]->copy(*all.front());
   all_->alike = false;
   for (std::size_t i = 0; i < first_.size(); ++i) all[i]->begin(t_, y_ + first_[i]);
@@ -183,26 +187,31 @@ void CertifiedNetwork::finish(Workers& workers) {
   all_->alike = lossless && all_->reaches_all && all_->all_alike();
 }
 
-/// A sample in which everybody learns everything, from a region that all share. Flooded, one agent stands for
-/// all; direct, nothing is shared.
+/// A sample in which everybody learns everything, from a region that all share. Flooded, the witness of one
+/// agent is that of all; direct, nothing is shared.
 void CertifiedNetwork::at_once(Workers& workers) {
   auto& all = all_->certifiers;
   AgentCertifier& first = *all.front();
-  const std::int64_t others = first.flooded() ? 0 : agents() - 1;
+  const std::int64_t others = all_->one_for_all() ? 0 : agents() - 1;
   first.begin_knowing(t_, y_, nullptr);
   const bool relaying = first.memory().age >= 0;
   workers.split(others, [&](std::int64_t begin, std::int64_t end, int) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       all[i + 1]->begin_knowing(t_, y_, first.direct() ? nullptr : &first);
-      all[i + 1]->witness();
+      if (!first.flooded()) all[i + 1]->witness();
     }
   });
   first.witness();
+  if (first.flooded())
+    workers.split(others, [&](std::int64_t begin, std::int64_t end, int) {
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+        all[i + 1]->adopt(first);
+    });
   if (relaying && !first.direct())
     bytes_ += all_->region_bytes;
   else if (!first.flooded() && !first.direct())
     bytes_ += all_->bytes_of_first_regions(rounds_, listeners_);
-  const std::int64_t sharing = first.direct() ? 0 : others;
+  const std::int64_t sharing = first.direct() || first.flooded() ? 0 : others;
   for (std::size_t i = 1; i <= static_cast<std::size_t>(sharing); ++i) first.hear_relayed(*all[i]);
   for (std::size_t i = 1; i <= static_cast<std::size_t>(sharing); ++i) all[i]->copy_relayed(first);
   bytes_ += all_->bare_bytes;
@@ -235,8 +244,7 @@ void CertifiedNetwork::end_round(Workers& workers) {
 
 const certificate::Certifier* CertifiedNetwork::of(int agent) const {
   const auto& all = all_->certifiers;
-  const bool one_for_all = all_->alike && all.front()->flooded();
-  return all[one_for_all ? 0 : static_cast<std::size_t>(agent)].get();
+  return all[all_->one_for_all() ? 0 : static_cast<std::size_t>(agent)].get();
 }
 
 }  // namespace garrison

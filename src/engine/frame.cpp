@@ -6,10 +6,11 @@
 
 namespace garrison {
 
-void disclaim(const Frame& f, std::size_t agents) {
+void disclaim(const Frame& f, std::size_t agents, std::size_t states) {
   if (f.bound == nullptr) return;
   std::fill_n(f.bound, agents, kNaN);
   if (f.published != nullptr) std::fill_n(f.published, agents, kNaN);
+  if (f.box != nullptr) std::fill_n(f.box, agents * states, kNaN);
   if (f.bound_kind != nullptr)
     std::fill_n(f.bound_kind, agents, static_cast<std::uint8_t>(CertificateKind::varying));
 }
@@ -20,10 +21,8 @@ void certify(const Frame& f, std::size_t i, const certificate::Certifier* certif
   const Bound bound = certificate::least(f.bound[i], kind, certifier, estimate);
   f.bound[i] = bound.value;
   f.bound_kind[i] = static_cast<std::uint8_t>(bound.kind);
-}
-
-void name_sources(const Frame& f, std::size_t agents) {
-  for (std::size_t i = 0; i < agents; ++i) certify(f, i, nullptr, {});
+  const std::size_t n = estimate.size();
+  if (f.box != nullptr) certificate::least_box(bound.value, certifier, estimate, {f.box + i * n, n});
 }
 
 }  // namespace garrison

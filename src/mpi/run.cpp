@@ -214,8 +214,12 @@ void run_whole(const std::string& path, int threads) {
   std::iota(all.begin(), all.end(), 0);
   RunOptions options = s.run;
   options.threads = threads;
-  options.keep = {
-      .estimate = true, .report = false, .signals = false, .measurements = false, .details = false};
+  options.keep = {.estimate = true,
+                  .report = false,
+                  .signals = false,
+                  .measurements = false,
+                  .details = false,
+                  .box = false};
   const double start = MPI_Wtime();
   const auto prepared =
       make_filter(s.family, s.params)->prepare(s.sensors.model(all), partition::network_of(*s.ground));

@@ -7,7 +7,7 @@
 
 namespace garrison {
 
-/// Proofs of all of them: docs/certificates.md. What is behind `recovered` says why a bound is absent.
+/// Proofs of all of them: docs/certificates.md. From `too_few` to `varying`: why a bound is absent.
 enum class CertificateKind : std::uint8_t {
   none,       ///< no certificate was asked for, and the filter's family promises nothing here
   published,  ///< the family's own
@@ -20,12 +20,13 @@ enum class CertificateKind : std::uint8_t {
   refuted,    ///< bound = NaN: the data contradict "at most s are attacked" (or the rare event happened)
   liars,      ///< bound = NaN: agents lie in their messages, where every bound rests on what they say
   varying,    ///< bound = NaN: A or C changes in time, and the family's theorem needs a constant plant
+  memory,     ///< B: all measurements that reached the agent so far; the attacked are always the same
 };
-inline constexpr int kCertificateKinds = 11;
+inline constexpr int kCertificateKinds = 12;
 
 constexpr std::string_view word(CertificateKind kind) {
-  constexpr std::string_view words[] = {"none",      "published", "witness", "relayed", "table",  "informed",
-                                        "recovered", "too few",   "refuted", "liars",   "varying"};
+  constexpr std::string_view words[] = {"none",      "published", "witness", "relayed", "table",   "informed",
+                                        "recovered", "too few",   "refuted", "liars",   "varying", "memory"};
   return words[static_cast<int>(kind)];
 }
 

@@ -28,6 +28,7 @@ struct GARRISON_EXPORT Record {
   Bulk<double> estimate;      ///< [trial][time][agent][state]
   Bulk<double> error;         ///< ||estimate - truth||; empty when the truth is not known
   Bulk<double> bound;         ///< certified bound on the error; NaN or infinite as its kind says
+  Bulk<double> box;           ///< [trial][time][agent][state]: the bound of each coordinate
   Bulk<double> published;     ///< the family's own bound alone; empty without a certificate
   Bulk<std::uint8_t> bound_kind;  ///< values of CertificateKind
   Bulk<double> statistic;
@@ -42,6 +43,9 @@ struct GARRISON_EXPORT Record {
     std::vector<std::vector<int>> sets;  ///< per agent, sorted
   };
   std::vector<Accusation> accusations;
+  /// The same of the sources (Plan::source) that each agent's certificate with memory has shown to be
+  /// attacked.
+  std::vector<Accusation> proved;
 
   /// Lists that the family tells of its agents (sets, gains), whenever one of them changed.
   struct Detail {

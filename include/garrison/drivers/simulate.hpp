@@ -24,6 +24,7 @@ struct GARRISON_EXPORT Keep {
   bool signals = false;  ///< the family's own signals
   bool measurements = true;
   bool details = false;  ///< the family's lists (sets, gains), whenever one changes
+  bool box = false;      ///< with `report`: the bound of each coordinate
 };
 
 /// Settings that simulation and replay share.

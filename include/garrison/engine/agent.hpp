@@ -83,6 +83,12 @@ class GARRISON_EXPORT Agent {
   /// Control input applied until the next sample; NaN if the family has none.
   virtual double control() const noexcept = 0;
   virtual std::vector<int> accused() const = 0;
+  /// Bounds on the error of each coordinate, states() numbers: with a certificate often far less than the
+  /// bound of the report, which they are else.
+  virtual void box(std::span<double> out) const noexcept = 0;
+  /// Sources that its certificate has shown to be attacked, numbered in the order of their first measurement
+  /// in the network; none without memory.
+  virtual std::vector<int> proved() const = 0;
   /// How often the estimate was of no use and the agent rejoined.
   virtual std::int64_t resets() const noexcept = 0;
 

@@ -31,7 +31,7 @@ class AgentEvidence {
 
   explicit operator bool() const noexcept { return certifier_ != nullptr; }
   certificate::Certifier* operator->() const noexcept { return certifier_.get(); }
-  const certificate::Certifier* get() const noexcept { return certifier_.get(); }
+  certificate::Certifier* get() const noexcept { return certifier_.get(); }
 
   /// The most bytes that `sender` puts behind a message of the family.
   std::size_t most_bytes(int sender) const {

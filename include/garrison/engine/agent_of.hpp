@@ -172,6 +172,16 @@ class AgentOf final : public Agent {
       if (set->contains(i)) all.push_back(i);
     return all;
   }
+  void box(std::span<double> out) const noexcept override {
+    const Vec<n>& x = F::template estimate<n>(state_);
+    const std::span<const double> estimate(x.data(), static_cast<std::size_t>(x.size()));
+    certificate::least_box(report().bound, evidence_.get(), estimate, out.first(estimate.size()));
+  }
+  std::vector<int> proved() const override {
+    if (!evidence_) return {};
+    const auto found = evidence_.get()->proved();
+    return {found.begin(), found.end()};
+  }
   std::int64_t resets() const noexcept override { return resets_; }
 
   std::size_t snapshot_bytes() const noexcept override { return snapshot_bytes_; }
@@ -189,8 +199,8 @@ class AgentOf final : public Agent {
     if (const Refusal why = head.read(snapshot); why != Refusal::none) return why;
     wire::Reader reader(SnapshotHead::state_in(snapshot), local_.agents, false);
     reader("", state_);
-    if (evidence_) reader("certificate", evidence_->memory());
-    const bool certified = !evidence_ || (evidence_->usable() && evidence_->memory().t == head.t);
+    if (evidence_) reader("certificate", *evidence_.get());
+    const bool certified = !evidence_ || (reader.end() == Refusal::none && evidence_->resume(head.t));
     bool sound = certified && usable<n>(F::template estimate<n>(state_));
     if constexpr (requires { F::template sound<n>(state_); }) sound = sound && F::template sound<n>(state_);
     if (reader.end() != Refusal::none || head.t < start() || head.t > kLatest || !sound) {
@@ -291,7 +301,7 @@ class AgentOf final : public Agent {
   std::size_t written(std::span<std::byte> out) const noexcept {
     wire::Writer writer(out);
     writer("", const_cast<State&>(state_));  // only read
-    if (evidence_) writer("certificate", evidence_->memory());
+    if (evidence_) writer("certificate", *evidence_.get());
     return writer.used();
   }
 

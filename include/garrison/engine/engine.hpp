@@ -95,14 +95,15 @@ class Engine final : public Runner {
       F::template signals<n>(local(k), *gains_, states_[k], signals.data());
       for (std::size_t s = 0; s < F::signal_count; ++s) f.signals[s * N + i] = signals[s];
     }
-    if (places_.varying()) return disclaim(f, N);
+    if (places_.varying())
+      return disclaim(f, N, static_cast<std::size_t>(F::template estimate<n>(states_.front()).size()));
     if (f.bound == nullptr || f.bound_kind == nullptr) return;
     if (!f.believed) std::fill_n(f.bound, N, kNaN);
     if (f.published != nullptr) std::copy_n(f.bound, N, f.published);
-    if (!certified_) return name_sources(f, N);
     for (std::size_t i = 0; i < N; ++i) {
       const Vec<n>& x = F::template estimate<n>(states_[places_.of(static_cast<int>(i))]);  // or a value
-      certify(f, i, certified_->of(static_cast<int>(i)), {x.data(), static_cast<std::size_t>(x.size())});
+      certify(f, i, certified_ ? certified_->of(static_cast<int>(i)) : nullptr,
+              {x.data(), static_cast<std::size_t>(x.size())});
     }
   }
 
@@ -136,6 +137,9 @@ class Engine final : public Runner {
     } else {
       return *F::template accused<n>(s);
     }
+  }
+  std::span<const int> proved(int agent) const override {
+    return certified_ ? certified_->of(agent)->proved() : std::span<const int>();
   }
   std::int64_t overflows() const override { return overflows_; }
   std::int64_t resets() const override { return resets_; }

@@ -17,6 +17,7 @@ namespace garrison {
 struct Frame {
   double* estimate = nullptr;          ///< N x n, agent by agent
   double* bound = nullptr;             ///< N
+  double* box = nullptr;               ///< N x n, agent by agent: the bound per coordinate
   double* published = nullptr;         ///< N: the family's own bound alone
   std::uint8_t* bound_kind = nullptr;  ///< N, values of CertificateKind
   double* statistic = nullptr;         ///< N
@@ -27,10 +28,9 @@ struct Frame {
 };
 
 /// No theorem of a family covers a plant that changes in time: there is no bound of any agent.
-GARRISON_EXPORT void disclaim(const Frame& frame, std::size_t agents);
-/// Says where the bounds of the family come from.
-GARRISON_EXPORT void name_sources(const Frame& frame, std::size_t agents);
-/// The same of agent i, or puts a better bound in its place.
+GARRISON_EXPORT void disclaim(const Frame& frame, std::size_t agents, std::size_t states);
+/// Says where the bound of agent i comes from, the family's or a better one, and what it is per coordinate;
+/// `estimate` is the agent's, n numbers.
 GARRISON_EXPORT void certify(const Frame& frame, std::size_t i, const certificate::Certifier* certifier,
                              std::span<const double> estimate);
 
@@ -59,6 +59,8 @@ class GARRISON_EXPORT Runner {
   /// Agents that `agent` has accused.
   /// Valid until the next call.
   virtual const AgentSet& accused(int agent) const = 0;
+  /// Sources that the certificate of `agent` has shown to be attacked (Agent::proved), ascending.
+  virtual std::span<const int> proved(int agent) const = 0;
   /// Samples at which some estimate was not finite, or beyond kHuge (its messages are then withheld).
   virtual std::int64_t overflows() const = 0;
   /// Agents that rejoined because of that, summed over samples.

@@ -668,6 +668,11 @@ class Agent:
         Value of garrison.BoundKind: where the bound comes from, or why there is none.
         """
     @property
+    def box(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) bounds on the error of each coordinate; `bound` is that of all together.
+        """
+    @property
     def control(self) -> float:
         """
         Control input applied until the next sample; nan if the family has none.
@@ -690,6 +695,12 @@ class Agent:
     def neighbours(self) -> list[int]:
         """
         Agents that it hears.
+        """
+    @property
+    def proved(self) -> list[int]:
+        """
+        Sources that its certificate with memory has shown to be attacked, numbered in the order of their first
+        measurement in the network.
         """
     @property
     def resets(self) -> int:
@@ -736,6 +747,7 @@ class Design:
             0.0,
             0.0,
         ),
+        memory: bool = False,
     ) -> None: ...
     def __reduce__(self) -> tuple: ...
     def agent(self, id: typing.SupportsInt | typing.SupportsIndex) -> Agent: ...
@@ -747,7 +759,7 @@ class Design:
     @property
     def certificate(self) -> typing.Any:
         """
-        What its runs certify (certificate, failure, attacked, and levels if given); None = nothing but the family's own bound.
+        What its runs certify (certificate, failure, attacked, levels and memory if given); None = nothing but the family's own bound.
         """
     @property
     def filter(self) -> typing.Any: ...

@@ -607,6 +607,11 @@ class Bank:
         """
         (x - c0)' P0^-1 (x - c0) <= r0^2 before the first update. Raises InvalidInput.
         """
+    def start_unknown(self) -> None:
+        """
+        All members anew with nothing known of x: no region before the rows of all living members have
+        determined it.
+        """
     def update(
         self,
         y: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],

@@ -23,9 +23,7 @@ class Plant:
         self.n = model.states
         self.A, self.Q = np.asarray(model.A, dtype=float), np.asarray(Q, dtype=float)
         self.root = _root(self.Q)
-        given = list(model.sources) or [
-            name for name, C in zip(model_agents(model), model.C, strict=True) for _ in range(len(C))
-        ]
+        given = sources_of(model)
         self.names = list(dict.fromkeys(given))
         places = {name: k for k, name in enumerate(self.names)}
         self.source = np.array([places[name] for name in given], dtype=int)
@@ -68,6 +66,13 @@ class Plant:
     def _sources(self) -> list[tuple[Array, Array]]:
         parts = [self.rows[self.source == k] for k in range(len(self.names))]
         return [(C, np.ones(len(C))) for C in parts]
+
+
+def sources_of(model: _core.Model) -> list[str]:
+    """Who stands behind each output: an agent where the model names no sources."""
+    return list(model.sources) or [
+        name for name, C in zip(model_agents(model), model.C, strict=True) for _ in range(len(C))
+    ]
 
 
 def model_agents(model: _core.Model) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, doubts, refuted
+from garrison.certifying.plant import sources_of
 from garrison.objects import described_attack, plain_data
 from garrison.record import Run
 from garrison.sizes import require_memory
@@ -18,7 +19,7 @@ Attacks = _core.Attack | Iterable[_core.Attack]
 
 #: what a run keeps when nothing else is asked for, and everything that it can keep
 KEEP = ("estimate", "report", "measurements")
-KEEPABLE = (*KEEP, "signals", "details")
+KEEPABLE = (*KEEP, "signals", "details", "box")
 #: trials have numbers below this one
 MOST_TRIALS = 2**24
 
@@ -31,6 +32,7 @@ def require_room(model: _core.Model, filter: _core.Filter, keep: Iterable[str], 
         "report": 6 * N,
         "measurements": model.outputs,
         "signals": len(filter.signal_names) * N,
+        "box": N * n,
     }
     doubles = trials * (steps + 1.0) * (n + sum(row.get(name, 0) for name in keep))
     require_memory("steps, trials", f"{count(steps, 'sample')} in {count(trials, 'trial')}", doubles)
@@ -45,9 +47,10 @@ def designed(
     failure: float,
     attacked: int | None,
     levels: tuple[float, float] | None,
+    memory: bool,
 ) -> _core.Design:
     """The design that is given, or that of the three with what is to be certified."""
-    wanted = arguments.certificate(filter, certificate, failure, attacked, levels)
+    wanted = arguments.certificate(filter, certificate, failure, attacked, levels, memory)
     if design is None:
         return _core.Design(model, network, filter, **wanted)
     if wanted:
@@ -73,6 +76,9 @@ def recorded(
 ) -> Run:
     """The run of what a driver recorded, with warnings of all that speaks against it."""
     series = known["series"]
+    sources = list(dict.fromkeys(sources_of(model)))
+    named = [(k, t, [[sources[j] for j in some] for some in sets]) for k, t, sets in data["proved"]]
+    data = data | {"proved": named}
     run = Run(data | ({"inputs": known["inputs"]} if model.inputs else {}), model, network, filter, series)
     if conditions and not series:
         run.warnings[:0] = doubts.of_conditions(model, network, filter)

@@ -51,6 +51,7 @@ def replay(
     failure: float = 1e-6,
     attacked: int | None = None,
     levels: tuple[float, float] | None = None,
+    memory: bool = False,
     design: _core.Design | None = None,
 ) -> Run:
     """Feed recorded measurements to a filter.
@@ -87,7 +88,8 @@ def replay(
         a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
         (sample, round, sender, receiver).
     keep : iterable of str
-        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets).
+        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets), "box" (the bound
+        of each coordinate, with "report").
     threads : int
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
         (garrison.Filter, garrison.attacks.custom) always run in one.
@@ -106,6 +108,8 @@ def replay(
     levels : tuple of two floats, optional
         (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
         (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
+    memory : bool
+        Certify from all measurements so far, too, see `prepare`.
     design : Design, optional
         Made before of these very three (`prepare` does that).
 
@@ -131,7 +135,7 @@ def replay(
     ground, links = links_of(network, arguments.link(link), samples)
     known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
     require_room(base, filter, kept, trials, samples)
-    design = designed(base, ground, filter, design, certificate, failure, attacked, levels)
+    design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
     data = _core.replay(
         design,
         measurements=y,

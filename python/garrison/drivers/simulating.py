@@ -55,6 +55,7 @@ def simulate(
     failure: float = 1e-6,
     attacked: int | None = None,
     levels: tuple[float, float] | None = None,
+    memory: bool = False,
     design: _core.Design | None = None,
 ) -> Run:
     """Simulate the plant, attack it, filter it.
@@ -98,7 +99,8 @@ def simulate(
         a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
         (sample, round, sender, receiver).
     keep : iterable of str
-        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets).
+        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets), "box" (the bound
+        of each coordinate, with "report").
     threads : int
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
         (garrison.Filter, garrison.attacks.custom) always run in one.
@@ -117,6 +119,8 @@ def simulate(
     levels : tuple of two floats, optional
         (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
         (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
+    memory : bool
+        Certify from all measurements so far, too, see `prepare`.
     design : Design, optional
         Made before of these very three (`prepare` does that).
 
@@ -138,7 +142,7 @@ def simulate(
     wanted = arguments.flag("conditions", conditions)
     attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
     require_room(base, filter, kept, trials, steps)
-    design = designed(base, ground, filter, design, certificate, failure, attacked, levels)
+    design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
     data = _core.simulate(
         design,
         steps=steps,

@@ -158,6 +158,8 @@ def _error_note(scenario: Scenario) -> str:
         law = f"at levels that noise like that of clean records exceeds at the rate {failure:g}"
     else:
         law = f"except with probability {failure:g} per agent and sample, for the model's noise"
+    if wanted.get("memory"):
+        law += ", as long as always the same lie"
     return (
         f"{means}The certified bound is the largest of any agent: it holds {law}, whatever the attackers send "
         "and whatever messages are lost, for any filter. The published bound is what the filter's paper alone promises."

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.arguments import ONE_SPREAD, SPREADS, chance, moderate, pair_of_levels
+from garrison.arguments import ONE_SPREAD, SPREADS, chance, flag, moderate, pair_of_levels
 from garrison.doubts import waits
 from garrison.files import contents
 from garrison.fitting import Fit
@@ -37,7 +37,7 @@ TABLES = ["model", "network", "filter", "compare", "attack", "link", "noise", "d
 RUN_KEYS = ["steps", "trials", "seed", "threads", "x0", "start", "start_error", "inputs"]
 LINK_KEYS = ["drop", "delay", "delay_rounds"]
 NOISE_KEYS = ["law"]
-CERTIFICATE_KEYS = ["spread", "failure", "attacked", "levels"]
+CERTIFICATE_KEYS = ["spread", "failure", "attacked", "levels", "memory"]
 
 
 @dataclass
@@ -235,6 +235,8 @@ def _certificate(section: Section) -> dict[str, Any]:
         out["attacked"] = section.whole("attacked", 0, 0)
     if "levels" in section:
         out["levels"] = section.table["levels"]
+    if "memory" in section:
+        out["memory"] = flag(section.place("memory"), section.table["memory"])
     return out
 
 

@@ -13,7 +13,27 @@
 #include "ellipsoid_union.hpp"
 
 namespace garrison::certificate {
-namespace {}  // namespace
+namespace {
+
+/// Part of its length by which a row has to see a free direction to fix it: its noise grows by the inverse,
+/// and that squared has to stay clear of rounding. A row that sees less, but more than rounding, is left out.
+constexpr double kSees = 1e-5;
+constexpr double kSeesNothing = 1e-12;
+
+/// What the rows of n steps say of each coordinate alone: makes free directions independent of units.
+Vector weights(const MatrixRef& A, const std::vector<BankSource>& sources) {
+  Vector weight = Vector::Zero(A.rows());
+  for (const BankSource& source : sources) {
+    Matrix rows = source.R.cwiseSqrt().cwiseInverse().asDiagonal() * source.C;
+    for (Eigen::Index k = 0; k < A.rows(); ++k, rows = (rows * A).eval())
+      weight += rows.colwise().squaredNorm().transpose();
+  }
+  for (double& one : weight)
+    if (!(one > 1.0 / kHuge && one < kHuge)) one = 1.0;
+  return weight;
+}
+
+}  // namespace
 
 namespace detail {
 
@@ -49,7 +69,8 @@ Bank::Bank(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>
   detail::require_room("members", count * static_cast<double>(n * (2 * n + 1)));
   for (const BankSource& source : sources) outputs_ += static_cast<int>(source.R.size());
   for (Matrix* M : {&room_, &shape_, &sum_}) M->resize(n, n);
-  for (Vector* v : {&h_, &Ph_, &k_, &Psih_, &v_}) v->resize(n);
+  for (Vector* v : {&h_, &Ph_, &k_, &Psih_, &v_, &seen_}) v->resize(n);
+  weight_ = weights(A, sources);
   Region& region = witness_.region;
   region.center.resize(n);
   region.box.resize(n);
@@ -71,9 +92,13 @@ void Bank::all_members(const VectorRef& c0, const MatrixRef& P, const MatrixRef&
     for (const int id : ids)
       if (out[static_cast<std::size_t>(id)] != 0) member.left_out.push_back(id);
     member.accused = member.left_out;
+    member.number = static_cast<int>(members_.size());
     members_.push_back(std::move(member));
     return true;
   });
+  sets_.clear();
+  for (const BankMember& member : members_) sets_.push_back(member.left_out);
+  taken_.resize(members_.size());
   started_ = true;
   alive_ = members_.size();
 }
@@ -97,24 +122,87 @@ void Bank::restart(const Region& region) {
   all_members(c0, Matrix::Zero(states(), states()), Psi);
 }
 
+void Bank::start_unknown() {
+  all_members(Vector::Zero(states()), Matrix::Zero(states(), states()), Matrix(states(), 0));
+  for (BankMember& member : members_) member.free.resize(states());
+  forget();
+}
+
+void Bank::forget() noexcept {
+  alive_ = members_.size();
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    BankMember& member = members_[k];
+    member.c.setZero();
+    member.P.setZero();
+    member.free.all(weight_);
+    member.number = static_cast<int>(k);
+    leave_out(member);
+  }
+}
+
+/// The sources of its number.
+void Bank::leave_out(BankMember& member) const noexcept {
+  const std::vector<int>& set = sets_[static_cast<std::size_t>(member.number)];
+  std::copy(set.begin(), set.end(), member.left_out.begin());
+  std::copy(set.begin(), set.end(), member.accused.begin());
+}
+
+bool Bank::overflows() const noexcept {
+  return std::any_of(members_.begin(), members_.begin() + static_cast<std::ptrdiff_t>(alive_),
+                     [](const BankMember& m) {
+                       return !(m.c.cwiseAbs().maxCoeff() < kHuge && m.P.cwiseAbs().maxCoeff() < kHuge);
+                     });
+}
+
+bool Bank::resume() noexcept {
+  if (overflows()) return false;
+  std::fill(taken_.begin(), taken_.end(), char{0});
+  for (BankMember& member : members_) {
+    const auto at = static_cast<std::size_t>(member.number);
+    if (member.number < 0 || at >= sets_.size() || taken_[at] != 0 || !member.free.U.allFinite())
+      return false;
+    taken_[at] = 1;
+    leave_out(member);
+  }
+  return true;
+}
+
 /// One row y = h'x + v. False when the innovation is not noise.
 bool Bank::take(BankMember& m, const VectorRef& h, double R, double y, double z1) noexcept {
   Ph_ = m.P.lazyProduct(h);
-  Psih_ = m.Psi.transpose().lazyProduct(h);
+  auto Psih = Psih_.head(m.Psi.cols());
+  Psih = m.Psi.transpose().lazyProduct(h);
   const double variance = h.dot(Ph_) + R;
   const double innovation = y - h.dot(m.c);
-  const double room = z1 * std::sqrt(std::max(variance, 0.0)) + Psih_.norm();
+  if (m.free.count > 0) {
+    auto seen = seen_.head(m.free.count);
+    seen = m.free.U.leftCols(m.free.count).transpose().lazyProduct(h);
+    const double most = std::sqrt((h.array().square() / weight_.array()).sum());
+    const double sees = seen.norm();
+    if (sees > kSees * most) {  // nothing to compare with: the row fixes this direction
+      k_ = m.free.U.leftCols(m.free.count).lazyProduct(seen) / (sees * sees);
+      m.free.fix(seen);
+      move(m, innovation, variance);
+      return true;
+    }
+    if (sees > kSeesNothing * most) return true;
+  }
+  const double room = z1 * std::sqrt(std::max(variance, 0.0)) + Psih.norm();
   if (!(std::abs(innovation) <= room + 1e-12 * (room + std::abs(y)))) return false;
   // The gain of P + Psi Psi': any gain is valid, P and Psi are carried by the one that is used.
-  k_ = (Ph_ + m.Psi.lazyProduct(Psih_)) / (variance + Psih_.squaredNorm());
+  k_ = (Ph_ + m.Psi.lazyProduct(Psih)) / (variance + Psih.squaredNorm());
+  move(m, innovation, variance);
+  return true;
+}
+
+/// Takes an innovation of this variance in by the gain k_: P becomes (I - k h') P (I - k h')' + k R k'.
+void Bank::move(BankMember& m, double innovation, double variance) noexcept {
   m.c += innovation * k_;
   for (Eigen::Index j = 0; j < m.Psi.cols(); ++j) m.Psi.col(j) -= Psih_(j) * k_;
-  const double PR = h.dot(Ph_) + R;  // (I - k h') P (I - k h')' + k R k'
   for (Eigen::Index j = 0; j < m.P.cols(); ++j)
     for (Eigen::Index i = 0; i <= j; ++i)
       m.P(i, j) = m.P(j, i) =
-          0.5 * (m.P(i, j) + m.P(j, i)) - k_(i) * Ph_(j) - Ph_(i) * k_(j) + PR * k_(i) * k_(j);
-  return true;
+          0.5 * (m.P(i, j) + m.P(j, i)) - k_(i) * Ph_(j) - Ph_(i) * k_(j) + variance * k_(i) * k_(j);
 }
 
 bool Bank::advance(BankMember& m, const VectorRef& y, const WindowLevels& z, const BankStep& step) noexcept {
@@ -127,8 +215,11 @@ bool Bank::advance(BankMember& m, const VectorRef& y, const WindowLevels& z, con
     room_ = A.lazyProduct(m.P);
     m.P = room_.lazyProduct(A.transpose());
     m.P += step.Q != nullptr ? *step.Q : Q_;
-    room_ = A.lazyProduct(m.Psi);
-    m.Psi = room_;
+    for (Eigen::Index j = 0; j < m.Psi.cols(); ++j) {
+      v_ = A.lazyProduct(m.Psi.col(j));
+      m.Psi.col(j) = v_;
+    }
+    m.free.advance(A, weight_, v_);
   }
   Eigen::Index at = 0;
   auto out = m.left_out.begin();
@@ -156,7 +247,12 @@ const WindowWitness& Bank::update(const VectorRef& y, const WindowLevels& z, con
   }
   alive_ = alive;  // the dead stay behind: nothing is freed
   witness_.count = static_cast<int>(alive);
-  if (alive > 0) enclose(z);
+  if (alive == 0) return witness_;
+  if (std::any_of(members().begin(), members().end(), [](const BankMember& m) { return m.free.count > 0; }))
+    witness_.region.radius = witness_.region.stretch = kInfinity;
+  else
+    enclose(z);
+  prove();
   return witness_;
 }
 
@@ -218,6 +314,9 @@ void Bank::enclose(const WindowLevels& z) noexcept {
   region.radius = std::min(region.radius, region.box.norm());
   if (!std::isfinite(region.radius) || !region.center.allFinite())  // overflow of an unstable plant
     region.radius = region.stretch = kInfinity;
+}
+
+void Bank::prove() noexcept {
   if (static_cast<int>(sources_.size()) < 2 * s_) return;
   const auto living = members();
   for (const int source : living.front().accused)
@@ -260,6 +359,7 @@ void Bank::merge(int most, const WindowLevels& z) {
     }
     BankMember& other = members_[at];
     both.clear();
+    const bool unknown = first.free.count > 0 || other.free.count > 0;
     add(first);
     add(other);
     both.hull(region);
@@ -270,8 +370,17 @@ void Bank::merge(int most, const WindowLevels& z) {
     std::vector<int> accused;
     std::set_intersection(first.accused.begin(), first.accused.end(), other.accused.begin(),
                           other.accused.end(), std::back_inserter(accused));
-    other = {region.center, Matrix::Zero(n, n),
-             region.stretch * garrison::detail::covariance_root(region.shape), sources, accused};
+    other.left_out = sources;
+    other.accused = accused;
+    other.P.setZero();
+    if (unknown) {
+      other.free.resize(n);
+      other.free.all(weight_);
+      other.Psi.setZero();
+    } else {
+      other.c = region.center;
+      other.Psi = region.stretch * garrison::detail::covariance_root(region.shape);
+    }
     std::rotate(members_.begin() + static_cast<std::ptrdiff_t>(at),
                 members_.begin() + static_cast<std::ptrdiff_t>(at) + 1, members_.end());
   }

@@ -7,14 +7,11 @@
 #include <map>
 
 #include "garrison/certificate/interval.hpp"
+#include "garrison/wire/archive.hpp"
+#include "rounding.hpp"
 
 namespace garrison::certificate {
 namespace {
-
-/// Times a sum of distances, which is rounded.
-constexpr double kSums = 1.0 + 1e-13;
-/// Part of a state that rounding may change while it ages.
-constexpr double kAgeingRounding = 1e-12;
 
 /// Agents whose measurements may reach this one, ascending.
 std::vector<int> within_reach(const Plan& plan, int id, std::span<const int> neighbours) {
@@ -91,6 +88,7 @@ AgentCertifier::AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::sp
   memory_.center.resize(n);
   memory_.box.resize(n);
   memory_.ball.resize(n);
+  bank_ = make_agent_bank(plan_, row_);
   AgentCertifier::reset(0);
 }
 
@@ -105,6 +103,7 @@ void AgentCertifier::reset(std::int64_t t) noexcept {
   for (auto* part : {&memory_.center, &memory_.box, &memory_.ball})
     std::fill(part->begin(), part->end(), 0.0);
   memory_.ball_radius = 0.0;
+  if (bank_) bank_->reset(t);
 }
 
 /// The relayed region becomes one of sample t, of which nothing is known yet.
@@ -131,6 +130,7 @@ void AgentCertifier::move_to(std::int64_t t) noexcept {
   known_ = 0;
   judged_ = false;
   region_since_ = next_round_ = 0;
+  if (bank_) bank_->wait();
 }
 
 void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
@@ -149,6 +149,7 @@ void AgentCertifier::begin_knowing(std::int64_t t, const double* all, const Agen
     memory_.t = t;
     memory_.radius = kInfinity;
     judged_ = false;
+    if (bank_) bank_->wait();
   }
   known_ = 0;
   for (std::size_t k = 0; k < y_.size(); ++k) {
@@ -232,8 +233,17 @@ void AgentCertifier::gather() noexcept {
   }
 }
 
+void AgentCertifier::remember() noexcept {
+  if (bank_) bank_->take(memory_.t, y_);
+}
+
+std::span<const int> AgentCertifier::proved() const noexcept {
+  return bank_ ? bank_->proved() : std::span<const int>();
+}
+
 void AgentCertifier::witness() noexcept {
   judged_ = true;
+  remember();
   gather();
   if (rows_.size() == 0) return;
   const std::size_t n = memory_.center.size();
@@ -296,6 +306,12 @@ Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
   }
   if (std::isfinite(m.radius))
     least = {kSums * std::fmin(std::sqrt(ball) + m.radius, std::sqrt(box)), CertificateKind::witness};
+  if (bank_) {
+    const Bound remembered = bank_->bound(estimate);
+    if (remembered.value < least.value ||
+        (remembered.kind == CertificateKind::refuted && m.age < 0 && !std::isfinite(least.value)))
+      least = remembered;
+  }
   if (m.age < 0) return least;
   // Steps of the plant are rounded, those of the centre and those that were measured.
   const double rounding = m.age == 0 ? 0.0 : kAgeingRounding * size;
@@ -303,9 +319,26 @@ Bound AgentCertifier::bound(std::span<const double> estimate) const noexcept {
   return other < least.value ? Bound{other, CertificateKind::relayed} : least;
 }
 
+void AgentCertifier::box(std::span<const double> estimate, std::span<double> out) const noexcept {
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = std::isfinite(memory_.radius)
+                 ? kSums * (std::abs(estimate[k] - memory_.center[k]) + memory_.box[k])
+                 : kInfinity;
+  if (bank_) bank_->box(estimate, out);
+}
+
 void AgentCertifier::shape_evidence(int sender, Evidence& out) const {
   out.ball.resize(direct_ ? 0 : memory_.ball.size() + 1, kNaN);
   out.measurements.resize(flooded_ ? y_.size() : static_cast<std::size_t>(plan_->outputs(sender)), kNaN);
+}
+
+void AgentCertifier::visit(wire::Archive& archive) {
+  archive("memory", memory_);
+  if (bank_) archive("bank", *bank_);
+}
+
+bool AgentCertifier::resume(std::int64_t t) noexcept {
+  return usable() && memory_.t == t && (!bank_ || (bank_->resume() && bank_->sample() == t));
 }
 
 bool AgentCertifier::usable() const noexcept {
@@ -325,6 +358,7 @@ bool AgentCertifier::knows_the_same(const AgentCertifier& other) const {
 
 void AgentCertifier::adopt(const AgentCertifier& other) noexcept {
   judged_ = true;
+  remember();
   memory_.radius = other.memory_.radius;
   memory_.center = other.memory_.center;
   memory_.box = other.memory_.box;

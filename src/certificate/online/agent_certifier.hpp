@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one kind of certifier: witness of the sample, relay over rounds and time. Internal.
+// The one kind of certifier: witness of the sample, relay over rounds and time, bank. Internal.
 #pragma once
 
+#include "agent_bank.hpp"
 #include "garrison/certificate/leverage_ball.hpp"
 #include "garrison/certificate/online/certifier.hpp"
 #include "garrison/certificate/online/plan.hpp"
@@ -20,10 +21,12 @@ class AgentCertifier final : public Certifier {
   void end_round(int round) noexcept override;
   void end_sample() noexcept override;
   Bound bound(std::span<const double> estimate) const noexcept override;
+  void box(std::span<const double> estimate, std::span<double> out) const noexcept override;
   void shape_evidence(int sender, Evidence& out) const override;
-  using Certifier::memory;
-  Memory& memory() noexcept override { return memory_; }
-  bool usable() const noexcept override;
+  const Memory& memory() const noexcept { return memory_; }
+  void visit(wire::Archive& archive) override;
+  bool resume(std::int64_t t) noexcept override;
+  std::span<const int> proved() const noexcept override;
   bool counts_family() const noexcept override { return plan_->family; }
 
   /// The last step of a sample in two, for drivers of whole networks: `witness`, or the one of an agent that
@@ -44,6 +47,7 @@ class AgentCertifier final : public Certifier {
   bool found_the_same(const AgentCertifier& other) const;
   /// Takes over all that lasts to the next sample.
   void copy(const AgentCertifier& other) noexcept { memory_ = other.memory_; }
+  bool has_bank() const { return bank_ != nullptr; }
   bool flooded() const { return flooded_; }
   bool direct() const { return direct_; }
 
@@ -54,6 +58,8 @@ class AgentCertifier final : public Certifier {
   void interval_rule() noexcept;
   void keep(const Region& region) noexcept;
   void relay_own() noexcept;
+  void remember() noexcept;
+  bool usable() const noexcept;
   bool eligible(int age, int fresh) const;
   void offer(const double* center, double radius, int age, int fresh) noexcept;
   bool goes_before(const double* center, double radius, int age) const;
@@ -82,6 +88,7 @@ class AgentCertifier final : public Certifier {
   std::vector<double> ends_, y1_, width1_;  // of the interval rule
   Vector moved_;
   Memory memory_;
+  std::unique_ptr<AgentBank> bank_;  // null = none
 };
 
 }  // namespace garrison::certificate

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 
+#include "certificate/memory/choices.hpp"
+#include "certificate/require.hpp"
 #include "garrison/certificate/online/evidence.hpp"
 #include "garrison/certificate/propagate.hpp"
 #include "garrison/certificate/quantiles.hpp"
@@ -16,6 +19,10 @@ namespace {
 // Shares of the failure probability: see Plan.
 constexpr double kSampleShare = 0.75 / (3.0 * (kChoice + 2));
 constexpr double kAgeingShare = 0.25 / (kChoice + 1);
+/// Of W and R where there is a bank; the rest is the bank's.
+constexpr double kBesideBank = 0.5;
+/// Epochs of a bank: more samples than 2^62 do not come.
+constexpr int kEpochs = 62;
 // Bounds of noise, with room for what rounding does to measurements of states a million times as large: where
 // inputs are known, what is left of these measurements is small, and does not show it.
 constexpr double kRounded = 1.0 + 1e-8;
@@ -31,6 +38,14 @@ void require_wanted(const Wanted& wanted, const Model& model) {
     refuse("levels", text(wanted.z1) + " and " + text(wanted.z2), "two numbers > 0, in standard deviations");
   if (given && wanted.failure == 0.0)
     refuse("levels", "levels with failure = 0", "none", "noise within its bounds exceeds no level");
+  if (wanted.memory && wanted.failure == 0.0)
+    refuse("memory", "true with failure = 0", "failure > 0",
+           "a bank of filters rests on covariances; bounded noise has windows (certificate.subsets_window)");
+  if (wanted.memory && given)
+    refuse("memory", "true with levels", "one of them",
+           "levels are those of single samples; a bank rests on white noise of the model's covariances");
+  if (wanted.memory && model.noise().process_covariance.size() == 0)
+    refuse("memory", "true with a model without process_covariance", "the covariance of the process noise");
   if (wanted.failure == 0.0) {
     if (model.noise().measurement_bound.size() == 0)
       refuse("failure", "0 with a model without measurement_bound", "bounds on all measurement noises",
@@ -99,7 +114,7 @@ void age_table(Plan& plan, const Model& model) {
   if (!gaussian && std::isnan(noise.process_bound)) return;
   const int most = ages_of(model.A());
   const auto aged = gaussian ? Propagation::gaussian(model.A(), most, noise.process_covariance,
-                                                     kAgeingShare * plan.wanted.failure)
+                                                     kAgeingShare * plan.own_failure())
                              : Propagation::bounded(model.A(), most, kRounded * noise.process_bound);
   for (int k = 0; k <= most; ++k) {
     plan.norm.push_back(aged.norm(k));
@@ -107,7 +122,62 @@ void age_table(Plan& plan, const Model& model) {
   }
 }
 
+/// Sources that an agent hears, its own among them.
+int sources_heard(const Plan& plan, const Network& network, int agent) {
+  if (plan.wanted.spread == Spread::flooded) return plan.sources;
+  std::set<int> sources;
+  const auto add = [&](int j) {
+    const auto at = static_cast<std::size_t>(j);
+    for (int r = plan.first[at]; r < plan.first[at + 1]; ++r)
+      sources.insert(plan.source[static_cast<std::size_t>(r)]);
+  };
+  add(agent);
+  for (const int j : network.neighbours(agent)) add(j);
+  return static_cast<int>(sources.size());
+}
+
+void require_banks(const Plan& plan, const Network& network) {
+  const double n = plan.states();
+  double numbers = 0.0;
+  for (int i = 0; i < network.agents(); ++i) {
+    const int sources = sources_heard(plan, network, i);
+    if (sources <= plan.wanted.attacked) continue;
+    const double members = detail::choices(sources, plan.wanted.attacked);
+    if (!(members <= kMostBankMembers))
+      refuse("memory",
+             "true where agent " + std::to_string(i) + " hears " + std::to_string(sources) +
+                 " sources with " + std::to_string(plan.wanted.attacked) + " attacked: " + text(members) +
+                 " filters",
+             "at most " + std::to_string(kMostBankMembers),
+             plan.wanted.spread == Spread::flooded ? "take \"local\" or \"direct\", or a smaller `attacked`"
+                                                   : "take a smaller `attacked`");
+    numbers += members * n * (2.0 * n + 1.0);
+  }
+  detail::require_room("memory", numbers);
+}
+
+void plan_banks(Plan& plan, const Model& model, const Network& network) {
+  require_banks(plan, network);
+  BankPlan& bank = plan.bank;
+  const double share = 0.5 * (plan.wanted.failure - plan.own_failure());
+  bank.Q = model.noise().process_covariance;
+  for (int k = 0; k <= kEpochs; ++k)
+    bank.z1.push_back(two_sided(std::ldexp(share / ((k + 1.0) * (k + 2.0)) / plan.all_rows, -k)));
+  bank.z2 = chi(0.5 * share, model.states());
+  bank.zc = two_sided(0.5 * share / model.states());
+}
+
+bool consistent_bank(const Plan& plan) {
+  const BankPlan& bank = plan.bank;
+  if (!plan.wanted.memory) return bank.Q.size() == 0 && bank.z1.empty();
+  const auto level = [](double z) { return z > 0.0 && z < kHuge; };
+  return bank.Q.rows() == plan.states() && bank.Q.cols() == plan.states() && !bank.z1.empty() &&
+         std::all_of(bank.z1.begin(), bank.z1.end(), level) && level(bank.z2) && level(bank.zc);
+}
+
 }  // namespace
+
+double Plan::own_failure() const { return wanted.memory ? kBesideBank * wanted.failure : wanted.failure; }
 
 int Plan::place(int agent) const {
   const auto at = std::lower_bound(ids.begin(), ids.end(), agent);
@@ -153,12 +223,13 @@ Plan make_plan(const Wanted& wanted, const Model& model, const Network& network)
     plan.z1 = wanted.z1;
     plan.z2_full = plan.z2_partial = wanted.z2;
   } else if (!plan.deterministic()) {
-    const double share = kSampleShare * wanted.failure;
+    const double share = kSampleShare * plan.own_failure();
     plan.z1 = two_sided(share / plan.all_rows);
     plan.z2_full = chi(share, model.states());
     plan.z2_partial = chi(share / model.agents(), model.states());
   }
   age_table(plan, model);
+  if (wanted.memory) plan_banks(plan, model, network);
   return plan;
 }
 
@@ -186,8 +257,8 @@ Plan part_of(const Plan& plan, int id, std::span<const int> neighbours) {
 bool consistent(const Plan& plan) {
   const auto m = static_cast<Eigen::Index>(plan.source.size());
   bool fine =
-      plan.first.size() == plan.ids.size() + 1 && plan.first.front() == 0 && plan.first.back() == m &&
-      std::is_sorted(plan.first.begin(), plan.first.end()) &&
+      consistent_bank(plan) && plan.first.size() == plan.ids.size() + 1 && plan.first.front() == 0 &&
+      plan.first.back() == m && std::is_sorted(plan.first.begin(), plan.first.end()) &&
       std::adjacent_find(plan.ids.begin(), plan.ids.end(), std::greater_equal<>()) == plan.ids.end() &&
       plan.rows.cols() == m && plan.rows.rows() == plan.states() && plan.states() >= 1 &&
       plan.A.cols() == plan.states() && plan.variance.size() == m && plan.width.size() == m &&

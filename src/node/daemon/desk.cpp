@@ -120,7 +120,9 @@ void Desk::status(Bytes content) {
 void Desk::snapshot(Bytes content) {
   snapshot_.assign(content.begin(), content.end());
   snapshot_at_ = now().steady;
-  if (mirror_->load(content) == Refusal::none) around_.accused = mirror_->accused();
+  if (mirror_->load(content) != Refusal::none) return;
+  around_.accused = mirror_->accused();
+  around_.proved = mirror_->proved();
 }
 
 /// A disk that takes no more logs does not end the node.

@@ -69,6 +69,9 @@ void put_sample(Json& json, const Status& status, const Surroundings& around) {
   json.key("accused").open('[');
   for (const int id : around.accused) json.whole(id);
   json.close(']');
+  json.key("proved").open('[');
+  for (const int source : around.proved) json.whole(source);
+  json.close(']');
 }
 
 void put_link(Json& json, const LinkStatus& link, const std::string& name) {

@@ -47,6 +47,7 @@ struct Surroundings {
   std::string family;
   std::vector<std::string> names;  ///< of the links, as in the status
   std::vector<int> accused;
+  std::vector<int> proved;  ///< sources, Agent::proved
   Sensor::Counters sensor;
   Micros snapshot_age = -1;
   std::int64_t log_failed = 0;  ///< writes

@@ -104,10 +104,13 @@ TEST_CASE("no step with a certificate allocates, on good and on bad links") {
     const Network network = test::connected_network(rng, 8);
     for (const auto& filter : test::every_filter()) {
       const auto plain = filter->prepare(model, network);
-      for (const certificate::Wanted& wanted : {certificate::Wanted{Spread::local, 1e-6, 1, 1000},
-                                                certificate::Wanted{Spread::flooded, 1e-6, 1, 1000},
-                                                certificate::Wanted{Spread::flooded, 1e-6, 1, 0},
-                                                certificate::Wanted{Spread::local, 0.0, 1, 1000}}) {
+      for (const certificate::Wanted& wanted :
+           {certificate::Wanted{Spread::local, 1e-6, 1, 1000},
+            certificate::Wanted{Spread::flooded, 1e-6, 1, 1000},
+            certificate::Wanted{Spread::flooded, 1e-6, 1, 0},
+            certificate::Wanted{Spread::local, 0.0, 1, 1000},
+            certificate::Wanted{Spread::flooded, 1e-6, 1, 1000, 0.0, 0.0, true},
+            certificate::Wanted{Spread::direct, 1e-6, 1, 1000, 0.0, 0.0, true}}) {
         const auto runner = certified(*plain, wanted)->runner(1);
         Link link(network, {0.2, 0.2, 3, {}, {}}, {}, 1, 0);
         for (const bool faults : {false, true}) {

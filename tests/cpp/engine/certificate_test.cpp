@@ -44,10 +44,17 @@ Setup setup(int n, std::uint64_t seed) {
   return {std::move(model), std::move(network), std::move(y)};
 }
 
-const std::vector<Wanted> kWanted{{Spread::local, 0.0, 1, 1000},    {Spread::local, 1e-6, 1, 1000},
-                                  {Spread::direct, 1e-6, 1, 1000},  {Spread::direct, 0.0, 1, 1000},
-                                  {Spread::flooded, 1e-6, 1, 1000}, {Spread::flooded, 1e-6, 1, 0},
-                                  {Spread::flooded, 0.0, 1, 1000},  {Spread::local, 1e-3, 1, 0, 6.0, 5.5}};
+const std::vector<Wanted> kWanted{{Spread::local, 0.0, 1, 1000},
+                                  {Spread::local, 1e-6, 1, 1000},
+                                  {Spread::direct, 1e-6, 1, 1000},
+                                  {Spread::direct, 0.0, 1, 1000},
+                                  {Spread::flooded, 1e-6, 1, 1000},
+                                  {Spread::flooded, 1e-6, 1, 0},
+                                  {Spread::flooded, 0.0, 1, 1000},
+                                  {Spread::local, 1e-3, 1, 0, 6.0, 5.5},
+                                  {Spread::local, 1e-6, 1, 1000, 0.0, 0.0, true},
+                                  {Spread::direct, 1e-6, 1, 1000, 0.0, 0.0, true},
+                                  {Spread::flooded, 1e-6, 1, 1000, 0.0, 0.0, true}};
 
 /// Bounds of agents driven by hand, [time][agent], with their kinds behind.
 struct ByHand {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "garrison/certificate/memory/free_directions.hpp"
 #include "garrison/certificate/memory/levels.hpp"
 #include "garrison/core/error.hpp"
 
@@ -21,12 +22,24 @@ struct BankSource {
   Vector R;  ///< variances > 0
 };
 
-/// One member: its error is g + Psi d0, g ~ N(0, P), |d0| <= 1.
+/// One member: its error is g + Psi d0 + free d, g ~ N(0, P), |d0| <= 1, d anything.
 struct BankMember {
   Vector c;
-  Matrix P, Psi;              ///< n x n
+  Matrix P, Psi;              ///< n x n; Psi has no columns after an unknown start
   std::vector<int> left_out;  ///< sources, ascending
   std::vector<int> accused;   ///< those of them that are attacked if this member is right: fewer once merged
+  detail::FreeDirections free{};
+  int number = 0;  ///< of its set, in lexicographic order
+
+  /// What changes from step to step, in a bank that nothing was merged in.
+  template <class V>
+  void visit(V& v) {
+    v("c", c);
+    v("P", P);
+    v("Psi", Psi);
+    v("free", free);
+    v("number", number);
+  }
 };
 
 /// What a step may change; null pointers keep the design's.
@@ -43,7 +56,7 @@ struct BankStep {
 class GARRISON_EXPORT Bank {
  public:
   /// A, Q: n x n, Q positive semidefinite; at most `limit` members, C(sources, s) are needed. No start: every
-  /// update answers "not enough rows" until start_gaussian or restart. @throws InvalidInput
+  /// update answers "not enough rows" until one of the starts. @throws InvalidInput
   Bank(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources, int s,
        int limit = 5000);
   ~Bank();
@@ -55,6 +68,11 @@ class GARRISON_EXPORT Bank {
   /// All members anew from a region that contains x: its ellipsoid, or its ball. It may depend on all data so
   /// far: later noise is fresh. Sources attacked SINCE then must be at most s in total. @throws InvalidInput
   void restart(const Region& region);
+  /// All members anew, with nothing known of x: no bound before the rows of every living member, over the
+  /// steps, have determined it. Rows that do are no test. The time may depend on all data so far.
+  void start_unknown();
+  /// The same of a bank that began so; does not allocate.
+  void forget() noexcept;
 
   /// Theorem B. y: outputs of all sources one below the other, NaN = missing. A member whose innovation is
   /// not noise dies; the region encloses those that live; a source that all of them accuse is proved (with at
@@ -77,11 +95,24 @@ class GARRISON_EXPORT Bank {
   int outputs() const { return outputs_; }
   /// The living members.
   std::span<const BankMember> members() const { return {members_.data(), alive_}; }
+  /// Whether some number of a living member is too large to go on with: an unstable plant, left alone.
+  bool overflows() const noexcept;
+
+  /// What lasts from step to step, of a bank that began with start_unknown and merged nothing. After reading:
+  bool resume() noexcept;  ///< false where that cannot be worked with
+  template <class V>
+  void visit(V& v) {
+    v.range("alive", alive_, 0, static_cast<std::int64_t>(members_.size()));
+    for (BankMember& member : members_) v("member", member);
+  }
 
  private:
   bool advance(BankMember& member, const VectorRef& y, const WindowLevels& z, const BankStep& step) noexcept;
   bool take(BankMember& member, const VectorRef& h, double R, double y, double z1) noexcept;
+  void leave_out(BankMember& member) const noexcept;
+  void move(BankMember& member, double innovation, double variance) noexcept;
   void enclose(const WindowLevels& z) noexcept;
+  void prove() noexcept;
   void all_members(const VectorRef& c0, const MatrixRef& P, const MatrixRef& Psi);
 
   Matrix A_, Q_;
@@ -90,9 +121,12 @@ class GARRISON_EXPORT Bank {
   bool started_ = false;
   std::vector<BankMember> members_;  // the first alive_ live
   std::size_t alive_ = 0;
+  std::vector<std::vector<int>> sets_;  // that members leave out, by their number
   std::unique_ptr<detail::ShapeFrame> frame_;
+  std::vector<char> taken_;  // numbers that some member has
+  Vector weight_;            // of the coordinates, for free directions
   Matrix room_, shape_, sum_;
-  Vector h_, Ph_, k_, Psih_, v_;
+  Vector h_, Ph_, k_, Psih_, v_, seen_;
   WindowWitness witness_;
 };
 

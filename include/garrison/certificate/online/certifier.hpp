@@ -10,11 +10,15 @@
 #include "garrison/core/certificate_kind.hpp"
 #include "garrison/core/error.hpp"
 
+namespace garrison::wire {
+class Archive;
+}
+
 namespace garrison::certificate {
 
 struct Plan;
 
-/// What lasts from sample to sample.
+/// What lasts of regions from sample to sample.
 struct Memory {
   std::int64_t t = 0;
   // The own witness (W) of sample t; radius infinity = too few rows, NaN = refuted.
@@ -58,14 +62,19 @@ class Certifier {
   virtual void end_sample() noexcept = 0;
   /// Bound on the error of any estimate (n numbers) of the present sample.
   virtual Bound bound(std::span<const double> estimate) const noexcept = 0;
+  /// The same per coordinate, n numbers to `out`: |estimate_k - x_k| <= out_k. Infinite where there is none.
+  virtual void box(std::span<const double> estimate, std::span<double> out) const noexcept = 0;
   /// Whether the family's own bound holds for as many attacked sources.
   virtual bool counts_family() const noexcept = 0;
   /// Sizes what `sender` sends; allocates the first time.
   virtual void shape_evidence(int sender, Evidence& out) const = 0;
-  virtual Memory& memory() noexcept = 0;
-  const Memory& memory() const noexcept { return const_cast<Certifier*>(this)->memory(); }
-  /// Whether what a snapshot held can be worked with.
-  virtual bool usable() const noexcept = 0;
+  /// Sources (Plan::source) that are shown to be attacked, ascending: none without a bank. Wrong with at most
+  /// `failure`, where the attacked are always the same.
+  virtual std::span<const int> proved() const noexcept = 0;
+  /// Lists what lasts from sample to sample.
+  virtual void visit(wire::Archive& archive) = 0;
+  /// Goes on from what was read, of sample t; false where that cannot be worked with.
+  virtual bool resume(std::int64_t t) noexcept = 0;
 };
 
 /// The better of a family's own bound, of the kind that it says (none = published), and the certificate's. A
@@ -78,6 +87,18 @@ inline Bound least(double family, CertificateKind kind, const Certifier* certifi
   if (certifier == nullptr) return own;
   const Bound found = certifier->bound(estimate);
   return has && found.kind != CertificateKind::refuted && !(found.value < family) ? own : found;
+}
+
+/// Per coordinate what a bound of any kind and the certificate say, n numbers: at most the bound; as the
+/// bound where that is none.
+inline void least_box(double bound, const Certifier* certifier, std::span<const double> estimate,
+                      std::span<double> out) noexcept {
+  if (certifier == nullptr || !(bound < kInfinity)) {
+    for (double& one : out) one = bound;
+    return;
+  }
+  certifier->box(estimate, out);
+  for (double& one : out) one = one < bound ? one : bound;
 }
 
 /// The certifier of agent `id`, whose messages take `rounds` rounds per sample. @throws InvalidInput when it

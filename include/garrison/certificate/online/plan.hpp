@@ -31,6 +31,9 @@ struct Wanted {
   /// at the rate `failure` (calibrated_levels), whatever their law. Both 0 = none.
   double z1 = 0.0;
   double z2 = 0.0;
+  /// Beside W and R a bank (B) at every agent, over all that it hears: the attacked sources must be the same
+  /// in all samples. Each half of `failure` is for one of them. Only with covariances, and failure > 0.
+  bool memory = false;
 
   bool operator==(const Wanted&) const = default;
   template <class V>
@@ -41,6 +44,27 @@ struct Wanted {
     v.range("subsets", subsets, 0, 1000000);
     v("z1", z1);
     v("z2", z2);
+    v("memory", memory);
+  }
+};
+
+/// A bank takes at most so many filters, the sets of sources that may be attacked.
+inline constexpr int kMostBankMembers = 3000;
+
+/// What the banks need; empty without Wanted::memory.
+struct BankPlan {
+  Matrix Q{};
+  /// Level of innovations in the samples 2^k .. 2^(k+1) - 1 since a bank started: all of them fail with a
+  /// quarter of `failure`, however long it runs.
+  std::vector<double> z1{};
+  double z2 = kNaN, zc = kNaN;  ///< of the state; another quarter
+
+  template <class V>
+  void visit(V& v) {
+    v("Q", Q);
+    v("z1", z1);
+    v("z2", z2);
+    v("zc", zc);
   }
 };
 
@@ -70,9 +94,12 @@ struct GARRISON_EXPORT Plan {
   double z2_partial = kNaN;  ///< for any other set of rows
   Matrix A;
   std::vector<double> norm;  ///< ||A^k||, for the ages k = 0..ages()
+  BankPlan bank{};
   std::vector<double>
       added;  ///< what k steps of process noise add to a radius; empty = not known, nothing ages
 
+  /// Part of `failure` that W and R together may use.
+  double own_failure() const;
   bool deterministic() const { return wanted.failure == 0.0; }
   int ages() const { return static_cast<int>(added.size()) - 1; }
   int states() const { return static_cast<int>(A.rows()); }
@@ -99,6 +126,7 @@ struct GARRISON_EXPORT Plan {
     v("A", A);
     v("norm", norm);
     v("added", added);
+    v("bank", bank);
   }
 };
 

@@ -8,9 +8,11 @@
 #include <iostream>
 
 #include "../random_network.hpp"
+#include "aligned_noise.hpp"
 #include "garrison/certificate/leverage_ball.hpp"
 #include "garrison/certificate/memory/leverage_window.hpp"
 #include "garrison/certificate/propagate.hpp"
+#include "garrison/wire/archive.hpp"
 
 using namespace garrison;
 using namespace garrison::certificate;
@@ -78,7 +80,124 @@ Vector say(test::Rng& rng, const BankCase& d, const std::vector<BankSource>& sou
   return y;
 }
 
+struct Stacked {
+  Matrix C;
+  Vector R;
+  std::vector<int> source;
+};
+Stacked stacked(const BankCase& d) {
+  Stacked all{Matrix(d.outputs, d.n), Vector(d.outputs), {}};
+  Eigen::Index at = 0;
+  for (std::size_t j = 0; j < d.sources.size(); ++j)
+    for (Eigen::Index i = 0; i < d.sources[j].R.size(); ++i, ++at) {
+      all.C.row(at) = d.sources[j].C.row(i);
+      all.R(at) = d.sources[j].R(i);
+      all.source.push_back(static_cast<int>(j));
+    }
+  return all;
+}
+
 }  // namespace
+
+TEST_CASE(
+    "a bank that knows nothing at its start is least squares over all rows, at the edge of its promise") {
+  test::Rng rng(kSeed + 7);
+  const WindowLevels z{6.0, 6.0, 6.0, kNaN};
+  constexpr int kSteps = 16;
+  int answers = 0;
+  int late = 0;
+  int proved = 0;
+  double largest = 0.0;
+  for (int k = 0; k < 250; ++k) {
+    CAPTURE(k);
+    const BankCase d = draw(rng);
+    const Stacked all = stacked(d);
+    const auto lies = [&](int r) {
+      return test::contains(d.attacked, all.source[static_cast<std::size_t>(r)]);
+    };
+    // Who hears what is decided before any noise is.
+    Matrix here(kSteps, d.outputs);
+    for (Eigen::Index t = 0; t < kSteps; ++t)
+      for (Eigen::Index r = 0; r < d.outputs; ++r) here(t, r) = test::whole(rng, 0, 9) > (t < 3 ? 5 : 0);
+    const auto noise =
+        test::aligned_noise(d.A, d.root, all.C, all.R, kSteps, test::unit_vector(rng, d.n),
+                            6.0 * (1.0 - 1e-9), [&](int t, int r) { return here(t, r) != 0.0 && !lies(r); });
+    Bank bank(d.A, d.Q(), d.sources, d.s);
+    bank.start_unknown();
+    Vector x = std::pow(10.0, test::uniform(rng, 0.0, 6.0)) * test::normal_matrix(rng, d.n, 1);
+    Vector other = x + std::pow(10.0, test::uniform(rng, -0.5, 2.5)) * test::unit_vector(rng, d.n);
+    bool answered = false;
+    for (int t = 0; t < kSteps; ++t) {
+      CAPTURE(t);
+      if (t > 0) {
+        const Vector step = d.root * noise.w.row(t - 1).transpose();
+        x = d.A * x + step;
+        other = d.A * other + step;
+      }
+      Vector y = all.C * x + all.R.cwiseSqrt().cwiseProduct(noise.v.row(t).transpose());
+      for (int r = 0; r < d.outputs; ++r) {
+        if (lies(r)) y(r) = k % 3 == 0 ? y(r) + 30.0 : all.C.row(r).dot(other);
+        if (here(t, r) == 0.0) y(r) = kNaN;
+      }
+      BankStep step;
+      step.predict = t > 0;
+      const WindowWitness& found = bank.update(y, z, step);
+      REQUIRE_FALSE(found.region.refuted());
+      for (const Proof& proof : found.proofs) {
+        CHECK(test::contains(d.attacked, proof.source));
+        ++proved;
+      }
+      late += found.region.answered() || t == 0 ? 0 : 1;
+      if (!found.region.answered()) continue;
+      answered = true;
+      ++answers;
+      const Vector error = (x - found.region.center).cwiseAbs();
+      const double rounding = 1e-12 * x.norm();
+      CHECK((error.array() <= found.region.box.array() * (1.0 + 1e-9) + rounding).all());
+      CHECK(error.norm() <= found.region.radius * (1.0 + 1e-9) + rounding);
+      if (t == kSteps - 1) largest = std::max(largest, error.norm() / found.region.radius);
+    }
+    if (static_cast<int>(d.sources.size()) > 2 * d.s) CHECK(answered);
+  }
+  std::cout << "bank from nothing: " << answers << " answers, " << late << " samples without, " << proved
+            << " proofs, largest error/radius " << largest << "\n";
+  CHECK(answers > 2000);
+  CHECK(late > 50);
+  CHECK(proved > 100);
+  CHECK(largest > 0.99);
+}
+
+TEST_CASE("a bank that knows nothing waits for rows, forgets, and goes on from what it wrote down") {
+  const Matrix A = (Matrix(2, 2) << 1.0, 1e-9, 0.0, 1.0).finished();  // metres, and metres per gigasecond
+  const Matrix position = (Matrix(1, 2) << 1.0, 0.0).finished();
+  const Matrix Q = Matrix::Zero(2, 2);
+  const WindowLevels z{6.0, 6.0, 6.0, kNaN};
+  Bank bank(A, Q, alike(3, position), 1);
+  bank.start_unknown();
+  CHECK(std::isinf(bank.update(Vector::Zero(3), z).region.radius));
+  Bank other(A, Q, alike(3, position), 1);
+  other.start_unknown();
+  Vector y = Vector::Zero(3);
+  y(2) = 100.0;  // lies from now on
+  CHECK(
+      bank.update(y, z).region.answered());  // two positions each: of two members they contradict each other
+  CHECK(bank.members().size() == 1);
+  CHECK(bank.members().front().left_out == std::vector<int>{2});
+  REQUIRE(wire::from_bytes(wire::to_bytes(bank), 1, other) == Refusal::none);
+  REQUIRE(other.resume());
+  CHECK(other.members().front().left_out == std::vector<int>{2});
+  for (int t = 0; t < 3; ++t) {
+    const Region one = bank.update(y, z).region;
+    const Region two = other.update(y, z).region;
+    CHECK(one.center == two.center);
+    CHECK(one.radius == two.radius);
+    CHECK(one.box == two.box);
+  }
+  bank.forget();
+  CHECK(bank.members().size() == 3);
+  CHECK(bank.members().front().left_out == std::vector<int>{0});
+  CHECK(std::isinf(bank.update(Vector::Constant(3, kNaN), z).region.radius));
+}
 
 TEST_CASE(
     "a bank contains the truth through attacks, losses, inputs and changing rows, and accuses nobody "
