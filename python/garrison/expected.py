@@ -8,6 +8,8 @@ from garrison import _core
 from garrison.certifying.methods import steady
 from garrison.certifying.plant import Plant
 
+#: samples after which one with memory is looked at
+_REMEMBERED = 20
 #: kinds of bounds that are a certificate of the measurements
 _OWN = (2, 3, 11)
 #: samples that the union over time is taken over, in theorem B2
@@ -25,9 +27,10 @@ def expected_certificate(design: _core.Design) -> list[dict[str, Any]]:
     wanted = design.certificate
     if wanted is None:
         return []
+    samples = _REMEMBERED if wanted.get("memory") else 1
     made = _core.replay(
         design,
-        measurements=np.zeros((1, design.model.outputs)),
+        measurements=np.zeros((samples, design.model.outputs)),
         truth=None,
         trials=1,
         first_trial=0,
@@ -37,7 +40,7 @@ def expected_certificate(design: _core.Design) -> list[dict[str, Any]]:
         attacks=[],
         link={},
         keep=["report"],
-        inputs=np.zeros((1 if design.model.inputs else 0, design.model.inputs)),
+        inputs=np.zeros((samples if design.model.inputs else 0, design.model.inputs)),
         series={},
         progress=None,
     )
@@ -51,11 +54,12 @@ def expected_certificate(design: _core.Design) -> list[dict[str, Any]]:
     else:
         law = f"at {failure:g} per agent and sample"
     who = f"with any {wanted['attacked']} sources lying"
+    when = "on a sample" if samples == 1 else f"after {samples} samples"
     return [
         {
             "name": "certificate_expected",
             "value": float(bound[own].max()) if own.any() else float("nan"),
-            "meaning": f"{who}, the largest certified bound of an agent on a sample where nothing stands out, {law}",
+            "meaning": f"{who}, the largest certified bound of an agent {when} where nothing stands out, {law}",
         },
         {
             "name": "certificate_agents",

@@ -1,6 +1,7 @@
 """Noise that is larger than a filter was told: what the data of a run themselves say against the assumptions."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +62,17 @@ def of_certificates(kind: NDArray[np.generic] | None, failure: float) -> list[st
         f"{first}: measurement_bound, process_bound or the covariances are too small, A or C is wrong, or more than "
         "`attacked` sources lie; bounds of other samples may be wrong, too"
     ]
+
+
+def of_memory(proved: list[tuple[int, int, list[list[str]]]]) -> list[str]:
+    """A line when a certificate with memory has forgotten what it had proved: nothing but a refutation makes it."""
+    for (one, _, before), (two, time, after) in pairwise(proved):
+        if one == two and any(set(old) - set(new) for old, new in zip(before, after, strict=True)):
+            return [
+                f"measurements contradict what a certificate with memory assumes, first at sample {time}: other "
+                "sources lie than before, or noise is not white, or larger than modelled; it has started anew"
+            ]
+    return []
 
 
 def of_sources(model: _core.Model, filter: _core.Filter) -> list[str]:

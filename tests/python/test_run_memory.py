@@ -88,6 +88,27 @@ def test_agents_prove_what_runs_prove_and_go_on_from_a_snapshot() -> None:
         assert (agent.box <= agent.bound).all()
 
 
+def test_liars_that_change_end_a_bank_which_says_so_and_starts_anew() -> None:
+    moved = [
+        gr.attacks.Bias(agents=[1, 4], value=60.0, start=30, stop=60),
+        gr.attacks.Bias(agents=[0, 2], value=60.0, start=60),
+    ]
+    run = simulated(attack=moved)
+    assert run.proved[-1][2] == [["agent 0", "agent 2"]] * 6
+    assert any("a certificate with memory assumes, first at sample 60" in line for line in run.warnings)
+    assert (run.bound_kind[0, 60] == gr.BoundKind.REFUTED).all()
+    assert run.why_no_bound(0, 60).startswith("the measurements contradict")
+    assert (run.error <= run.bound)[0, 65:].all()
+    assert not any("memory" in line for line in simulated().warnings)
+
+
+def test_check_says_what_memory_will_certify() -> None:
+    with_memory = gr.check(body(), gr.Network.complete(6), gr.filters.Lfre(), **WANTED)
+    assert with_memory["certificate_agents"] == 1.0 and 0.5 < with_memory["certificate_expected"] < 20.0
+    without = gr.check(body(), gr.Network.complete(6), gr.filters.Lfre(), **(WANTED | {"memory": False}))
+    assert without["certificate_agents"] == 0.0
+
+
 def test_scenarios_say_memory(tmp_path: Path) -> None:
     path = tmp_path / "body.toml"
     path.write_text(

@@ -107,6 +107,7 @@ def recorded(
 def with_recipe(run: Run, made: dict[str, Any]) -> Run:
     """The run with what made it, and the doubts that depend on that."""
     run.made = made
+    run.warnings += refuted.of_memory(run.proved)
     run.warnings += refuted.of_certificates(run.bound_kind, made.get("failure", 0.0))
     return run
 

@@ -251,7 +251,7 @@ const WindowWitness& Bank::update(const VectorRef& y, const WindowLevels& z, con
   if (std::any_of(members().begin(), members().end(), [](const BankMember& m) { return m.free.count > 0; }))
     witness_.region.radius = witness_.region.stretch = kInfinity;
   else
-    enclose(z);
+    enclose(z, step.ellipsoid);
   prove();
   return witness_;
 }
@@ -276,13 +276,22 @@ const WindowWitness& Bank::checked_update(const VectorRef& y, const WindowLevels
   return update(y, z, step);
 }
 
-void Bank::enclose(const WindowLevels& z) noexcept {
+void Bank::enclose(const WindowLevels& z, bool ellipsoid) noexcept {
   Region& region = witness_.region;
-  const Eigen::Index n = states();
+  hull(z);
+  region.stretch = kInfinity;
+  if (ellipsoid) enclose_by_ellipsoid(z);
+  region.radius = std::min(ball(z), region.box.norm());
+  if (!std::isfinite(region.radius) || !region.center.allFinite())  // overflow of an unstable plant
+    region.radius = region.stretch = kInfinity;
+}
+
+void Bank::hull(const WindowLevels& z) noexcept {
+  Region& region = witness_.region;
   const auto half = [&](const BankMember& m, Eigen::Index i) {
     return z.zc * std::sqrt(std::max(m.P(i, i), 0.0)) + m.Psi.row(i).norm();
   };
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < states(); ++i) {
     double lo = kInfinity;
     double hi = -kInfinity;
     for (const BankMember& m : members()) {
@@ -292,6 +301,10 @@ void Bank::enclose(const WindowLevels& z) noexcept {
     region.center(i) = 0.5 * (lo + hi);
     region.box(i) = 0.5 * (hi - lo);
   }
+}
+
+void Bank::enclose_by_ellipsoid(const WindowLevels& z) noexcept {
+  Region& region = witness_.region;
   double most = -1.0;
   for (const BankMember& m : members()) {
     sum_ = m.Psi.lazyProduct(m.Psi.transpose());
@@ -301,19 +314,33 @@ void Bank::enclose(const WindowLevels& z) noexcept {
     region.shape = sum_;
   }
   frame_->set(region.shape);
-  region.stretch = region.radius = 0.0;
+  region.stretch = 0.0;
   for (const BankMember& m : members()) {
     v_ = m.c - region.center;
     region.stretch =
         std::max(region.stretch, frame_->length(v_) + z.z2 * frame_->stretch(m.P) + frame_->norm(m.Psi));
-    sum_ = m.Psi.lazyProduct(m.Psi.transpose());
-    region.radius =
-        std::max(region.radius, v_.norm() + z.z2 * std::sqrt(std::max(frame_->eigenvalues(m.P).second, 0.0)) +
-                                    std::sqrt(std::max(frame_->eigenvalues(sum_).second, 0.0)));
   }
-  region.radius = std::min(region.radius, region.box.norm());
-  if (!std::isfinite(region.radius) || !region.center.allFinite())  // overflow of an unstable plant
-    region.radius = region.stretch = kInfinity;
+}
+
+/// Radius of a ball around the region's centre and all members.
+double Bank::ball(const WindowLevels& z) noexcept {
+  const auto largest = [&](const Matrix& P) {
+    return std::sqrt(std::max(frame_->eigenvalues(P).second, 0.0));
+  };
+  double radius = 0.0;
+  for (const BankMember& m : members()) {
+    v_ = m.c - witness_.region.center;
+    const double off = v_.norm();
+    const double most = std::sqrt(std::max(m.P.trace(), 0.0));
+    if (off + z.z2 * most + m.Psi.norm() <= radius) continue;
+    double set = 0.0;
+    if (m.Psi.cols() > 0) {
+      sum_ = m.Psi.lazyProduct(m.Psi.transpose());
+      set = largest(sum_);
+    }
+    radius = std::max(radius, off + z.z2 * largest(m.P) + set);
+  }
+  return radius;
 }
 
 void Bank::prove() noexcept {

@@ -71,9 +71,11 @@ WindowLevels AgentBank::levels() const noexcept {
 void AgentBank::take(std::int64_t t, std::span<const double> y) noexcept {
   if (t - t_ > kMostAge) reset(t - 1);
   tests_ = std::max<std::int64_t>(tests_, 1);
-  for (; t_ + 1 < t; ++t_) bank_.update(nothing_, levels());
+  BankStep step;
+  step.ellipsoid = false;
+  for (; t_ + 1 < t; ++t_) bank_.update(nothing_, levels(), step);
   for (std::size_t k = 0; k < order_.size(); ++k) y_(static_cast<Eigen::Index>(k)) = y[order_[k]];
-  learn(bank_.update(y_, levels()));
+  learn(bank_.update(y_, levels(), step));
   t_ = t;
   ++tests_;
   if (std::isnan(radius_) || bank_.overflows()) {

@@ -48,7 +48,8 @@ struct BankStep {
   const Vector* u = nullptr;                         ///< n, known input
   const Matrix* Q = nullptr;                         ///< n x n
   const std::vector<BankSource>* sources = nullptr;  ///< of the same sizes
-  bool predict = true;  ///< false: the rows belong to the same time as those before
+  bool predict = true;    ///< false: the rows belong to the same time as those before
+  bool ellipsoid = true;  ///< false: box and ball alone, in a fraction of the time
 };
 
 /// Movable.
@@ -111,7 +112,10 @@ class GARRISON_EXPORT Bank {
   bool take(BankMember& member, const VectorRef& h, double R, double y, double z1) noexcept;
   void leave_out(BankMember& member) const noexcept;
   void move(BankMember& member, double innovation, double variance) noexcept;
-  void enclose(const WindowLevels& z) noexcept;
+  void enclose(const WindowLevels& z, bool ellipsoid) noexcept;
+  void hull(const WindowLevels& z) noexcept;
+  void enclose_by_ellipsoid(const WindowLevels& z) noexcept;
+  double ball(const WindowLevels& z) noexcept;
   void prove() noexcept;
   void all_members(const VectorRef& c0, const MatrixRef& P, const MatrixRef& Psi);
 
