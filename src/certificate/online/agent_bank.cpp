@@ -64,25 +64,24 @@ void AgentBank::reset(std::int64_t t) noexcept {
 /// ever.
 WindowLevels AgentBank::levels() const noexcept {
   const BankPlan& b = plan_->bank;
-  const auto epoch = static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(tests_))) - 1;
+  const auto epoch = static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(tests_) + 1)) - 1;
   return {b.z1[std::min(epoch, b.z1.size() - 1)], b.z2, b.zc, kNaN};
 }
 
 void AgentBank::take(std::int64_t t, std::span<const double> y) noexcept {
   if (t - t_ > kMostAge) reset(t - 1);
-  tests_ = std::max<std::int64_t>(tests_, 1);
   BankStep step;
   step.ellipsoid = false;
   for (; t_ + 1 < t; ++t_) bank_.update(nothing_, levels(), step);
+  if (bank_.overflows()) reset(t - 1);
   for (std::size_t k = 0; k < order_.size(); ++k) y_(static_cast<Eigen::Index>(k)) = y[order_[k]];
   learn(bank_.update(y_, levels(), step));
   t_ = t;
   ++tests_;
-  if (std::isnan(radius_) || bank_.overflows()) {
-    const double radius = radius_;
-    reset(t);
-    radius_ = std::isnan(radius) ? radius : kInfinity;
-  }
+  const bool refuted = std::isnan(radius_);
+  if (!refuted && !bank_.overflows()) return;
+  reset(t);
+  if (refuted) radius_ = kNaN;
 }
 
 void AgentBank::learn(const WindowWitness& found) noexcept {
@@ -125,7 +124,7 @@ void AgentBank::box(std::span<const double> estimate, std::span<double> out) con
 void AgentBank::visit(wire::Archive& archive) {
   archive("bank", bank_);
   archive("t", t_);
-  archive.range("tests", tests_, 0, INT64_MAX);
+  archive.range("tests", tests_, 0, INT64_MAX / 4);
   archive("radius", radius_);
   archive("center", center_);
   archive("box", box_);

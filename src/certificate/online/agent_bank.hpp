@@ -52,7 +52,7 @@ class AgentBank {
   Bank bank_;
   Vector y_, nothing_;
   std::int64_t t_ = 0;
-  std::int64_t tests_ = 0;  // samples since the bank started
+  std::int64_t tests_ = 0;  // samples that the bank has seen since it started
   double radius_ = kInfinity;
   Vector center_, box_;
   std::vector<int> proved_;  // the first proofs_ of them
