@@ -1,30 +1,51 @@
 #!/usr/bin/env bash
 # tools/fuzz.sh [SECONDS [TARGET...]]: the node's parsers under libFuzzer with address and undefined-behaviour sanitizers, for
-# so long each (default 60). Needs a build in build/dev and, on Debian, apt-get install clang libclang-rt-14-dev. Parsers are
-# compiled anew with coverage; the library below them is that of build/dev. What it finds stays in build/fuzz.
-# LIBRARIES=DIR: where libclang_rt lies, if it is not installed.
+# so long each (default 60), JOBS of them at a time (default: one per processor). Wants what `tools/system.sh fuzz` installs,
+# and a build: parsers are compiled anew with coverage, what is below them is the library of BUILD (default build/dev).
+# Inputs that showed something new stay in build/fuzz/TARGET, one that breaks a parser in build/fuzz/TARGET-found-*; the end
+# is then not 0.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
 shift || true
 targets=("$@")
 ((${#targets[@]})) || targets=(settings roster key line state proof part log snapshot frame datagram)
+jobs=${JOBS:-$(nproc)}
+build=${BUILD:-build/dev}
 out=build/fuzz
+checks=fuzzer,address,undefined
+# A file of the library that is here, too, is taken from here.
+parsers=(src/node/*.cpp src/node/daemon/{files,keys,machine,roster,sensor,service,settings,state,toml_file,udp}.cpp
+  src/core/{error,params}.cpp src/engine/design_file.cpp src/filters/saturation/family.cpp
+  tests/node/{plant,faults}.cpp tests/node/fuzz/{targets,insider,numeric_hosts,libfuzzer}.cpp)
+
+object_of() { echo "$out/objects/${1//\//_}.o"; }
+
+compile() { # SOURCE
+  ccache clang++ -std=c++20 -O1 -gline-tables-only -ffp-contract=off -fsanitize="${checks/fuzzer/fuzzer-no-link}" \
+    -fno-sanitize-recover=undefined -Wno-unknown-warning-option -DGARRISON_FEW_DIMENSIONS \
+    -Iinclude -Isrc -Itests/node -isystem /usr/include/eigen3 -c "$1" -o "$(object_of "$1")"
+}
+
+try() { # TARGET
+  local log=$out/$1.log found=$out/$1-found-
+  rm -f "$found"*
+  mkdir -p "$out/$1"
+  if GARRISON_TARGET=$1 GARRISON_SEEDS=$out/$1 "$out/fuzz" "$out/$1" -max_total_time="$seconds" -artifact_prefix="$found" \
+    -verbosity=0 -print_final_stats=1 -timeout=20 >"$log" 2>&1; then
+    echo "fuzz: $1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") runs, nothing found"
+  else
+    grep -m 1 -A 25 -E 'ERROR|runtime error' "$log" || tail -n 25 "$log"
+    echo "fuzz: $1: broken by an input; again: GARRISON_TARGET=$1 $out/fuzz" "$found"*
+    return 1
+  fi
+}
+
+export -f object_of compile try
+export checks out seconds
+export ASAN_OPTIONS=allow_addr2line=1
 mkdir -p "$out/objects"
-resource=${LIBRARIES:+-resource-dir=$LIBRARIES}
-flags=(-std=c++20 -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -ffp-contract=off
-  -DGARRISON_FEW_DIMENSIONS -Iinclude -Isrc -Itests/node -isystem /usr/include/eigen3 ${resource:+"$resource"})
-sources=(src/node/*.cpp src/node/daemon/*.cpp src/core/error.cpp src/core/params.cpp tests/node/{plant,faults}.cpp
-  tests/node/fuzz/{targets,insider,numeric_hosts,libfuzzer}.cpp)
-for source in "${sources[@]}"; do
-  object="$out/objects/${source//\//_}.o"
-  if [[ ! $object -nt $source ]]; then echo "clang++ ${flags[*]} -c $source -o $object"; fi
-done | xargs -r -d '\n' -P "$(nproc)" -I{} sh -c '{}'
-clang++ ${resource:+"$resource"} -fsanitize=fuzzer,address,undefined "$out"/objects/*.o build/dev/src/libgarrison.a -lsodium -ldl \
-  -o "$out/fuzz"
-for target in "${targets[@]}"; do
-  mkdir -p "$out/$target"
-  GARRISON_TARGET=$target "$out/fuzz" "$out/$target" -max_total_time="$seconds" -artifact_prefix="$out/$target-" -verbosity=0 \
-    -print_final_stats=1 -timeout=20 >"$out/$target.log" 2>&1 || { tail -30 "$out/$target.log"; exit 1; }
-  echo "fuzz: $target: $(sed -n 's/^stat::number_of_executed_units: *//p' "$out/$target.log") runs, nothing found"
-done
+printf '%s\0' "${parsers[@]}" | xargs -0 -P "$jobs" -I{} bash -ec 'compile {}'
+mapfile -t objects < <(for source in "${parsers[@]}"; do object_of "$source"; done)
+clang++ -fsanitize="$checks" "${objects[@]}" "$build/src/libgarrison.a" -lsodium -ldl -o "$out/fuzz"
+printf '%s\0' "${targets[@]}" | xargs -0 -P "$jobs" -I{} bash -ec 'try {}'

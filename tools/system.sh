@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/system.sh [docs|bench|mpi...]: installs the Debian packages that a build wants and this machine lacks, and the named
+# tools/system.sh [docs|bench|mpi|fuzz...]: installs the Debian packages that a build wants and this machine lacks, and the named
 # extras' own. PYTHON=/path/to/python3 chooses the interpreter.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -13,6 +13,7 @@ stop() {
 have() { command -v "$1" >/dev/null; }
 installed() { [[ $(dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null) == ii* ]]; }
 python_has_headers() { "$python" -c 'import pathlib, sysconfig as s; assert pathlib.Path(s.get_path("include"), "Python.h").exists()'; }
+has_libfuzzer() { clang++ -fsanitize=fuzzer -x c++ - -o /dev/null <<<'extern "C" int LLVMFuzzerTestOneInput(char*, int) { return 0; }'; }
 missing=()
 need() { # PACKAGE TEST...
   local package=$1
@@ -37,6 +38,10 @@ if [[ " $* " == *" mpi "* ]]; then
   need openmpi-bin installed openmpi-bin
   need libpnetcdf-dev installed libpnetcdf-dev
   need libmetis-dev installed libmetis-dev
+fi
+if [[ " $* " == *" fuzz "* ]]; then
+  need clang have clang++
+  need libclang-rt-14-dev has_libfuzzer
 fi
 if [[ " $* " == *" docs "* ]]; then need doxygen have doxygen; fi
 need python3 have "$python"

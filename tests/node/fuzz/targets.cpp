@@ -7,7 +7,9 @@
 #include "fuzz/insider.hpp"
 #include "garrison/core/error.hpp"
 #include "garrison/engine/design_file.hpp"
+#include "garrison/engine/snapshot_head.hpp"
 #include "garrison/node/log.hpp"
+#include "garrison/wire/blake2b.hpp"
 #include "node/daemon/keys.hpp"
 #include "node/daemon/roster.hpp"
 #include "node/daemon/sensor.hpp"
@@ -24,6 +26,15 @@ using Parse = std::function<bool(const std::string&)>;
 std::string text_of(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 void require(bool holds) {
   if (!holds) std::abort();
+}
+/// With the right digest of so many bytes at its end, as a forger writes it: what is behind the digest is
+/// read, too.
+std::string sealed(std::string file, std::size_t digest) {
+  if (file.size() < digest) return file;
+  const auto made = wire::blake2b(text_bytes(file).first(file.size() - digest));
+  std::copy_n(reinterpret_cast<const char*>(made.data()), digest,
+              file.end() - static_cast<std::ptrdiff_t>(digest));
+  return file;
 }
 /// A refusal is an answer.
 Parse refusing(std::function<void(const std::string&)> parse) {
@@ -100,7 +111,9 @@ const std::vector<std::byte>& part() {
 }
 
 Target design_part() {
-  return {refusing([](const std::string& bytes) { read_part(text_bytes(bytes)); }), {text_of(part())}};
+  return {
+      refusing([](const std::string& bytes) { read_part(text_bytes(sealed(bytes, sizeof(wire::Digest)))); }),
+      {text_of(part())}};
 }
 
 Target log() {
@@ -121,7 +134,9 @@ Target snapshot() {
   const std::shared_ptr<Agent> agent = read_part(part());
   std::vector<std::byte> saved(agent->snapshot_bytes());
   saved.resize(agent->save(saved));
-  return {[agent](const std::string& bytes) { return agent->load(text_bytes(bytes)) == Refusal::none; },
+  return {[agent](const std::string& bytes) {
+            return agent->load(text_bytes(sealed(bytes, SnapshotHead::kChecksum))) == Refusal::none;
+          },
           {text_of(saved)}};
 }
 
