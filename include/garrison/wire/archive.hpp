@@ -126,7 +126,7 @@ class Archive {
     if constexpr (std::is_base_of_v<Eigen::PlainObjectBase<T>, T> && !T::IsRowMajor &&
                   std::is_same_v<typename T::Scalar, double>)
       numbers(x.data(), rows * columns);
-    else
+    else if (x.rows() > 0)  // else there may be billions of columns
       for (Eigen::Index c = 0; c < x.cols(); ++c)
         for (Eigen::Index r = 0; r < x.rows(); ++r) pass(x(r, c));
   }
