@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison._core import DesignInfeasible, Error, structural
-from garrison.words import hinted
+from garrison.arguments import number, whole
+from garrison.words import hinted, refusal, shown
 
 Array = NDArray[np.float64]
 
@@ -50,9 +51,16 @@ def lmi_gains(setting: structural.Setting, *, iterations: int = 20, margin: floa
     ------
     DesignInfeasible
         No stable gain within `iterations`; says the radius reached.
+    InvalidInput
+        Something is no Setting, or out of its range.
     Error
         cvxpy is not installed.
     """
+    if not isinstance(setting, structural.Setting):
+        raise refusal("setting", shown(setting), "a structural.Setting", "make one by structural.setting(...)")
+    whole("iterations", iterations, 1)
+    if not 0.0 < number("margin", margin) < float("inf"):
+        raise refusal("margin", shown(margin), "a finite number > 0")
     cp = _cvxpy()
     A, C, W, U = (np.asarray(M) for M in (setting.A, setting.C, setting.W, setting.U))
     n, N = len(A), len(W)
