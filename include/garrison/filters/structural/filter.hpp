@@ -114,7 +114,6 @@ struct GARRISON_EXPORT Structural {
     }
     fresh.pace = g.rho > 0.0 && g.rho < 1.0 ? -1.0 / std::log(g.rho) : 0.0;
     fresh.senders.assign(fresh.left_out.size(), 0);
-    fresh.covariances.assign(fresh.left_out.size(), nullptr);
     fresh.missing.assign(fresh.left_out.size(), 0);
     fresh.accused.resize(l.agents);
     s = std::move(fresh);
@@ -158,9 +157,9 @@ struct GARRISON_EXPORT Structural {
     const bool settled = s.rest == 0 && s.start == 0 && seen.estimates;
     const bool carried = carries(g) && (g.isolate || !(settled && seen.measurements));
     if (carried) {
-      for (std::size_t at = 0; at < inbox.size(); ++at) s.covariances[at] = inbox[at].covariance.data();
+      mix_spreads(l, g, s, inbox);
       constexpr int m = spread_dimension(n);
-      run_widest_of<PredictSpread<m>, m>(&l, &g, static_cast<Memory*>(&s), inbox.size());
+      run_widest_of<PredictSpread<m>, m>(&l, &g, static_cast<Memory*>(&s));
     }
     const double* c = row(g, l.id, nn);
     s.innovation = measured ? s.y - dot(g, l.id, s.prior, nn) : kNaN;
@@ -283,8 +282,8 @@ struct GARRISON_EXPORT Structural {
   template <int n>
   struct PredictSpread {
     template <int B>
-    GARRISON_INLINE static void run(const Local* l, const Gains* g, Memory* s, std::size_t heard) noexcept {
-      predict_spread<B, n>(*l, *g, *s, heard);
+    GARRISON_INLINE static void run(const Local* l, const Gains* g, Memory* s) noexcept {
+      predict_spread<B, n>(*l, *g, *s);
     }
   };
   template <int n>
@@ -341,7 +340,10 @@ struct GARRISON_EXPORT Structural {
   static double own_weight(const Heard* heard, const Memory& s) noexcept;
   /// Jensen: A (sum_j W_ij P_j) A' + E >= cov(e before the update), into the first n x n of `work`.
   template <int B, int n>
-  static void predict_spread(const Local& l, const Gains& g, Memory& s, std::size_t messages) noexcept;
+  static void predict_spread(const Local& l, const Gains& g, Memory& s) noexcept;
+  /// Its sum over the messages, packed, into the third n x n of `work`.
+  template <int n>
+  static void mix_spreads(const Local& l, const Gains& g, Memory& s, const Inbox<Message<n>>& inbox) noexcept;
   /// (4) where all that came is used: own measurement, then those of the others in order of id.
   template <int n>
   static void update_estimate(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,

@@ -120,10 +120,8 @@ struct Memory {
   // What follows from the gains, and is not part of a snapshot: I - sum K_i c_j c_j', column by column, and
   // sum R_jj K_i c_j (K_i c_j)', when no measurement is missing; n x n each.
   std::vector<double> whole;
-  double pace = 0.0;  // samples in which the deviation of an error falls by the factor e
-  // Of this sample: the Heard behind each message of the inbox, and its packed covariance.
-  std::vector<int> senders;
-  std::vector<const double*> covariances;
+  double pace = 0.0;         // samples in which the deviation of an error falls by the factor e
+  std::vector<int> senders;  // of this sample: the Heard behind each message of the inbox
   std::vector<int> missing;  // Heard whose measurement is not used, the first `gone`
   int gone = 0;
   AgentSet accused;

@@ -129,22 +129,29 @@ inline double Structural::own_weight(const Heard* heard, const Memory& s) noexce
   return own;
 }
 
+template <int n>
+void Structural::mix_spreads(const Local& l, const Gains& g, Memory& s,
+                             const Inbox<Message<n>>& inbox) noexcept {
+  const int nn = dimension<n>(l);
+  double* const memory = s.work.data() + 2 * structural::entries(nn);
+  const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
+  structural::Sums<n == Dynamic ? Dynamic : n * (n + 1) / 2> sums(memory);
+  double* const lower = sums.data();
+  std::fill_n(lower, structural::packed(nn), 0.0);
+  for (std::size_t at = 0; at < inbox.size(); ++at)
+    structural::add_packed<n>(inbox[at].covariance.data(), heard[s.senders[at]].weight, nn, lower);
+  if constexpr (n != Dynamic) std::copy_n(lower, structural::packed(nn), memory);
+}
+
 template <int B, int n>
-GARRISON_INLINE void Structural::predict_spread(const Local& l, const Gains& g, Memory& s,
-                                                std::size_t messages) noexcept {
+GARRISON_INLINE void Structural::predict_spread(const Local& l, const Gains& g, Memory& s) noexcept {
   const int nn = dimension<n>(l);
   const std::size_t size = structural::entries(nn);
   double* prior = s.work.data();
   double* mean = prior + size;
   double* half = mean + size;
-  const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
-  structural::Sums<n == Dynamic ? Dynamic : n * (n + 1) / 2> sums(half);
-  double* const lower = sums.data();
-  std::fill_n(lower, structural::packed(nn), 0.0);
-  for (std::size_t at = 0; at < messages; ++at)
-    structural::add_packed<n>(s.covariances[at], heard[s.senders[at]].weight, nn, lower);
-  structural::unpack<n>(lower, nn, mean);
-  const double own = own_weight(heard, s);
+  structural::unpack<n>(half, nn, mean);
+  const double own = own_weight(g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)], s);
   for (std::size_t k = 0; k < size; ++k) mean[k] += own * s.P[k];
   std::copy_n(g.process.data(), size, prior);
   structural::add_congruence<B, n>(l.A, mean, nn, half, prior);
