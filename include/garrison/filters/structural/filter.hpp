@@ -158,8 +158,8 @@ struct GARRISON_EXPORT Structural {
     const bool carried = carries(g) && (g.isolate || !(settled && seen.measurements));
     if (carried) {
       mix_spreads(l, g, s, inbox);
-      constexpr int m = spread_dimension(n);
-      run_widest_of<PredictSpread<m>, m>(&l, &g, static_cast<Memory*>(&s));
+      constexpr int like = spread_dimension(n);
+      run_widest_of<PredictSpread<like>, like>(&l, &g, static_cast<Memory*>(&s));
     }
     const double* c = row(g, l.id, nn);
     s.innovation = measured ? s.y - dot(g, l.id, s.prior, nn) : kNaN;

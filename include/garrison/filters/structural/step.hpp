@@ -206,8 +206,8 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
   if (doubts.out && !doubts.heeded) doubts.growth = std::max(doubts.growth, kNobody);
   if (g.isolate)
     for (std::size_t k = 0; k < size; ++k) prior[k] = doubts.growth * (prior[k] + more[k]);
-  constexpr int m = spread_dimension(n);
-  run_widest_of<UpdateSpread<m>, m>(&l, &g, static_cast<Memory*>(&s));
+  constexpr int like = spread_dimension(n);
+  run_widest_of<UpdateSpread<like>, like>(&l, &g, static_cast<Memory*>(&s));
   return !doubts.out;
 }
 
