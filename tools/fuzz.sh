@@ -14,6 +14,8 @@ jobs=${JOBS:-$(nproc)}
 build=${BUILD:-build/dev}
 out=build/fuzz
 checks=fuzzer,address,undefined
+# As the library: objects of other builds do not link with it.
+few=$(sed -n 's/^GARRISON_FEW_DIMENSIONS:BOOL=ON$/-DGARRISON_FEW_DIMENSIONS/p' "$build/CMakeCache.txt")
 # A file of the library that is here, too, is taken from here.
 parsers=(src/node/*.cpp src/node/daemon/{files,keys,machine,roster,sensor,service,settings,state,toml_file,udp}.cpp
   src/core/{error,params}.cpp src/engine/design_file.cpp src/filters/saturation/family.cpp
@@ -23,7 +25,7 @@ object_of() { echo "$out/objects/${1//\//_}.o"; }
 
 compile() { # SOURCE
   ccache clang++ -std=c++20 -O1 -gline-tables-only -ffp-contract=off -fsanitize="${checks/fuzzer/fuzzer-no-link}" \
-    -fno-sanitize-recover=undefined -Wno-unknown-warning-option -DGARRISON_FEW_DIMENSIONS \
+    -fno-sanitize-recover=undefined -Wno-unknown-warning-option ${few:+"$few"} \
     -Iinclude -Isrc -Itests/node -isystem /usr/include/eigen3 -c "$1" -o "$(object_of "$1")"
 }
 
@@ -42,7 +44,7 @@ try() { # TARGET
 }
 
 export -f object_of compile try
-export checks out seconds
+export checks out seconds few
 export ASAN_OPTIONS=allow_addr2line=1
 mkdir -p "$out/objects"
 printf '%s\0' "${parsers[@]}" | xargs -0 -P "$jobs" -I{} bash -ec 'compile {}'
