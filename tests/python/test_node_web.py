@@ -60,6 +60,7 @@ def status(name: str, **other: Any) -> dict[str, Any]:
         "measured": True,
         "took_ms": 3.5,
         "accused": [1],
+        "proved": [],
         "counters": dict.fromkeys(COUNTERS, 7),
         "sensor": {"taken": 5, "malformed": 1, "outside": 0, "restarts": 0},
         "snapshot_age_s": 0.5,
