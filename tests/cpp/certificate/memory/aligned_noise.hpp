@@ -2,6 +2,7 @@
 // The worst noise that the events of a bank allow: all of it at the edge, pulling one way.
 #pragma once
 
+#include <Eigen/QR>
 #include <utility>
 #include <vector>
 
