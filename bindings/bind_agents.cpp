@@ -103,6 +103,14 @@ std::string repr(const std::vector<std::byte>& bytes) {
   return py::repr(to_python(bytes)).cast<std::string>();
 }
 
+/// One number per state that `fill` writes.
+auto per_state(const PyAgent& a, void (Agent::*fill)(std::span<double>) const noexcept) {
+  std::vector<double> all(static_cast<std::size_t>(a->states()));
+  ((*a.agent).*fill)(all);
+  const auto size = static_cast<py::ssize_t>(all.size());
+  return owned(std::move(all), {size});
+}
+
 }  // namespace
 
 void bind_agents(py::module_& m) {
@@ -221,14 +229,7 @@ void bind_agents(py::module_& m) {
           "Something was missed that only the caller knows of, such as more than `attacked` measurements of\n"
           "the whole network in one sample: no bound and no test rests on the past any more.")
       .def_property_readonly(
-          "estimate",
-          [](const PyAgent& a) {
-            std::vector<double> x(static_cast<std::size_t>(a->states()));
-            a->estimate(x);
-            const auto size = static_cast<py::ssize_t>(x.size());
-            return owned(std::move(x), {size});
-          },
-          "(n,)")
+          "estimate", [](const PyAgent& a) { return per_state(a, &Agent::estimate); }, "(n,)")
       .def_property_readonly(
           "accused", [](const PyAgent& a) { return a->accused(); }, "Agents that this one has accused.")
       .def_property_readonly(
@@ -237,13 +238,7 @@ void bind_agents(py::module_& m) {
           "first\n"
           "measurement in the network.")
       .def_property_readonly(
-          "box",
-          [](const PyAgent& a) {
-            std::vector<double> box(static_cast<std::size_t>(a->states()));
-            a->box(box);
-            const auto size = static_cast<py::ssize_t>(box.size());
-            return owned(std::move(box), {size});
-          },
+          "box", [](const PyAgent& a) { return per_state(a, &Agent::box); },
           "(n,) bounds on the error of each coordinate; `bound` is that of all together.")
       .def_property_readonly(
           "control", [](const PyAgent& a) { return a->control(); },

@@ -65,7 +65,7 @@ double top_eigenvalue(const Sparse& lap) {
 /// spectra stand out.
 bool looks_well_connected(const Network& network) {
   const auto N = static_cast<std::size_t>(network.agents());
-  if (network.edges().size() < 2 * N) return false;
+  if (network.lists().size() < 4 * N) return false;  // two entries for every link
   const detail::Hops hops = detail::hops_from(network, 0);
   return hops.reaches_all && hops.furthest <= 2.0 * std::log2(static_cast<double>(N));
 }
