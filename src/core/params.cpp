@@ -139,7 +139,7 @@ ParamValue convert_param(const std::string& owner, const ParamInfo& info, const 
   // A text without choices holds a number as text (the attack "constant").
   if (std::holds_alternative<std::string>(info.initial) && info.choices.empty()) {
     if (const auto* number = std::get_if<double>(&value)) return text(*number);
-    if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
+    if (whole != nullptr) return std::to_string(*whole);
   }
   refuse(owner + "." + info.name, shown(value), range(info), info.doc);
 }

@@ -24,7 +24,8 @@ Matrix detail::pseudo_inverse(const Matrix& S) {
     const auto diagonal = llt.matrixLLT().diagonal();
     if (diagonal.minCoeff() > 1e-5 * diagonal.maxCoeff()) return llt.solve(Matrix::Identity(d, d));
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(0.5 * (S + S.transpose()));
+  const Matrix symmetric = 0.5 * (S + S.transpose());
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(symmetric);
   const Vector values = eigen.eigenvalues();
   const double cut = 1e-13 * values.cwiseAbs().maxCoeff();
   Vector inverse(d);
