@@ -4,5 +4,8 @@
 
 #include "bindings.hpp"
 
-/// Certificates with memory, in the module of the certificates.
+// All into the module of the certificates.
+void bind_certificate_relays(py::module_& c);
 void bind_certificate_memory(py::module_& c);
+void bind_certificate_bank(py::module_& c);
+void bind_certificate_meters(py::module_& c);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "../require.hpp"
 #include "bank_sources.hpp"
@@ -276,73 +275,6 @@ const WindowWitness& Bank::checked_update(const VectorRef& y, const WindowLevels
   return update(y, z, step);
 }
 
-void Bank::enclose(const WindowLevels& z, bool ellipsoid) noexcept {
-  Region& region = witness_.region;
-  hull(z);
-  region.stretch = kInfinity;
-  if (ellipsoid) enclose_by_ellipsoid(z);
-  region.radius = std::min(ball(z), region.box.norm());
-  if (!std::isfinite(region.radius) || !region.center.allFinite())  // overflow of an unstable plant
-    region.radius = region.stretch = kInfinity;
-}
-
-void Bank::hull(const WindowLevels& z) noexcept {
-  Region& region = witness_.region;
-  const auto half = [&](const BankMember& m, Eigen::Index i) {
-    return z.zc * std::sqrt(std::max(m.P(i, i), 0.0)) + m.Psi.row(i).norm();
-  };
-  for (Eigen::Index i = 0; i < states(); ++i) {
-    double lo = kInfinity;
-    double hi = -kInfinity;
-    for (const BankMember& m : members()) {
-      lo = std::min(lo, m.c(i) - half(m, i));
-      hi = std::max(hi, m.c(i) + half(m, i));
-    }
-    region.center(i) = 0.5 * (lo + hi);
-    region.box(i) = 0.5 * (hi - lo);
-  }
-}
-
-void Bank::enclose_by_ellipsoid(const WindowLevels& z) noexcept {
-  Region& region = witness_.region;
-  double most = -1.0;
-  for (const BankMember& m : members()) {
-    sum_ = m.Psi.lazyProduct(m.Psi.transpose());
-    sum_ += m.P;
-    if (!(sum_.trace() > most)) continue;
-    most = sum_.trace();
-    region.shape = sum_;
-  }
-  frame_->set(region.shape);
-  region.stretch = 0.0;
-  for (const BankMember& m : members()) {
-    v_ = m.c - region.center;
-    region.stretch =
-        std::max(region.stretch, frame_->length(v_) + z.z2 * frame_->stretch(m.P) + frame_->norm(m.Psi));
-  }
-}
-
-/// Radius of a ball around the region's centre and all members.
-double Bank::ball(const WindowLevels& z) noexcept {
-  const auto largest = [&](const Matrix& P) {
-    return std::sqrt(std::max(frame_->eigenvalues(P).second, 0.0));
-  };
-  double radius = 0.0;
-  for (const BankMember& m : members()) {
-    v_ = m.c - witness_.region.center;
-    const double off = v_.norm();
-    const double most = std::sqrt(std::max(m.P.trace(), 0.0));
-    if (off + z.z2 * most + m.Psi.norm() <= radius) continue;
-    double set = 0.0;
-    if (m.Psi.cols() > 0) {
-      sum_ = m.Psi.lazyProduct(m.Psi.transpose());
-      set = largest(sum_);
-    }
-    radius = std::max(radius, off + z.z2 * largest(m.P) + set);
-  }
-  return radius;
-}
-
 void Bank::prove() noexcept {
   if (static_cast<int>(sources_.size()) < 2 * s_) return;
   const auto living = members();
@@ -351,67 +283,6 @@ void Bank::prove() noexcept {
           return std::binary_search(m.accused.begin(), m.accused.end(), source);
         }))
       witness_.proofs.push_back({source, kAlways});
-}
-
-void Bank::merge(int most, const WindowLevels& z) {
-  detail::require_least("most", most, 1);
-  detail::require_least("z2", z.z2, 0.0);
-  const int n = states();
-  detail::EllipsoidUnion both(n, 2);
-  std::vector<int> sources;
-  const auto together = [&](const BankMember& one, const BankMember& other) {
-    sources.clear();
-    std::set_union(one.left_out.begin(), one.left_out.end(), other.left_out.begin(), other.left_out.end(),
-                   std::back_inserter(sources));
-    return sources.size();
-  };
-  const auto add = [&](const BankMember& m) {
-    Matrix shape(n, n);
-    detail::outer_sum(m.Psi * m.Psi.transpose(), z.z2 * z.z2 * m.P, shape);
-    both.add(m.c, shape, 1.0, shape.diagonal().cwiseMax(0.0).cwiseSqrt());
-  };
-  members_.resize(alive_);
-  Region region = witness_.region;
-  region.center.resize(n);
-  while (members_.size() > static_cast<std::size_t>(most)) {
-    BankMember first = std::move(members_.front());
-    members_.erase(members_.begin());
-    std::size_t at = 0;
-    for (std::size_t k = 1; k < members_.size(); ++k) {
-      const auto size = together(first, members_[k]);
-      const auto least = together(first, members_[at]);
-      if (size < least ||
-          (size == least && (members_[k].c - first.c).norm() < (members_[at].c - first.c).norm()))
-        at = k;
-    }
-    BankMember& other = members_[at];
-    both.clear();
-    const bool unknown = first.free.count > 0 || other.free.count > 0;
-    add(first);
-    add(other);
-    both.hull(region);
-    Matrix shape(n, n);
-    both.shape(region, shape);
-    both.enclose(shape, region);
-    together(first, other);
-    std::vector<int> accused;
-    std::set_intersection(first.accused.begin(), first.accused.end(), other.accused.begin(),
-                          other.accused.end(), std::back_inserter(accused));
-    other.left_out = sources;
-    other.accused = accused;
-    other.P.setZero();
-    if (unknown) {
-      other.free.resize(n);
-      other.free.all(weight_);
-      other.Psi.setZero();
-    } else {
-      other.c = region.center;
-      other.Psi = region.stretch * garrison::detail::covariance_root(region.shape);
-    }
-    std::rotate(members_.begin() + static_cast<std::ptrdiff_t>(at),
-                members_.begin() + static_cast<std::ptrdiff_t>(at) + 1, members_.end());
-  }
-  alive_ = members_.size();
 }
 
 }  // namespace garrison::certificate
