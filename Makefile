@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev test test-fast fuzz fuzz-node lint format bench deb deb-check deb-board wheel abi board docs clean
+.PHONY: help setup run dev test test-fast sanitizers fuzz fuzz-node lint format bench deb deb-check deb-board wheel abi board docs clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
 cpp = $(shell find include src bindings tests bench examples -name '*.hpp' -o -name '*.cpp')
@@ -16,10 +16,13 @@ run: ## the main job: Irish wind with hijacked stations, report in out/wind
 dev: ## build quickly for a developer, few dimensions; then PYTHONPATH=python .venv/bin/pytest
 	@tools/dev.sh
 
-test: test-fast ## all tests: C++, Python, and C++ again under the sanitizers
-	@tools/stage.sh "configure asan" cmake --preset asan
-	@tools/stage.sh "build asan" cmake --build --preset asan
+test: test-fast sanitizers ## all tests: C++, Python, and C++ again under the sanitizers
 	@ctest --preset asan
+
+sanitizers: ## build the C++ tests with address and undefined-behaviour sanitizers, one at a time
+	@mkdir -p build
+	@tools/stage.sh "configure asan" flock build/asan.lock cmake --preset asan
+	@tools/stage.sh "build asan" flock build/asan.lock cmake --build --preset asan
 
 test-fast: setup ## C++ and Python tests without the sanitizers
 	@tools/stage.sh "configure release" cmake --preset release
