@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 from garrison.cli import main
 from garrison.figures import error_figure
+from garrison.figures.style import dot_alone
 from garrison.jobs import Row, run_scenario
 from garrison.report import table_rows
 from garrison.report.page import write_report
 from garrison.report.table import at_time, detections, warnings_of
 from garrison.scenario import Scenario, read_scenario
+from matplotlib.figure import Figure
 from scipy.optimize import linprog
 
 FAULTY = """
@@ -285,3 +287,10 @@ def test_the_unit_of_the_states_is_said(tmp_path: Path) -> None:
     assert error_figure(scenario, rows, None).axes[0].get_ylabel() == "mean error (m), log scale"
     write_report(tmp_path / "report.html", scenario, rows)
     assert "distances to its true state, in m." in (tmp_path / "report.html").read_text()
+
+
+def test_values_that_have_none_beside_them_are_dots() -> None:
+    (line,) = Figure().add_subplot().plot([1.0, np.nan, 2.0, 3.0, np.nan, 4.0])
+    dot_alone(line)
+    assert line.get_markevery() == [0, 5]
+    assert line.get_marker() == "."

@@ -7,7 +7,7 @@ import matplotlib.dates
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.figures.style import log_scale, plain, time_label, times
+from garrison.figures.style import dot_alone, log_scale, plain, time_label, times
 from garrison.record import Run
 from garrison.scenario import Scenario
 
@@ -44,6 +44,8 @@ def innovation_figure(scenario: Scenario, run: Run, before: int = 30, after: int
             linestyle="--",
             label="threshold",
         )
+        for line in ax.get_lines():
+            dot_alone(line)
         if k in accused and low <= accused[k] <= high:
             when = times(scenario, np.array([accused[k]]))[0]
             ax.plot([when], [run.statistic[0, accused[k], k]], marker="X", color="#D55E00", markersize=8)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.figures.style import LINES, axes, log_scale, plain, trial_words
+from garrison.figures.style import LINES, axes, dot_alone, log_scale, plain, trial_words
 from garrison.longform import common_unit
 from garrison.record import Run
 
@@ -88,7 +88,10 @@ def _statistics(run: Run, trial: int, ax: Any, agents: Any) -> bool:
         return True
     lines = ax.plot(run.statistic[trial][:, agents], color="#0072B2", linewidth=0.6, alpha=0.6)
     lines[0].set_label("statistic, one line per agent")
-    ax.plot(run.threshold[trial][:, agents].max(axis=1), color="#D55E00", linestyle="--", label="largest threshold")
+    largest = np.fmax.reduce(run.threshold[trial][:, agents], axis=1)  # of those that were tested
+    lines += ax.plot(largest, color="#D55E00", linestyle="--", label="largest threshold")
+    for line in lines:
+        dot_alone(line)
     log_scale(ax, run.statistic[trial])
     ax.set_ylabel("test statistic")
     return True

@@ -52,6 +52,13 @@ def log_scale(ax: Any, values: Any) -> None:
         ax.set_yscale("log")
 
 
+def dot_alone(line: Any) -> None:
+    """Show the values of a line that have none beside them, which it would pass over, as dots."""
+    known = np.isfinite(np.pad(np.asarray(line.get_ydata(orig=False), dtype=float), 1, constant_values=np.nan))
+    alone = np.flatnonzero(known[1:-1] & ~known[:-2] & ~known[2:])
+    line.set(marker=".", markersize=3, markevery=alone.tolist())
+
+
 def label_ends(ax: Any) -> None:
     """Write the label of every line at its right end in its colour, none over another; of vertical ones at the top.
 

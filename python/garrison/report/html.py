@@ -26,6 +26,8 @@ footer{color:var(--soft);font-size:.85rem;margin-top:3rem}
 @media(max-width:600px){body{margin:1rem auto;padding:0 .7rem}
 table{width:auto;min-width:100%}td,th{padding:.3rem .45rem}
 .wide>svg,.wide>img{max-width:none;width:42rem}}
+@media print{body{margin:0;padding:0}.wide{overflow:visible}table{font-size:.72rem}td,th{padding:.25rem .4rem}
+td.long{min-width:7rem}h2{break-after:avoid}figcaption{break-before:avoid}figure,tr{break-inside:avoid}svg,img{max-height:19cm}}
 """
 
 
