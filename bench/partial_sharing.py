@@ -35,7 +35,7 @@ class Task:
         self.net = gr.Network.random_geometric(agents, float(np.sqrt(6 / (np.pi * agents))), 0)
         self.y = rng.normal(size=(steps, agents, OUTPUTS))
         filt = gr.filters.PartialSharing(gain=GAIN, shared=SHARED, selection_seed=1)
-        self.s0 = np.asarray(ps.Analysis(filt, self.model, self.net).selection.at(0))
+        self.s0 = np.asarray(ps.Analysis(self.model, self.net, filt).selection.at(0))
         rows = self.H.reshape(-1, STATES), self.R[0]
         self.timed = {
             gains: peers.Sharing(A, rows[0], rows[1], self.Q, self.net.edges, self.s0, GAIN, gains)
@@ -238,10 +238,10 @@ def steady(repeats: int) -> Rows:
 
     def solve() -> float:
         start = time.perf_counter()
-        ps.Analysis(filt, model, net).periodic_mse()
+        ps.Analysis(model, net, filt).periodic_mse()
         return time.perf_counter() - start
 
-    analysis = ps.Analysis(filt, model, net)
+    analysis = ps.Analysis(model, net, filt)
     phases = analysis.periodic_covariance()
     long = analysis.error_covariance(400)["nmse"]
     assert abs(long[-1] - np.trace(phases[0])) < 1e-9 * long[-1], "the recursion settles elsewhere"

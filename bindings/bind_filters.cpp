@@ -172,11 +172,11 @@ void bind_filters(py::module_& m) {
 
   m.def(
       "lfre_parents",
-      [](const FilterHandle& f, const Model& model, const Network& network) {
+      [](const Model& model, const Network& network, const FilterHandle& f) {
         require_same_size(model, network);
         return Lfre::design(params_of<Lfre>(f), model, network).parents;
       },
-      py::arg("filter"), py::arg("model"), py::arg("network"), "Parents of every agent in an Lfre filter.");
+      py::arg("model"), py::arg("network"), py::arg("filter"), "Parents of every agent in an Lfre filter.");
   m.def("make_filter", &named_filter, py::arg("name"), py::arg("params") = py::dict(),
         "The filter `name`; unknown names are refused with the nearest one.");
   m.def(

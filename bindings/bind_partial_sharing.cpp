@@ -18,7 +18,7 @@ void require_steps(const char* which, int steps) {
 /// A setting with its steady gains, which are computed when first needed.
 class Analysis {
  public:
-  Analysis(const FilterHandle& f, const Model& model, const Network& network)
+  Analysis(const Model& model, const Network& network, const FilterHandle& f)
       : setting(make_setting(params_of<PartialSharing>(f), model,
                              (require_same_size(model, network), network))) {}
   const std::vector<LocalGains>& steady() const {
@@ -205,8 +205,8 @@ void bind_partial_sharing(py::module_& m) {
       "N agents, m states; network covariances are (N m, N m), agent by agent. k counts samples from\n"
       "0: k = t - 1. Sigma: (N m, N m), zero on regular agents, None = no attack. P_0 and the start\n"
       "belong to k = 0.")
-      .def(py::init<const FilterHandle&, const Model&, const Network&>(), py::arg("filter"), py::arg("model"),
-           py::arg("network"))
+      .def(py::init<const Model&, const Network&, const FilterHandle&>(), py::arg("model"), py::arg("network"),
+           py::arg("filter"))
       .def_property_readonly("selection", [](const Analysis& a) { return a.setting.selection; })
       .def_property_readonly(
           "shared_fraction", [](const Analysis& a) { return a.setting.shared_fraction(); },

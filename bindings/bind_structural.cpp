@@ -51,11 +51,11 @@ void bind_setting(py::module_& m) {
   });
   m.def(
       "setting",
-      [](const FilterHandle& f, const Model& model, const Network& network) {
+      [](const Model& model, const Network& network, const FilterHandle& f) {
         require_same_size(model, network);
         return Structural::setting(params_of<Structural>(f), model, network);
       },
-      py::arg("filter"), py::arg("model"), py::arg("network"),
+      py::arg("model"), py::arg("network"), py::arg("filter"),
       "The setting that a Structural filter is designed for on this model and network.");
 }
 

@@ -54,7 +54,7 @@ class Experiment:
             part: gr.filters.PartialSharing(gain=gain, shared=part, selection_seed=1, start_is_prediction=True)
             for part in SHARED
         }
-        self.of = {part: ps.Analysis(filt, model, net) for part, filt in self.filters.items()}
+        self.of = {part: ps.Analysis(model, net, filt) for part, filt in self.filters.items()}
         self.liars = self.of[8].top_degree(BYZANTINE)
         rng = np.random.default_rng(2)
         G = rng.normal(size=(BYZANTINE * M, BYZANTINE * M))
@@ -234,7 +234,7 @@ class Page:
             given = e.of[part].selection.at(0)
             given[e.liars] = s0
             moved = gr.filters.PartialSharing(gain=e.gain, selection=given.ravel().tolist(), start_is_prediction=True)
-            after = np.mean(ps.Analysis(moved, e.model, e.net).periodic_mse(e.random))
+            after = np.mean(ps.Analysis(e.model, e.net, moved).periodic_mse(e.random))
             lasting.append(after / e.steady(part, e.random) - 1)
         ratio = [best / start for start, _, best in gains]
         self.claim("6: designed selections raise the one-step damage", numbers(ratio) + " times", min(ratio) > 1)
@@ -336,7 +336,7 @@ def stability(model: gr.Model, net: gr.Network) -> list[list[str]]:
     rows = []
     found = []
     for part in SHARED:
-        a = ps.Analysis(gr.filters.PartialSharing(gain=0.5, shared=part, selection_seed=1), model, net)
+        a = ps.Analysis(model, net, gr.filters.PartialSharing(gain=0.5, shared=part, selection_seed=1))
         found.append((a.gamma_star(), a.gamma_lyapunov(), a.cycle_radius()))
     star, certified, radius = zip(*found, strict=True)
     rows.append(
@@ -359,9 +359,9 @@ def stability(model: gr.Model, net: gr.Network) -> list[list[str]]:
     radii = []
     for shift in (2, 1):
         give = {"selection": [1.0, 0.0, 0.0, 1.0], "shift": shift}
-        star_here = ps.Analysis(gr.filters.PartialSharing(gain=0.1, **give), pair, gr.Network.path(2)).gamma_star()
+        star_here = ps.Analysis(pair, gr.Network.path(2), gr.filters.PartialSharing(gain=0.1, **give)).gamma_star()
         at_star = gr.filters.PartialSharing(gain=star_here, **give)
-        radii.append(ps.Analysis(at_star, pair, gr.Network.path(2)).cycle_radius())
+        radii.append(ps.Analysis(pair, gr.Network.path(2), at_star).cycle_radius())
     rows.append(
         claim(
             "Theorem 1: stable at gamma*, two agents, static (tau = m) and rotating selections",
@@ -380,7 +380,7 @@ def main() -> list[list[str]]:
     folder = Path(args.output)
     folder.mkdir(parents=True, exist_ok=True)
     model, net = paper_model(), paper_network()
-    gamma_a = ps.Analysis(gr.filters.PartialSharing(gain=0.1), model, net).gamma_star(1.0)
+    gamma_a = ps.Analysis(model, net, gr.filters.PartialSharing(gain=0.1)).gamma_star(1.0)
     rows = []
     for name, gain in (("gamma*", gamma_a), ("0.5", 0.5)):
         page = Page(Experiment(gain, model, net), name, folder)

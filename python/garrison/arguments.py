@@ -1,15 +1,12 @@
 """Arguments of the public functions, read one by one: each is of the kind that is asked for, or refused by name."""
 
 import inspect
-import os
 from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from garrison import _core
-from garrison.files import contents
 from garrison.numeric import Array, numbers, real, whole_of
 from garrison.sizes import require_room
 from garrison.words import near, only, refusal, shown
@@ -112,48 +109,6 @@ def labelled(which: str, value: Any, kind: type[T], expected: str) -> dict[str, 
         if not isinstance(one, kind):
             raise refusal(f"{which}[{label!r}]", shown(one), expected)
     return dict(value)
-
-
-def path(which: str, value: Any) -> Path:
-    """The path of a file."""
-    if not isinstance(value, (str, os.PathLike)):
-        raise refusal(which, shown(value), "the path of a file")
-    return Path(value)
-
-
-def read(which: str, where: Any, expected: str) -> bytes:
-    """All bytes of a file. Raises IoError when it cannot be read."""
-    try:
-        return contents(path(which, where))
-    except (OSError, ValueError) as error:
-        raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected {expected}") from error
-
-
-def write(which: str, where: Any, data: bytes) -> None:
-    """A file of these bytes, created or replaced. Raises IoError when it cannot be written."""
-    try:
-        path(which, where).write_bytes(data)
-    except (OSError, ValueError) as error:
-        raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected the name of a file to write") from error
-
-
-def folder(which: str, where: Any) -> list[Path]:
-    """What is in a folder, which is made where there is none. Raises IoError when it cannot be made or read."""
-    try:
-        path(which, where).mkdir(parents=True, exist_ok=True)
-        return list(path(which, where).iterdir())
-    except (OSError, ValueError) as error:
-        raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected the name of a folder to write to") from error
-
-
-def _named(where: Any) -> str:
-    """A path in full, for messages."""
-    text = str(where)
-    return text if text.isprintable() else repr(text)
-
-
-def _why(error: OSError | ValueError) -> str:
-    return (error.strerror if isinstance(error, OSError) else None) or str(error)
 
 
 def choices(which: str, value: Any, known: tuple[str, ...]) -> list[str]:

@@ -139,7 +139,7 @@ def worst_covariance(
     require_order("worst_covariance", model, network, filter)
     if filter.name != "partial_sharing":
         raise refusal("filter", filter.name, "partial_sharing", "(37) is about its gains")
-    analysis = _core.partial_sharing.Analysis(filter, model, network)
+    analysis = _core.partial_sharing.Analysis(model, network, filter)
     return _core.partial_sharing.worst_covariance(
         analysis,
         agents,  # type: ignore[arg-type]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ from garrison import _core
 from garrison.families import family_of
 from garrison.longform import agent_names, common_unit, state_names
 from garrison.objects import described
+from garrison.paths import whole_file, whole_folder
 from garrison.storage import digest, require_digest
 from garrison.verdict import Verdict
 from garrison.words import refusal
@@ -123,7 +125,8 @@ def to_netcdf(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, 
         data[name] = data[name].astype(np.int8)
         data[name].attrs = {k: np.array(v, dtype=np.int8) if k == "flag_values" else v for k, v in about.items()}
     data.attrs = {k: str(v) for k, v in data.attrs.items()}
-    data.to_netcdf(path)
+    with whole_file(path) as temporary:
+        data.to_netcdf(temporary)
 
 
 def to_zarr(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, Any]) -> None:
@@ -131,7 +134,22 @@ def to_zarr(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, An
     _require_zarr("save")
     data = _marked(run, document, arrays)
     data.attrs = {k: str(v) for k, v in data.attrs.items()}
-    data.to_zarr(path, mode="w", consolidated=False, zarr_format=2)
+    with whole_folder(path, _is_run) as temporary:
+        data.to_zarr(temporary, mode="w", consolidated=False, zarr_format=2)
+
+
+#: files of zarr: descriptions, and pieces by their numbers
+_ZARR = re.compile(r"\.zattrs|\.zgroup|\.zarray|\d+(\.\d+)*")
+
+
+def _is_run(folder: Path) -> bool:
+    """Whether `to_zarr` wrote a folder, and nobody put anything else into it."""
+    try:
+        about = json.loads((folder / ".zattrs").read_text(encoding="utf-8"))
+        files = (one.name for one in folder.rglob("*") if not one.is_dir())
+        return _DOCUMENT in about and all(_ZARR.fullmatch(name) for name in files)
+    except (OSError, ValueError, TypeError):
+        return False
 
 
 def _require_zarr(which: str) -> None:

@@ -4,8 +4,9 @@ from pathlib import Path
 from typing import Any
 
 from garrison import _core, arguments, drivers
-from garrison.arguments import read, whole, write
+from garrison.arguments import whole
 from garrison.checks import Check, check
+from garrison.paths import read, write
 from garrison.record import Run
 from garrison.words import Hinting, hinted, hinted_methods, refusal, require_order, shown
 

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.alarms import Alarm, intervals
-from garrison.arguments import alone, entries, read, whole, write
-from garrison.arguments import path as path_of
+from garrison.arguments import alone, entries, whole
 from garrison.bound_kind import BoundKind
 from garrison.drawing import animated, drawn
 from garrison.families import family_of
 from garrison.notebook import of_run
 from garrison.objects import described, filter_of, model_of, network_of
+from garrison.paths import path as path_of
+from garrison.paths import read, write
 from garrison.recipe import code
 from garrison.verdict import Verdict
 from garrison.words import Hinting, count, hinted_methods, near, refusal

@@ -87,7 +87,7 @@ def resilience_per_byte(
     out = []
     for entries in range(1, model.states + 1) if shared is None else whole_numbers("shared", shared, 1):
         filt = PartialSharing(gain=gain, shared=entries, **params)
-        analysis = theory.Analysis(filt, model, network)
+        analysis = theory.Analysis(model, network, filt)
         radius = analysis.cycle_radius()
         mse = attacked = float("inf")
         if radius < 1:

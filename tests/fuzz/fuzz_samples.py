@@ -53,7 +53,7 @@ def samples() -> dict[str, list[Any]]:
     assert set(GOOD_FILTERS) <= set(names), "GOOD_FILTERS: an entry of a family that does not exist"
     filters = [gr.filters.make_filter(name, GOOD_FILTERS.get(name, {})) for name in names]
     shared = next(f for f in filters if f.name == "partial_sharing")
-    analysis = gr.partial_sharing.Analysis(shared, model, network)
+    analysis = gr.partial_sharing.Analysis(model, network, shared)
     structural = next(f for f in filters if f.name == "structural")
     weights = network.max_degree_weights()
     wind = np.random.default_rng(0).normal(size=(900, 3))
@@ -78,7 +78,7 @@ def samples() -> dict[str, list[Any]]:
         ],
         "rdkf.Setting": [_core.rdkf.Setting(model, network)],
         "structural.Setting": [
-            gr.structural.setting(structural, model, network),
+            gr.structural.setting(model, network, structural),
             gr.structural.Setting(A=np.eye(2), C=np.eye(2), W=np.eye(2), U=np.eye(2)),
         ],
         "platoon.Setting": [

@@ -13,7 +13,7 @@ PACKAGE = ROOT / "python" / "garrison"
 LAYERS = (
     ("_core",),
     ("words", "verdict", "bound_kind", "drawing", "files", "result"),
-    ("numeric", "sizes", "storage", "objects", "filters", "notebook", "alarms"),
+    ("numeric", "sizes", "storage", "paths", "objects", "filters", "notebook", "alarms"),
     ("arguments", "parameters", "clean", "families", "tables", "longform", "labelled"),
     ("attacks", "varying", "varying_network", "certifying"),
     ("record", "recipe", "expected", "checks", "doubts", "refuted"),

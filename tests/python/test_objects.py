@@ -167,7 +167,7 @@ def test_settings_and_results_are_kept() -> None:
     with_constructor = [
         gr.saturation.Setting(agents=3, a=0.9, lambda0=1 / 3, contraction=0.1, attacked=1),
         gr.platoon.Setting(vehicles=6, range=2, period=0.1, attacked=1, eps=0.1, mu=0.1, q=1.0, beta=2.0),
-        gr.structural.setting(gr.filters.Structural(), model, ring),
+        gr.structural.setting(model, ring, gr.filters.Structural()),
         gr.structural.Setting(A=np.eye(2), C=np.eye(2), W=np.eye(2), U=np.eye(2)),
         pattern,
         gr.structure.System(gr.structure.Pattern.of(np.eye(3))),
@@ -362,9 +362,9 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: gr.filters.Saturation(3.0), r"Saturation: got 1 arguments without a name"),
     (lambda: gr.lambda0([1e308] * 4, 1), r"lambda0.C: got 1e\+308, expected finite numbers"),
     (lambda: gr.observable([[1, 2]], "x"), r"observable.C: got 'x', expected a matrix"),
-    (lambda: gr.structural.setting(gr.filters.Dkf(), MODEL, RING), r"filter: got dkf, expected structural"),
+    (lambda: gr.structural.setting(MODEL, RING, gr.filters.Dkf()), r"filter: got dkf, expected structural"),
     (
-        lambda: gr.structural.setting(gr.filters.Structural(), MODEL, gr.Network.ring(4)),
+        lambda: gr.structural.setting(MODEL, gr.Network.ring(4), gr.filters.Structural()),
         r"network: got 4 agents, expected 3",
     ),
     (lambda: _core.rdkf.Setting(MODEL, gr.Network.ring(4)), r"network: got 4 agents, expected 3"),

@@ -3,7 +3,6 @@
 import contextlib
 import hashlib
 import json
-import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from garrison import _core
+from garrison.paths import umask, whole_file
 from garrison.words import refusal
 
 #: names and hashes of the files that a run wrote
@@ -31,16 +31,9 @@ def new_file(name: str, force: bool) -> Path:
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` make a temporary file beside `path`, and rename it."""
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.absolute().parent)
-    os.close(handle)
-    temporary = Path(name)
-    try:
+    """Let `write` make a temporary file beside `path`, which then takes its place."""
+    with whole_file(path) as temporary:
         write(temporary)
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 @contextlib.contextmanager
@@ -70,7 +63,7 @@ def output_folder(path: Path, force: bool) -> Iterator[Path]:
 def _swap(temporary: Path, target: Path, files: list[str], force: bool) -> None:
     old = _ours(target, force)  # once more: the run may have taken hours
     if not target.exists():
-        temporary.chmod(0o777 & ~_umask())
+        temporary.chmod(0o777 & ~umask())
         temporary.rename(target)
         return
     strangers = [name for name in files if name not in old and (target / name).exists()]
@@ -121,12 +114,6 @@ def _hash(path: Path) -> str:
     if not path.is_file():
         return "not a file"
     return hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def write_picture(target: Path, figure: Any) -> None:

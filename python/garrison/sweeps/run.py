@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from garrison import _core, arguments
+from garrison import _core, arguments, paths
 from garrison.drawing import drawn
 from garrison.result import Result
 from garrison.scenario import read_document
@@ -126,7 +126,7 @@ def sweep(
     InvalidInput
         Something does not fit, or `out` holds another sweep.
     """
-    path = arguments.path("scenario", scenario).absolute()
+    path = paths.path("scenario", scenario).absolute()
     independent, progress = arguments.flag("independent", independent), arguments.callback("progress", progress)
     if client is not None and not hasattr(client, "submit"):
         raise refusal("client", shown(client), "a dask.distributed Client, or None")
@@ -147,7 +147,7 @@ def sweep(
         block = arguments.whole("block", block, 1)
     hashes = [_hash(document, point, path) for point in points]
     seeds = [_seed(document, h) if independent else None for h in hashes]
-    folder = arguments.path("out", out).absolute()
+    folder = paths.path("out", out).absolute()
     plan = {
         "scenario": digest(document, path.parent),
         "version": _core.__version__,
@@ -188,10 +188,10 @@ def _named(job: Task, hashed: str) -> Task:
 
 def _claimed(folder: Path, plan: dict[str, Any], path: Path) -> int | None:
     """Make the folder, or see that it holds the same sweep; its block where it does."""
-    inside = arguments.folder("out", folder)
+    inside = paths.folder("out", folder)
     parts = folder / "parts"
     if not inside or inside == [parts]:  # ended before its manifest was written
-        arguments.folder("out", parts)
+        paths.folder("out", parts)
         return None
     try:
         found = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
@@ -205,7 +205,7 @@ def _claimed(folder: Path, plan: dict[str, Any], path: Path) -> int | None:
         if found.get(key) != value:
             what = f"{folder}, whose sweep differs in {key}"
             raise refusal("out", what, "a new folder, or the same sweep", f"it was made from {found.get('path', path)}")
-    arguments.folder("out", parts)
+    paths.folder("out", parts)
     return block
 
 

@@ -87,7 +87,7 @@ class Case:
 
     def analysis(self, **changes: Any) -> theory.Analysis:
         """Its analysis."""
-        return theory.Analysis(self.filter(**changes), self.model, self.network)
+        return theory.Analysis(self.model, self.network, self.filter(**changes))
 
     @cached_property
     def base(self) -> theory.Analysis:

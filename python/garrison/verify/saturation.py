@@ -255,7 +255,7 @@ def _baselines(i: Inputs, expected: dict[str, Any]) -> dict[str, Any]:
         run = _run(i, lfre)
         out["lfre_x_hat"] = _estimate(run)
         out["lfre_source"] = [bool(v) for v in run.signals["source"][0, 0]]
-        out["lfre_parents"] = _core.lfre_parents(lfre, model, net)
+        out["lfre_parents"] = _core.lfre_parents(model, net, lfre)
     return out
 
 
