@@ -70,8 +70,13 @@ _WAITS = {
 
 
 def waits(filter: _core.Filter) -> list[tuple[str, int, str]]:
-    """Parameter, samples that a run needs for it to do anything, and what is absent in a shorter one."""
-    found = []
+    """Parameter, samples that a run needs for it to do anything, and what is absent in a shorter one.
+
+    What the attributes of a filter of one's own mean nobody else knows.
+    """
+    found: list[tuple[str, int, str]] = []
+    if filter.own:
+        return found
     for name, (_, absent) in _WAITS.items():
         value = filter.params.get(name)
         if isinstance(value, int):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from garrison import _core, doubts
 from garrison.bound_kind import counts
 from garrison.drivers import KEEP, replay, require_room, simulate
-from garrison.families import family_of
+from garrison.families import accuses, family_of
 from garrison.kalman import central_kalman, local_kalman
 from garrison.record import Run
 from garrison.scenario import Scenario
@@ -67,7 +67,7 @@ class Row:
 
     def _accusations(self, run: Run) -> dict[str, Any]:
         """Who was accused first when, in the first trial; false alarms of all trials where the truth is declared."""
-        if not family_of(run.filter).accuses(run.filter.params):
+        if not accuses(run.filter, run.accusations):
             return {}
         names = self.scenario.names
         accused = [run.first_accused(k) for k in range(run.shape[0])]

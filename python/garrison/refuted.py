@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.bound_kind import BoundKind
+from garrison.families import accuses, family_of
 
 Array = NDArray[np.float64]
 #: times `false_alarm` that most sensors must exceed, and standard deviations of a rate beyond that
@@ -25,7 +26,7 @@ def of_rate(filter: _core.Filter, statistic: Array | None, threshold: Array | No
 
     The median over sensors counts, so that a few liars raise no doubt about the noise.
     """
-    asked = filter.params.get("false_alarm")
+    asked = None if filter.own else filter.params.get("false_alarm")  # what one's own means nobody else knows
     if not isinstance(asked, float) or statistic is None or threshold is None:
         return []
     tests, above = _core.exceedances(statistic, threshold)
@@ -101,13 +102,13 @@ def of_bounds(
     attacked: most sources that may lie at a time, where the filter does not say it of its sensors. inputs: of the run,
     the last row leads to the last sample. constant: A holds at all times, and all inputs are known.
     """
-    told = filter.params.get("attacked")
+    told = None if filter.own else filter.params.get("attacked")
     own = isinstance(told, int) and not shared_sources(model)  # it counts agents
     liars = told if own else attacked
     bounds = np.asarray(model.measurement_bound, dtype=float)
     if measurements is None or liars is None or len(bounds) != model.agents:
         return []
-    for_good = bool(filter.params.get("detector", False))
+    for_good = family_of(filter).proves and accuses(filter, ())  # whoever has lied once is left out
     most = _pairs(model, measurements[0], bounds, for_good=for_good) if own else 0
     if most > liars:
         return [

@@ -13,7 +13,7 @@ from garrison import _core
 from garrison.comparison.baselines import BASELINES, DISTRIBUTED, Plant, plant_of
 from garrison.comparison.table import Row, empty
 from garrison.drivers import simulate
-from garrison.families import family_of
+from garrison.families import accuses
 from garrison.kalman import central_kalman, local_kalman
 from garrison.prepared import prepare
 from garrison.record import Run
@@ -105,7 +105,7 @@ class Job:
         return {name: float(np.nanquantile(since, share)) for name, share in shares.items()}
 
     def _alarms(self, run: Run, attack: _core.Attack | None) -> Row:
-        if not family_of(run.filter).accuses(run.filter.params):
+        if not accuses(run.filter, run.accusations):
             return {}
         hit = self.liars if attack is not None else []
         first: list[dict[int, int]] = [{} for _ in range(self.trials)]  # accusations that are right

@@ -1,8 +1,16 @@
 """What a filter's family says of its own runs, in one place: nobody else asks for a family's name or parameters."""
 
+from collections.abc import Collection
+from typing import Any
+
 from garrison import _core
 from garrison.families.family import Family
 from garrison.families.platoon import PLATOON, PLATOON_BASELINE
+
+
+def _never(params: dict[str, Any]) -> bool:
+    return False
+
 
 _SATURATION = Family(
     accuses=lambda params: bool(params["detector"]),
@@ -11,20 +19,28 @@ _SATURATION = Family(
 )
 _FAMILIES = {
     "saturation": _SATURATION,
-    "scalar_gain": Family(contest=lambda liars, threshold: {"rounds": 6}),
-    "lfre": Family(contest=lambda liars, threshold: {"faulty": liars}),
-    "partial_sharing": Family(contest=lambda liars, threshold: {"gain": 0.1}),
+    "scalar_gain": Family(accuses=_never, contest=lambda liars, threshold: {"rounds": 6}),
+    "lfre": Family(accuses=_never, contest=lambda liars, threshold: {"faulty": liars}),
+    "partial_sharing": Family(accuses=_never, contest=lambda liars, threshold: {"gain": 0.1}),
     "structural": Family(accuses=lambda params: True, contest=lambda liars, threshold: {"isolate": True}),
     "platoon": PLATOON,
     "platoon_baseline": PLATOON_BASELINE,
 }
 _PLAIN = Family()
 
-__all__ = ["Family", "family_called", "family_of"]
+__all__ = ["Family", "accuses", "family_called", "family_of"]
+
+
+def accuses(filter: _core.Filter, accusations: Collection[Any]) -> bool:
+    """Whether it is a fact about `filter` whom it has accused: it may accuse, or did so in a run."""
+    told = family_of(filter).accuses
+    return bool(accusations) if told is None else told(filter.params)
 
 
 def family_of(filter: _core.Filter) -> Family:
-    """What the family of `filter` says; a family that says nothing accuses nobody and has one plant for all."""
+    """What the family of `filter` says; one that says nothing has one plant for all, as filters of one's own have."""
+    if filter.own:
+        return _PLAIN
     return family_called(filter.name)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from garrison import _core
 from garrison.drivers import replay, simulate
-from garrison.families import family_of
+from garrison.families import accuses
 from garrison.prepared import Prepared, prepare
 from garrison.record import Run
 from garrison.scenario import Scenario, read_scenario
@@ -126,7 +126,7 @@ def _summary(scenario: Scenario, run: Run, k: int, attacked: bool) -> dict[str, 
             known = np.isfinite(bound) & np.isfinite(run.error[k, 1:])
             if known.any():
                 out["inside_bound"] = float((run.error[k, 1:] <= bound)[known].mean())
-    if family_of(run.filter).accuses(run.filter.params):
+    if accuses(run.filter, run.accusations):
         accused = run.first_accused(k)
         hit = scenario.hit if attacked else []
         found = [t for a, t in accused.items() if a in hit]
