@@ -18,8 +18,8 @@ using namespace garrison::mpi;
 namespace {
 
 constexpr const char* kUsage =
-    "usage: mpirun -n R garrison-mpi run SCENARIO [-o FILE.nc] [--checkpoint SAMPLES] [--resume] [--force] "
-    "[--hash]\n"
+    "usage: mpirun -n R garrison-mpi run SCENARIO [-o FILE.nc] [--halo ROUNDS] [--checkpoint SAMPLES] "
+    "[--resume] [--force] [--hash]\n"
     "       garrison-mpi partition SCENARIO --ranks R\n"
     "       garrison-mpi whole SCENARIO [--threads T]\n"
     "\n"
@@ -28,6 +28,8 @@ constexpr const char* kUsage =
     "  whole      runs it with the engine of one process and prints its hash, to compare\n"
     "\n"
     "  -o            results, netCDF\n"
+    "  --halo        exchange every so many rounds of a sample; each rank works out what others do in "
+    "between\n"
     "  --checkpoint  keep the states of all agents every so many samples\n"
     "  --resume      go on from the last checkpoint, on any number of ranks\n"
     "  --force       replace results that are there\n"
@@ -68,6 +70,8 @@ Words read_words(int count, char** words) {
       out.run.results = value();
     else if (runs && word == "--checkpoint")
       out.run.checkpoint = number(word, value());
+    else if (runs && word == "--halo")
+      out.run.halo = number(word, value());
     else if (runs && word == "--resume")
       out.run.resume = true;
     else if (runs && word == "--force")

@@ -70,11 +70,14 @@ class Share {
     MPI_Bcast(owners.of.data(), scenario_.agents(), MPI_INT32_T, 0, MPI_COMM_WORLD);
     together([&] {
       ids_ = partition::agents_of(owners.of, exchange_.rank());
-      region_ = partition::region_of(scenario_.agents(), ids_, scenario_.ground->neighbours(ids_), owners.of,
-                                     exchange_.rank());
+      const int rounds = std::max(1, partition::rounds_of(scenario_.family, scenario_.params));
+      region_ = partition::region_of(
+          scenario_.agents(), ids_,
+          [&](std::span<const int> ids) { return scenario_.ground->neighbours(ids); }, owners.of,
+          exchange_.rank(), std::min(rounds, static_cast<int>(command_.halo)));
     });
     if (partition::needs_connected(scenario_.family)) partition::require_connected(region_, exchange_);
-    std::int64_t counts[] = {region_.ghosts(), static_cast<std::int64_t>(region_.heard.size())};
+    std::int64_t counts[] = {region_.ghosts(), static_cast<std::int64_t>(region_.first[ids_.size()])};
     double most[] = {static_cast<double>(region_.own)};
     exchange_.sum(counts);
     exchange_.largest(most);
@@ -83,6 +86,9 @@ class Share {
         "%d agents, %.1f neighbours each; %d ranks (%s): at most %.0f agents on one, ghosts %.3f %%\n",
         scenario_.agents(), static_cast<double>(counts[1]) / scenario_.agents(), exchange_.ranks(),
         owners.made.c_str(), most[0], 100.0 * static_cast<double>(counts[0]) / scenario_.agents());
+    if (command_.halo > 1)
+      std::printf("one exchange for every %d of the rounds of a sample%s\n", region_.depth(),
+                  region_.depth() < command_.halo ? ", which has no more" : "");
     std::fflush(stdout);
   }
 

@@ -12,6 +12,7 @@ namespace garrison::mpi {
 struct RunCommand {
   std::string scenario;
   std::string results;          ///< empty: none are written
+  std::int64_t halo = 1;        ///< rounds per exchange, where a sample has as many
   std::int64_t checkpoint = 0;  ///< samples between checkpoints; 0 = none
   bool resume = false;
   bool force = false;  ///< replace results that are there

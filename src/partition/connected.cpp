@@ -45,17 +45,21 @@ std::vector<std::int32_t> reached(const Region& r, Exchange& exchange,
   for (int place = 0; place < r.own; ++place) take(place, r.ids[static_cast<std::size_t>(place)]);
   std::vector<std::int32_t> out(r.packed.size());
   std::vector<std::int32_t> in(static_cast<std::size_t>(r.ghosts()));
+  std::vector<std::int32_t> of_ghost(in.size());
   for (std::int64_t changes[] = {1}; changes[0] > 0; exchange.sum(changes)) {
     for (std::size_t k = 0; k < out.size(); ++k)
       out[k] = least[static_cast<std::size_t>(piece[static_cast<std::size_t>(r.packed[k])])];
     exchange.begin(reinterpret_cast<const std::byte*>(out.data()), reinterpret_cast<std::byte*>(in.data()),
                    sizeof(std::int32_t));
     exchange.finish();
+    for (std::size_t k = 0; k < in.size(); ++k)
+      of_ghost[static_cast<std::size_t>(r.arrival[k] - r.own)] = in[k];
     changes[0] = 0;
     for (int place = r.interior; place < r.own; ++place)
       for (std::size_t e = r.first[static_cast<std::size_t>(place)];
            e < r.first[static_cast<std::size_t>(place) + 1]; ++e)
-        if (r.heard[e] >= r.own) changes[0] += take(place, in[static_cast<std::size_t>(r.heard[e] - r.own)]);
+        if (r.heard[e] >= r.own)
+          changes[0] += take(place, of_ghost[static_cast<std::size_t>(r.heard[e] - r.own)]);
   }
   return least;
 }

@@ -122,6 +122,13 @@ std::string needs_whole(const std::string& family, const ParamMap& params, int a
   return agents <= kDesignedWhole ? "covariances of all agents depend on each other" : "";
 }
 
+int rounds_of(const std::string& family, const ParamMap& params) {
+  require_family(family);
+  if (family == "saturation") return parse_params<Saturation::Params>(family, params).rounds;
+  if (family == "scalar_gain") return parse_params<ScalarGain::Params>(family, params).rounds;
+  return 1;
+}
+
 bool needs_connected(const std::string& family) {
   return family != "partial_sharing" && family != "structural";
 }

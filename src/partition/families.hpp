@@ -24,6 +24,9 @@ inline constexpr int kDesignedWhole = 20000;
 /// @throws InvalidInput as `require_family`, and for parameters that do not fit
 std::string needs_whole(const std::string& family, const ParamMap& params, int agents);
 
+/// Exchanges of messages that a sample needs, one after the other. @throws InvalidInput as `needs_whole`
+int rounds_of(const std::string& family, const ParamMap& params);
+
 /// Whether the family's design refuses a network that is not connected (partition/connected.hpp).
 bool needs_connected(const std::string& family);
 

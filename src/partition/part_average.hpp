@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Families whose rounds only average, on one rank: all own agents in one go, as engine/batch/averaging.hpp
-// does for a whole network, with the interior averaged while the ghosts of the round travel.
+// does for a whole network, with the interior averaged while ghosts travel. Where these are known several
+// hops away, their rounds are worked out here too, and one exchange is enough for as many rounds.
 #pragma once
 
 #include <cstdint>
@@ -75,6 +76,10 @@ class PartAverage {
     }
   };
   void prepare();
+  /// Sends the rows of own agents that others hear; those of one round ago too where `both`.
+  void send(bool both);
+  /// Ends `send`.
+  void receive(bool both);
   double* row(Aligned<double>& of, std::size_t place) {
     return of.data() + place * static_cast<std::size_t>(width_);
   }
@@ -85,9 +90,11 @@ class PartAverage {
   Aligned<double> now_;
   Aligned<double> next_;
   Aligned<double> out_;
+  Aligned<double> in_;  // where ghosts are more than one hop away, else they are received in place
   std::vector<std::int32_t> neighbour_;  // width times the places that are heard
-  std::vector<kernel::Run> runs_;        // of interior agents, then of the others
+  std::vector<kernel::Run> runs_;        // of interior agents, of the other own ones, of ghosts by ring
   std::size_t interior_ = 0;             // how many are of interior agents
+  std::vector<std::size_t> within_;      // how many are of places within 0, 1, .. hops of own agents
   std::int64_t lost_ = 0;
   bool gathered_ = false;  // `now_` is up to date
   bool stale_ = false;     // the states are not

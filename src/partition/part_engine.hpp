@@ -12,6 +12,8 @@
 #include "garrison/core/filter.hpp"
 #include "garrison/kernel/aligned.hpp"
 #include "garrison/wire/archive.hpp"
+#include "partition/between_rounds.hpp"
+#include "partition/block.hpp"
 #include "partition/part_average.hpp"
 #include "partition/part_runner.hpp"
 #include "partition/post.hpp"
@@ -47,7 +49,7 @@ class PartEngine final : public PartRunner {
         names_(std::move(names)),
         post_(region, exchange, names_.of, model.states(), F::rounds(*gains_)),
         average_(region, exchange, model.states()),
-        states_(static_cast<std::size_t>(region.own)),
+        states_(static_cast<std::size_t>(region.listed())),
         places_(states_.size()) {
     for (int k = 0; k < region.own; ++k) {
       Place& place = places_[static_cast<std::size_t>(region.sorted[static_cast<std::size_t>(k)])];
@@ -70,9 +72,10 @@ class PartEngine final : public PartRunner {
     average_.forget();
     post_.connect(link);
     const Vec<n> start = x0;
-    for (int k = 0; k < region_.own; ++k)
-      F::template init<n>(local(k), *gains_, start, state(k), post_.outgoing()[k]);
-    post_.fill([&](std::size_t place, Message& m) { shape_of(place, first_sample<F>(), m); });
+    each(0, region_.listed(),
+         [&](int k, Message& out) { F::template init<n>(local(k), *gains_, start, state(k), out); });
+    post_.fill(region_.depth() > 1 ? between_rounds_bytes(state(0)) : 0,
+               [&](std::size_t place, Message& m) { shape_of(place, first_sample<F>(), m); });
     overflows_ = resets_ = 0;
   }
 
@@ -125,7 +128,10 @@ class PartEngine final : public PartRunner {
   /// Place of the k-th own agent.
   int at(int k) const { return region_.sorted[static_cast<std::size_t>(k)]; }
   State& state(int place) { return states_[static_cast<std::size_t>(place)]; }
-  std::span<State> states() const { return {const_cast<State*>(states_.data()), states_.size()}; }
+  /// Of the own agents.
+  std::span<State> states() const {
+    return {const_cast<State*>(states_.data()), static_cast<std::size_t>(region_.own)};
+  }
   Local local(int place) const {
     const Place& p = places_[static_cast<std::size_t>(place)];
     return {names_.of[static_cast<std::size_t>(place)],
@@ -153,7 +159,8 @@ class PartEngine final : public PartRunner {
     for (int k = begin; k < end; ++k) action(k, out[k]);
   }
   std::int64_t lost_here() const {
-    return std::count_if(states_.begin(), states_.end(),
+    const auto own = states();
+    return std::count_if(own.begin(), own.end(),
                          [](const State& s) { return !usable<n>(F::template estimate<n>(s)); });
   }
 
@@ -167,7 +174,7 @@ class PartEngine final : public PartRunner {
     }
     exchange_.sum(sensors);
     if (sensors[0] <= most) return;
-    for (State& s : states_) garrison::uncover<F, n>(*gains_, s);
+    for (State& s : states()) garrison::uncover<F, n>(*gains_, s);
   }
 
   /// A sample of a family whose rounds only average, over perfect links.
@@ -176,12 +183,13 @@ class PartEngine final : public PartRunner {
     average_.template sense<F, n>(
         *gains_, A_.data(), t, states(), [&](int k) { return local(k); },
         [&](int k) { return measured(k, y); });
-    const auto intact = std::count_if(states_.begin(), states_.end(), [&](const State& s) {
-      return F::template same_side_information<n>(s, states_[0]);
+    const auto own = states();
+    const auto same = std::count_if(own.begin(), own.end(), [&](const State& s) {
+      return F::template same_side_information<n>(s, own[0]);
     });
     // Whether all agents of the network carry the same side information: all here alike, and as on rank 0.
-    std::int64_t counts[] = {average_.lost(), static_cast<std::int64_t>(states_.size()) - intact,
-                             states_[0].intact ? 1 : 0, F::template bare<n>(states_[0]) ? 0 : 1};
+    std::int64_t counts[] = {average_.lost(), region_.own - same, own[0].intact ? 1 : 0,
+                             F::template bare<n>(own[0]) ? 0 : 1};
     exchange_.sum(counts);
     const bool alike = counts[1] == 0 && (counts[2] == 0 || counts[2] == exchange_.ranks()) && counts[3] == 0;
     if (counts[0] == 0 && alike) {
@@ -193,6 +201,19 @@ class PartEngine final : public PartRunner {
     each(0, region_.own, [&](int k, Message& out) { F::template send<n>(state(k), out); });
     post_.post();
     rounds(t, counts[0] == 0);
+  }
+
+  /// Messages of own agents, and their states where others work out their rounds too.
+  void send() {
+    post_.send([&](int place, std::span<std::byte> out) {
+      if (region_.depth() > 1) write_between_rounds(state(place), out);
+    });
+  }
+  void receive(std::int64_t t) {
+    post_.receive([&](std::size_t place, Message& m) { shape_of(place, t, m); },
+                  [&](int place, std::span<const std::byte> in) {
+                    if (place < region_.listed()) read_between_rounds(in, names_.agents, state(place));
+                  });
   }
 
   /// `plain`: every estimate of the network can be worked with.
@@ -207,14 +228,19 @@ class PartEngine final : public PartRunner {
       const auto fuse = [&](int k, Message& out) {
         F::template fuse<n>(local(k), *gains_, state(k), post_.inbox(k), round, out);
       };
-      post_.send();
-      const bool overlapped = post_.as_wired(plain);  // faults and lies take the message of every ghost
-      if (overlapped) each(0, region_.interior, fuse);
-      post_.receive([&](std::size_t place, Message& m) { shape_of(place, t, m); });
-      post_.collect(t, round, plain, [&](int receiver, std::size_t sender, Message& m) {
+      const Block block(round, F::rounds(*gains_), region_.depth());
+      // Faults and lies take the message of every ghost.
+      const bool overlapped = block.first && post_.as_wired(plain);
+      if (block.first) {
+        send();
+        if (overlapped) each(0, region_.interior, fuse);
+        receive(t);
+      }
+      const int end = region_.rings[block.reach];
+      post_.collect(t, round, plain, end, [&](int receiver, std::size_t sender, Message& m) {
         garrison::shape<F, n>(local(receiver), *gains_, names_.of[sender], t, m);
       });
-      each(overlapped ? region_.interior : 0, region_.own, fuse);
+      each(overlapped ? region_.interior : 0, end, fuse);
       post_.post();
     }
     if (lost.empty()) return;
@@ -231,7 +257,7 @@ class PartEngine final : public PartRunner {
   Names names_;
   Post<Message> post_;
   mutable PartAverage average_;
-  Aligned<State> states_;  // by place
+  Aligned<State> states_;  // by place, of ghosts too where their rounds are worked out here
   std::vector<Place> places_;
   Aligned<double> rows_;  // of all own C_i
   std::int64_t overflows_ = 0;

@@ -36,7 +36,7 @@ class Post {
     if (link != nullptr) {
       from_.clear();
       to_.clear();
-      for (int k = 0; k < region_.own; ++k)
+      for (int k = 0; k < region_.listed(); ++k)
         for (std::size_t e = region_.first[at(k)]; e < region_.first[at(k) + 1]; ++e) {
           from_.push_back(region_.ids[static_cast<std::size_t>(region_.heard[e])]);
           to_.push_back(region_.ids[at(k)]);
@@ -48,9 +48,10 @@ class Post {
     messages_.resize(depth_ * places() + lies);
   }
   /// Copies the initial messages of the own agents everywhere, so that later copies find their memory.
-  /// `shape(place, message)` gives a message the form that its sender's have.
+  /// `shape(place, message)` gives a message the form that its sender's have; `state`: bytes that are sent
+  /// with each.
   template <class Shape>
-  void fill(const Shape& shape) {
+  void fill(std::size_t state, const Shape& shape) {
     for (std::size_t k = static_cast<std::size_t>(region_.own); k < messages_.size(); ++k) {
       if (k < places()) {
         messages_[k] = messages_[0];
@@ -62,9 +63,10 @@ class Post {
     std::int64_t own_most = 0;
     for (std::size_t k = 0; k < places(); ++k)
       own_most = std::max(own_most, static_cast<std::int64_t>(raw_size(messages_[k])));
-    double most[] = {static_cast<double>(own_most)};
+    double most[] = {static_cast<double>(own_most), static_cast<double>(state)};
     exchange_.largest(most);
-    record_ = (static_cast<std::size_t>(most[0]) + 7) / 8 * 8;
+    message_ = static_cast<std::size_t>(most[0]);
+    record_ = (message_ + static_cast<std::size_t>(most[1]) + 7) / 8 * 8;
     out_.resize(record_ * region_.packed.size());
     in_.resize(record_ * static_cast<std::size_t>(region_.ghosts()));
   }
@@ -73,25 +75,30 @@ class Post {
   Message* outgoing() { return messages_.data() + base(posted_); }
   void post() { ++posted_; }
 
-  /// Sends the current messages of the own agents to the ranks that hear them.
-  void send() {
+  /// Sends the current messages of the own agents to the ranks that hear them; `state(place, bytes)` writes
+  /// what goes with each.
+  template <class State>
+  void send(const State& state) {
     if (senders_.empty())  // families that average all at once may never need them
       for (const std::int32_t place : region_.heard)
         senders_.push_back(names_[static_cast<std::size_t>(place)]);
     const Message* const now = current();
-    for (std::size_t k = 0; k < region_.packed.size(); ++k)
+    for (std::size_t k = 0; k < region_.packed.size(); ++k) {
       write_raw(now[region_.packed[k]], out_.data() + k * record_);
+      state(region_.packed[k], std::span(out_).subspan(k * record_ + message_, record_ - message_));
+    }
     exchange_.begin(out_.data(), in_.data(), record_);
   }
-  /// Ends `send`; `shape(place, message)` as in `fill`.
-  template <class Shape>
-  void receive(const Shape& shape) {
+  /// Ends `send`; `shape(place, message)` as in `fill`, `state(place, bytes)` reads.
+  template <class Shape, class State>
+  void receive(const Shape& shape, const State& state) {
     exchange_.finish();
     Message* const now = messages_.data() + base(posted_ - 1);
     for (std::size_t k = 0; k < static_cast<std::size_t>(region_.ghosts()); ++k) {
-      const std::size_t place = static_cast<std::size_t>(region_.own) + k;
-      shape(place, now[place]);
+      const std::int32_t place = region_.arrival[k];
+      shape(at(place), now[place]);
       read_raw(in_.data() + k * record_, now[place]);
+      state(place, std::span<const std::byte>(in_).subspan(k * record_ + message_, record_ - message_));
     }
   }
 
@@ -99,37 +106,43 @@ class Post {
   /// `send`.
   bool as_wired(bool plain) { return as_wired_ = perfect() && plain; }
 
-  /// Prepares the inboxes of one round from the current messages. `plain`: no estimate of the whole network
+  /// Prepares the inboxes of one round, of the places below `end`, from the current messages; counts what own
+  /// agents get. `plain`: no estimate of the whole network
   /// is lost. `shape(receiver, sender, message)`: places; derives what a message does not carry.
   template <class Shape>
-  void collect(std::int64_t t, int round, bool plain, const Shape& shape) {
+  void collect(std::int64_t t, int round, bool plain, int end, const Shape& shape) {
     as_wired_ = perfect() && plain;
     if (as_wired_) return;
     delivered_.resize(region_.heard.size());
     delivered_from_.resize(region_.heard.size());
-    received_.resize(static_cast<std::size_t>(region_.own));
+    received_.resize(at(region_.listed()));
     deliverable_.resize(places());
     for (std::size_t k = 0; k < places(); ++k) deliverable_[k] = bounded(current()[k]) ? 1 : 0;
-    if (link_ != nullptr) link_->decide(t, round, {from_, to_}, fates_);
+    const std::size_t links = region_.first[at(end)];
+    if (link_ != nullptr)
+      link_->decide(t, round, {std::span(from_).first(links), std::span(to_).first(links)},
+                    std::span(fates_).first(links));
     LinkCounters counters;
+    LinkCounters of_ghosts;  // their own ranks count these
     std::size_t forged = depth_ * places();
-    for (int k = 0; k < region_.own; ++k) {
+    for (int k = 0; k < end; ++k) {
+      LinkCounters& counted = k < region_.own ? counters : of_ghosts;
       std::size_t next = region_.first[at(k)];
       for (std::size_t e = region_.first[at(k)]; e < region_.first[at(k) + 1]; ++e) {
         const Fate fate = link_ == nullptr ? Fate::delivered : fates_[e];
-        counters.lost += fate == Fate::lost ? 1 : 0;
-        counters.late += fate == Fate::late ? 1 : 0;
+        counted.lost += fate == Fate::lost ? 1 : 0;
+        counted.late += fate == Fate::late ? 1 : 0;
         if (fate != Fate::delivered) continue;
         const auto sender = static_cast<std::size_t>(region_.heard[e]);
         if (lies_ && link_->lies(from_[e])) {
           const Hop hop{t, round, from_[e], to_[e], states_};
-          if (!forge(hop, sender, k, messages_[forged], counters, shape)) continue;
+          if (!forge(hop, sender, k, messages_[forged], counted, shape)) continue;
           delivered_[next] = static_cast<std::uint32_t>(forged++);
         } else if (deliverable_[sender] != 0) {
           delivered_[next] = static_cast<std::uint32_t>(base(posted_ - 1) + sender);
-          ++counters.sent;
+          ++counted.sent;
         } else {
-          ++counters.refused;
+          ++counted.refused;
           continue;
         }
         delivered_from_[next++] = senders_[e];
@@ -193,7 +206,8 @@ class Post {
   std::vector<Message> messages_;
   std::vector<std::byte> out_;
   std::vector<std::byte> in_;
-  std::size_t record_ = 0;  // bytes per message between ranks
+  std::size_t message_ = 0;  // bytes of a message between ranks
+  std::size_t record_ = 0;   // and of what goes with it
   std::size_t depth_ = 2;
   std::uint64_t posted_ = 0;
   bool as_wired_ = true;

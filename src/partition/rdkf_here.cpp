@@ -26,7 +26,7 @@ class Ghosts final : public rdkf::Borders {
     exchange_.finish();
     for (int k = 0; k < region_.ghosts(); ++k)
       std::copy_n(in_.data() + static_cast<std::size_t>(k) * numbers_, numbers_,
-                  at(P, region_.own + k).data());
+                  at(P, region_.arrival[static_cast<std::size_t>(k)]).data());
   }
   double largest(double value) override {
     exchange_.largest(std::span(&value, 1));

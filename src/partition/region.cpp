@@ -2,11 +2,12 @@
 #include "partition/region.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "garrison/engine/plan/ordering.hpp"
+#include "partition/surround.hpp"
 
 namespace garrison::partition {
 namespace {
@@ -42,37 +43,6 @@ void sort_windows(std::vector<int>& order, int interior, const Neighbours& neigh
   }
 }
 
-/// Public ids of the ghosts by owner, and the places of what each of their owners hears.
-void find_ghosts(Region& r, std::span<const int> mine, const Neighbours& neighbours,
-                 std::span<const std::int32_t> owner, int rank) {
-  std::vector<std::pair<int, int>> ghosts;  // (owner, public id)
-  std::vector<std::pair<int, int>> sent;    // (peer, public id)
-  for (std::size_t k = 0; k < mine.size(); ++k)
-    for (const int j : neighbours.of(k)) {
-      const int other = owner[static_cast<std::size_t>(j)];
-      if (other == rank) continue;
-      ghosts.emplace_back(other, j);
-      sent.emplace_back(other, mine[k]);
-    }
-  for (auto* all : {&ghosts, &sent}) {
-    std::sort(all->begin(), all->end());
-    all->erase(std::unique(all->begin(), all->end()), all->end());
-  }
-  const auto count = [](const std::vector<std::pair<int, int>>& all, int peer) {
-    return static_cast<int>(
-        std::count_if(all.begin(), all.end(), [&](const auto& one) { return one.first == peer; }));
-  };
-  for (const auto& [peer, id] : ghosts) {
-    if (r.routes.peers.empty() || r.routes.peers.back() != peer) r.routes.peers.push_back(peer);
-    r.ids.push_back(id);
-  }
-  for (const int peer : r.routes.peers) {
-    r.routes.sends.push_back(count(sent, peer));
-    r.routes.receives.push_back(count(ghosts, peer));
-  }
-  for (const auto& [peer, id] : sent) r.packed.push_back(r.sorted[index_of(mine, id)]);
-}
-
 }  // namespace
 
 std::vector<int> Region::names() const {
@@ -87,14 +57,12 @@ std::vector<int> Region::names() const {
   return names;
 }
 
-Region region_of(int agents, std::span<const int> mine, const Neighbours& neighbours,
-                 std::span<const std::int32_t> owner, int rank) {
+Region region_of(int agents, std::span<const int> mine, const Lists& lists,
+                 std::span<const std::int32_t> owner, int rank, int depth) {
   if (mine.empty())
     refuse("partition", "no agent on rank " + std::to_string(rank), "at least one on every rank",
            "use fewer ranks, or another partition");
-  if (neighbours.lists.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    refuse("partition", std::to_string(neighbours.lists.size()) + " links on rank " + std::to_string(rank),
-           "fewer than 2^31", "use more ranks");
+  Neighbours neighbours = lists(mine);
   Region r;
   r.agents = agents;
   r.own = static_cast<int>(mine.size());
@@ -109,25 +77,18 @@ Region region_of(int agents, std::span<const int> mine, const Neighbours& neighb
   r.interior = static_cast<int>(edge - order.begin());
   sort_windows(order, r.interior, neighbours);
   r.sorted.resize(mine.size());
+  Neighbours own;
+  own.lists.reserve(neighbours.lists.size());
   for (std::size_t place = 0; place < order.size(); ++place) {
-    r.ids.push_back(mine[static_cast<std::size_t>(order[place])]);
-    r.sorted[static_cast<std::size_t>(order[place])] = static_cast<int>(place);
+    const auto k = static_cast<std::size_t>(order[place]);
+    r.ids.push_back(mine[k]);
+    r.sorted[k] = static_cast<int>(place);
+    const auto heard = neighbours.of(k);
+    own.lists.insert(own.lists.end(), heard.begin(), heard.end());
+    own.offsets.push_back(static_cast<std::int64_t>(own.lists.size()));
   }
-  find_ghosts(r, mine, neighbours, owner, rank);
-  std::vector<std::pair<int, std::int32_t>> ghosts;  // (public id, place), sorted
-  for (int place = r.own; place < r.places(); ++place)
-    ghosts.emplace_back(r.ids[static_cast<std::size_t>(place)], place);
-  std::sort(ghosts.begin(), ghosts.end());
-  r.first.push_back(0);
-  r.heard.reserve(neighbours.lists.size());
-  for (const int k : order) {
-    for (const int j : neighbours.of(static_cast<std::size_t>(k))) {
-      const bool here = owner[static_cast<std::size_t>(j)] == rank;
-      r.heard.push_back(here ? r.sorted[index_of(mine, j)]
-                             : std::lower_bound(ghosts.begin(), ghosts.end(), std::pair(j, 0))->second);
-    }
-    r.first.push_back(r.heard.size());
-  }
+  neighbours = {};
+  surround(r, std::move(own), lists, owner, rank, depth);
   return r;
 }
 

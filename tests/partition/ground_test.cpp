@@ -129,7 +129,8 @@ TEST_CASE("a region: interior hears own agents only, ghosts lie as their owners 
     }
     CHECK(at == r.packed.size());
   }
-  CHECK_THROWS_WITH_AS(region_of(3, {}, {}, std::vector<std::int32_t>{0, 0, 0}, 1),
+  const Lists nothing = [](std::span<const int>) { return Neighbours(); };
+  CHECK_THROWS_WITH_AS(region_of(3, {}, nothing, std::vector<std::int32_t>{0, 0, 0}, 1),
                        doctest::Contains("no agent on rank 1"), InvalidInput);
 }
 

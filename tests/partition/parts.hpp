@@ -7,6 +7,7 @@
 #include "fake_ranks.hpp"
 #include "partition/families.hpp"
 #include "partition/part_run.hpp"
+#include "partition/split.hpp"
 #include "random_system.hpp"
 
 namespace garrison::test {
@@ -43,17 +44,13 @@ inline Model model_of(const Model& all, std::span<const int> ids) {
   return {all.A(), std::move(C), std::move(noise)};
 }
 
-inline Part part_of(const partition::Whole& whole, std::span<const std::int32_t> owner, int rank) {
-  std::vector<int> ids;
-  partition::Neighbours neighbours;
-  for (int i = 0; i < whole.model.agents(); ++i) {
-    if (owner[static_cast<std::size_t>(i)] != rank) continue;
-    ids.push_back(i);
-    const auto heard = whole.network.neighbours(i);
-    neighbours.lists.insert(neighbours.lists.end(), heard.begin(), heard.end());
-    neighbours.offsets.push_back(static_cast<std::int64_t>(neighbours.lists.size()));
-  }
-  auto region = partition::region_of(whole.model.agents(), ids, neighbours, owner, rank);
+inline Part part_of(const partition::Whole& whole, std::span<const std::int32_t> owner, int rank,
+                    int halo = 1) {
+  const std::vector<int> ids = partition::agents_of(owner, rank);
+  const auto ground = partition::listed(whole.network);
+  auto region = partition::region_of(
+      whole.model.agents(), ids, [&](std::span<const int> some) { return ground->neighbours(some); }, owner,
+      rank, halo);
   return {ids, std::move(region), model_of(whole.model, ids)};
 }
 
@@ -63,19 +60,22 @@ struct Estimates {
   LinkCounters link;
   std::int64_t overflows = 0;
   std::int64_t resets = 0;
+  std::vector<std::vector<std::byte>> states;  ///< by public id, at the end
 };
 
 inline Estimates run_parts(const partition::Whole& whole, const std::string& family, const ParamMap& params,
                            const PlantOptions& plant, const RunOptions& options,
-                           std::span<const std::int32_t> owner, int ranks, bool by_rank = false) {
+                           std::span<const std::int32_t> owner, int ranks, bool by_rank = false,
+                           int halo = 1) {
   const auto N = static_cast<std::size_t>(whole.model.agents());
   const auto n = static_cast<std::size_t>(whole.model.states());
   Estimates out;
   out.values.resize(static_cast<std::size_t>(plant.steps) * N * n);
+  out.states.resize(N);
   std::vector<Estimates> counted(static_cast<std::size_t>(ranks));
   FakeWorld world(ranks);
   world.run([&](partition::Exchange& exchange) {
-    const Part part = part_of(whole, owner, exchange.rank());
+    const Part part = part_of(whole, owner, exchange.rank(), halo);
     const bool needs = !by_rank && !partition::needs_whole(family, params, whole.model.agents()).empty();
     const auto runner =
         partition::part_runner(family, params, needs ? &whole : nullptr, part.model, part.region, exchange);
@@ -89,8 +89,10 @@ inline Estimates run_parts(const partition::Whole& whole, const std::string& fam
         std::copy_n(here.data() + k * n, n,
                     out.values.data() + (t * N + static_cast<std::size_t>(part.ids[k])) * n);
     }
+    for (std::size_t k = 0; k < part.ids.size(); ++k)
+      runner->save(static_cast<int>(k), out.states[static_cast<std::size_t>(part.ids[k])]);
     counted[static_cast<std::size_t>(exchange.rank())] = {
-        {}, run.link(), runner->overflows(), runner->resets()};
+        {}, run.link(), runner->overflows(), runner->resets(), {}};
   });
   for (const Estimates& one : counted) {
     out.link += one.link;

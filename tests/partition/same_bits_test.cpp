@@ -22,7 +22,7 @@ std::vector<Case> cases() {
   ParamMap detector = kBounded;
   detector.insert({"detector", true});
   return {{"saturation", {{"threshold", 0.3}, {"rounds", std::int64_t{3}}, {"step", 0.1}}},
-          {"saturation", {{"threshold", 0.3}, {"rounds", std::int64_t{4}}, {"chebyshev", true}}},
+          {"saturation", {{"threshold", 0.3}, {"rounds", std::int64_t{7}}, {"chebyshev", true}}},
           {"saturation", detector},
           {"scalar_gain", {{"rounds", std::int64_t{2}}, {"step", 0.1}}},
           {"scalar_gain", {{"rounds", std::int64_t{0}}, {"step", 0.1}}},
@@ -68,6 +68,19 @@ RunOptions troubled(const std::string& trouble, const Vector& start) {
   return o;
 }
 
+/// Recovery: bounds and losses go from agent to agent, round by round.
+Case recovering() {
+  return {"saturation",
+          {{"rounds", std::int64_t{8}},
+           {"chebyshev", true},
+           {"attacked", std::int64_t{1}},
+           {"initial_error", 2.0},
+           {"threshold", 0.5},
+           {"detector", true},
+           {"table", true},
+           {"recovery", true}}};
+}
+
 void check_same(const partition::Whole& whole, const Case& c, const PlantOptions& plant_options,
                 const RunOptions& o, std::uint64_t seed) {
   const Record one = simulate(whole.model, whole.network, *make_filter(c.family, c.params), plant_options, o);
@@ -76,16 +89,24 @@ void check_same(const partition::Whole& whole, const Case& c, const PlantOptions
     CAPTURE(ranks);
     test::Rng rng(seed + static_cast<std::uint64_t>(ranks));
     const auto owner = test::random_owners(rng, whole.model.agents(), ranks);
-    const auto parts = test::run_parts(whole, c.family, c.params, plant_options, o, owner, ranks);
-    REQUIRE(one.estimate.size() == start + parts.values.size());
-    CHECK(std::memcmp(one.estimate.data() + start, parts.values.data(), parts.values.size() * 8) == 0);
-    CHECK(one.link.sent == parts.link.sent);
-    CHECK(one.link.lost == parts.link.lost);
-    CHECK(one.link.late == parts.link.late);
-    CHECK(one.link.forged == parts.link.forged);
-    CHECK(one.link.refused == parts.link.refused);
-    CHECK(one.overflows == parts.overflows);
-    CHECK(one.resets == parts.resets);
+    std::vector<std::vector<std::byte>> states;  // where ghosts are one hop away
+    for (const int halo : {1, 2, 3, 12}) {
+      if (halo > std::max(1, partition::rounds_of(c.family, c.params))) continue;
+      CAPTURE(halo);
+      const auto parts =
+          test::run_parts(whole, c.family, c.params, plant_options, o, owner, ranks, false, halo);
+      REQUIRE(one.estimate.size() == start + parts.values.size());
+      CHECK(std::memcmp(one.estimate.data() + start, parts.values.data(), parts.values.size() * 8) == 0);
+      CHECK(one.link.sent == parts.link.sent);
+      CHECK(one.link.lost == parts.link.lost);
+      CHECK(one.link.late == parts.link.late);
+      CHECK(one.link.forged == parts.link.forged);
+      CHECK(one.link.refused == parts.link.refused);
+      CHECK(one.overflows == parts.overflows);
+      CHECK(one.resets == parts.resets);
+      if (states.empty()) states = parts.states;
+      CHECK(states == parts.states);
+    }
   }
 }
 
@@ -106,6 +127,47 @@ TEST_CASE("estimates, counters and restarts of every family are those of one eng
         check_same(whole, c, plant(8, "auto"), troubled(trouble, start), 5);
       }
     }
+}
+
+TEST_CASE(
+    "far ghosts are worked out as their own ranks do, on rings, chains and strips through several ranks") {
+  for (const std::string trouble : {"none", "delay", "forge", "outdated", "huge", "denial"})
+    for (const Network& network : {Network::path(26), Network::ring(26), Network::grid(2, 13)}) {
+      test::Rng rng(31);
+      const partition::Whole whole{test::scalar_model(rng, 2, 26, 0.98, 0.02, 0.01), network};
+      std::vector<std::int32_t> strips;
+      for (int i = 0; i < 26; ++i) strips.push_back(i / 3 % 5);  // every rank has two or more pieces
+      for (const Case& c : cases()) {
+        if (partition::rounds_of(c.family, c.params) < 2) continue;
+        CAPTURE(trouble);
+        CAPTURE(c.family);
+        const RunOptions o = troubled(trouble, Vector::Constant(2, 0.3));
+        const auto run = [&](int halo) {
+          return test::run_parts(whole, c.family, c.params, plant(5, "auto"), o, strips, 5, false, halo);
+        };
+        const auto near = run(1);
+        const Record one =
+            simulate(whole.model, whole.network, *make_filter(c.family, c.params), plant(5, "auto"), o);
+        CHECK(std::memcmp(one.estimate.data() + 52, near.values.data(), near.values.size() * 8) == 0);
+        for (const int halo : {2, 3, 4, 7}) {
+          CAPTURE(halo);
+          const auto far = run(std::min(halo, partition::rounds_of(c.family, c.params)));
+          CHECK(std::memcmp(near.values.data(), far.values.data(), near.values.size() * 8) == 0);
+          CHECK(near.states == far.states);
+          CHECK(near.link.sent == far.link.sent);
+          CHECK(near.link.lost == far.link.lost);
+          CHECK(near.link.forged == far.link.forged);
+        }
+      }
+    }
+}
+
+TEST_CASE("what an agent knows of losses is the same on far ghosts") {
+  test::Rng rng(17);
+  const partition::Whole whole{test::scalar_model(rng, 2, 9, 0.9, 0.02, 0.01),
+                               test::connected_network(rng, 9, 0.2)};
+  for (const std::string trouble : {"drop", "cut", "equivocate"})
+    check_same(whole, recovering(), plant(12, "auto"), troubled(trouble, Vector::Constant(2, 0.3)), 4);
 }
 
 TEST_CASE("noise is drawn under public ids for every law") {

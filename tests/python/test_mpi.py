@@ -105,13 +105,13 @@ def test_any_number_of_ranks_writes_the_estimates_of_simulate(label: str, troubl
         plain.model, plain.network, filter, attack=plain.attacks, link=plain.link, noise=plain.noise, **plain.run
     ).estimate
     files = []
-    for ranks in (1, 2, 3):
-        out = tmp_path / f"{ranks}.nc"
-        done = _mpi(ranks, "run", path, "-o", out)
+    for ranks, halo in ((1, 1), (2, 1), (3, 1), (2, 4), (3, 2)):
+        out = tmp_path / f"{ranks}-{halo}.nc"
+        done = _mpi(ranks, "run", path, "-o", out, "--halo", halo)
         assert done.returncode == 0, done.stderr
         files.append(out.read_bytes())
-    assert files[0] == files[1] == files[2]
-    with netcdf_file(str(tmp_path / "3.nc"), mmap=False) as results:
+    assert all(file == files[0] for file in files)
+    with netcdf_file(str(tmp_path / "3-2.nc"), mmap=False) as results:
         got = results.variables["estimate"][:].astype(float)
         errors = np.linalg.norm(got - results.variables["truth"][:][:, None, :], axis=2)
         np.testing.assert_array_equal(results.variables["error_largest"][:], errors.max(axis=1))
@@ -138,7 +138,7 @@ def test_a_killed_rank_ends_the_job_and_three_ranks_go_on(tmp_path: Path) -> Non
     assert words.count("--resume") == 1
     with netcdf_file(str(out), mmap=False) as results:  # what was written can be read
         assert results.variables["time"][:].tolist() == list(range(1, len(results.variables["time"][:]) + 1))
-    resumed = _mpi(3, "run", path, "-o", out, "--checkpoint", "50", "--resume")
+    resumed = _mpi(3, "run", path, "-o", out, "--checkpoint", "50", "--resume", "--halo", "3")
     assert resumed.returncode == 0, resumed.stderr
     assert out.read_bytes() == whole.read_bytes()
 
@@ -161,6 +161,8 @@ def test_a_killed_rank_ends_the_job_and_three_ranks_go_on(tmp_path: Path) -> Non
         (("", ""), ["-o", "{folder}/there.nc", "--resume"], "there.nc"),
         (("", ""), ["--resume"], "-o"),
         (("", ""), ["--ranks", "2"], "one SCENARIO"),
+        (("", ""), ["--halo", "0"], "--halo"),
+        (("", ""), ["--halo"], "a value"),
     ],
 )
 def test_bad_input_is_told_once_and_ends_every_rank_with_2(
