@@ -2,11 +2,16 @@
 #include "mpi/scenario.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <map>
 
 #include "garrison/attacks/registry.hpp"
 #include "garrison/engine/any_filter.hpp"
 #include "garrison/wire/blake2b.hpp"
+#include "mpi/hash.hpp"
+#include "mpi/netcdf_file.hpp"
+#include "mpi/netcdf_inputs.hpp"
 #include "node/daemon/files.hpp"
 #include "node/daemon/toml_file.hpp"
 #include "partition/families.hpp"
@@ -54,7 +59,33 @@ Matrix matrix(const Section& s, const char* key, std::size_t columns) {
   return M;
 }
 
-partition::Sensors read_sensors(const Section& s) {
+/// The netCDF files that a scenario names, relative to itself.
+class Inputs {
+ public:
+  explicit Inputs(const std::string& scenario) : folder_(std::filesystem::path(scenario).parent_path()) {}
+
+  /// What `key = { file = "..", variable = ".." }` means; the variable is called as the key is.
+  NetcdfInput of(const Section& s, const char* key) {
+    const Section named = s.section(key);
+    named.only({"file", "variable"});
+    NetcdfInput input{(folder_ / named.text("file")).string(), named.text("variable", key)};
+    if (!checksums_.contains(input.path)) checksums_[input.path] = checksum_of_file(input.path);
+    return input;
+  }
+  std::uint64_t checksum(const NetcdfInput& input) const { return checksums_.at(input.path); }
+  /// Of all of them, whatever they are called.
+  std::uint64_t checksum() const {
+    std::uint64_t sum = 0;
+    for (const auto& [path, one] : checksums_) sum += mixed(one);
+    return sum;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::string, std::uint64_t> checksums_;
+};
+
+partition::Sensors read_sensors(const Section& s, int agents, Inputs& inputs) {
   s.only({"A", "C", "rows", "rows_seed", "process_bound", "measurement_bound", "process_covariance",
           "measurement_covariance"});
   partition::Sensors out;
@@ -62,8 +93,10 @@ partition::Sensors read_sensors(const Section& s) {
   if (out.A.rows() == 0) refuse(s.where("A"), "no matrix", "A, n x n, row by row");
   if (s.has("C") == s.has("rows"))
     refuse(s.where("C"), s.has("C") ? "C and rows" : "neither C nor rows",
-           "one of C (a row per agent) and rows = \"unit\" (drawn)");
-  if (s.has("C")) {
+           "one of C (a row per agent, or { file = .. }) and rows = \"unit\" (drawn)");
+  if (s.has_section("C")) {
+    out.rows_read = netcdf_column(inputs.of(s, "C"), agents, static_cast<int>(out.A.rows()));
+  } else if (s.has("C")) {
     const Matrix C = matrix(s, "C", static_cast<std::size_t>(out.A.rows()));
     for (Eigen::Index i = 0; i < C.rows(); ++i) out.C.push_back(C.row(i));
   } else if (s.text("rows") != "unit") {
@@ -73,17 +106,27 @@ partition::Sensors read_sensors(const Section& s) {
   const auto known = [&](const char* key) {
     return s.has(key) ? s.number(key, 0.0, std::numeric_limits<double>::max()) : kNaN;
   };
+  const auto each = [&](const char* key, double& same, std::shared_ptr<const partition::Column>& read) {
+    if (s.has_section(key))
+      read = netcdf_column(inputs.of(s, key), agents, 0);
+    else
+      same = known(key);
+  };
   out.process_bound = known("process_bound");
-  out.measurement_bound = known("measurement_bound");
-  out.measurement_variance = known("measurement_covariance");
+  each("measurement_bound", out.measurement_bound, out.bounds_read);
+  each("measurement_covariance", out.measurement_variance, out.variances_read);
   if (const double variance = known("process_covariance"); !std::isnan(variance))
     out.process_covariance = variance * Matrix::Identity(out.A.rows(), out.A.rows());
   return out;
 }
 
-std::unique_ptr<partition::Ground> read_ground(const Section& s) {
+std::unique_ptr<partition::Ground> read_ground(const Section& s, Inputs& inputs) {
   if (!s.has("kind")) {
     s.only({"agents", "edges"});
+    if (s.has_section("edges")) {
+      const NetcdfInput input = inputs.of(s, "edges");
+      return netcdf_network(input, whole(s, "agents", 1), inputs.checksum(input));
+    }
     std::vector<Edge> edges;
     const Matrix pairs = matrix(s, "edges", 2);
     for (Eigen::Index k = 0; k < pairs.rows(); ++k)
@@ -182,8 +225,10 @@ Scenario read_scenario(const std::string& path) {
   Scenario out;
   out.path = path;
   out.fingerprint = wire::checksum(std::as_bytes(std::span(text)));
-  out.sensors = read_sensors(file.section("model"));
-  out.ground = read_ground(file.section("network"));
+  Inputs inputs(path);
+  out.ground = read_ground(file.section("network"), inputs);
+  out.sensors = read_sensors(file.section("model"), out.agents(), inputs);
+  out.fingerprint += inputs.checksum();
   if (!out.sensors.C.empty() && static_cast<int>(out.sensors.C.size()) != out.agents())
     refuse(file.section("model").where("C"), std::to_string(out.sensors.C.size()) + " rows",
            std::to_string(out.agents()) + ", one per agent");

@@ -17,7 +17,7 @@ enum class Kept { estimates, summary };
 
 struct Scenario {
   std::string path;
-  std::uint64_t fingerprint = 0;  ///< of the file's bytes
+  std::uint64_t fingerprint = 0;  ///< of the file's bytes, and of the files that it names
   std::unique_ptr<partition::Ground> ground;
   partition::Sensors sensors;
   std::string family;

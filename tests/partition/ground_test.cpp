@@ -52,6 +52,29 @@ TEST_CASE("lists of some agents are those of all, and sensors too") {
   }
 }
 
+TEST_CASE("sensors that are read have the rows, bounds and covariances of the agents that are asked for") {
+  struct Tens final : Column {
+    explicit Tens(int each) : width(each) {}
+    std::vector<double> of(std::span<const int> ids) const override {
+      std::vector<double> out;
+      for (const int id : ids)
+        for (int c = 0; c < width; ++c) out.push_back(10.0 * id + c + 1.0);
+      return out;
+    }
+    int width;
+  };
+  Sensors sensors;
+  sensors.A = Matrix::Identity(2, 2);
+  sensors.rows_read = std::make_shared<Tens>(2);
+  sensors.bounds_read = std::make_shared<Tens>(1);
+  sensors.variances_read = std::make_shared<Tens>(1);
+  const std::vector<int> some{3, 8};
+  const Model model = sensors.model(some);
+  CHECK(model.C(1) == (Matrix(1, 2) << 81.0, 82.0).finished());
+  CHECK(model.noise().measurement_bound == (Vector(2) << 31.0, 81.0).finished());
+  CHECK(model.noise().measurement_covariance[0](0, 0) == 31.0);
+}
+
 TEST_CASE("coordinates and blocks give every rank its share, near each other") {
   const auto ground = random_geometric(4000, 0.03, 1);
   std::vector<std::int32_t> blocks(4000);

@@ -8,6 +8,7 @@ import subprocess
 import time
 from pathlib import Path
 
+import garrison
 import numpy as np
 import pytest
 from conftest import ROOT
@@ -119,6 +120,146 @@ def test_any_number_of_ranks_writes_the_estimates_of_simulate(label: str, troubl
         assert np.all(results.variables["error_median"][:] >= median * (1 - 1e-9))
         assert np.all(results.variables["error_median"][:] <= median * 1.0101)
     assert np.array_equal(got, np.asarray(expected).reshape(10, 16, 2)[1:])
+
+
+def _inputs(path: Path, **other: np.ndarray) -> None:
+    """The agents and links of `_read_scenario`, as any netCDF library writes them."""
+    rng = np.random.default_rng(5)
+    tree = [(rng.integers(0, i), i) for i in range(1, 40)]
+    variables = {
+        "edges": np.array([*tree, *tree[:5], (3, 30), (30, 3), (8, 21)], np.int32),
+        "C": rng.normal(size=(40, 2)),
+        "measurement_bound": np.full(40, 0.02) + 0.001 * np.arange(40),
+        "measurement_covariance": np.full(40, 0.01) + 0.001 * np.arange(40),
+    } | other
+    with netcdf_file(str(path), "w") as out:
+        for name, values in variables.items():
+            for axis, size in enumerate(values.shape):
+                out.createDimension(f"{name}_{axis}", size)
+            kind = values.dtype.char.replace("S", "c")
+            dimensions = tuple(f"{name}_{axis}" for axis in range(values.ndim))
+            out.createVariable(name, kind, dimensions)[:] = values
+
+
+def _read_scenario(folder: Path, filter: str, trouble: str = "") -> Path:
+    path = folder / "read.toml"
+    path.write_text(
+        f"""[model]
+A = [[0.99, 0.05], [-0.05, 0.99]]
+C = {{ file = "in.nc" }}
+process_bound = 0.01
+process_covariance = 0.0004
+measurement_bound = {{ file = "in.nc" }}
+measurement_covariance = {{ file = "in.nc" }}
+
+[network]
+agents = 40
+edges = {{ file = "in.nc" }}
+
+[filter]
+name = "{filter}"
+{_FILTERS[filter]}
+
+[run]
+steps = 9
+seed = 3
+x0 = [1.0, -2.0]
+{trouble}"""
+    )
+    return path
+
+
+@pytest.mark.parametrize("filter", ["saturation", "rdkf"])
+def test_networks_and_sensors_read_by_rank_run_as_those_of_one_process(filter: str, tmp_path: Path) -> None:
+    _inputs(tmp_path / "in.nc")
+    path = _read_scenario(tmp_path, filter, _TROUBLE)
+    with netcdf_file(str(tmp_path / "in.nc"), mmap=False) as inputs:
+        given = {name: variable[:].astype(float) for name, variable in inputs.variables.items()}
+    model = garrison.Model(
+        [[0.99, 0.05], [-0.05, 0.99]],
+        given["C"],
+        process_bound=0.01,
+        measurement_bound=given["measurement_bound"],
+        process_covariance=0.0004,
+        measurement_covariance=given["measurement_covariance"].reshape(-1, 1, 1),
+    )
+    network = garrison.Network(given["edges"].astype(int).tolist())
+    inline = _scenario(tmp_path, filter, _TROUBLE)
+    text = inline.read_text()
+    attacked = text.index("[[attack]]")  # on measurements, which the other file has not
+    inline.write_text(text[:attacked] + _TROUBLE)
+    plain = read_scenario(inline)
+    (_, one), *_ = plain.filters
+    assert one is not None
+    expected = drivers.simulate(
+        model, network, one, steps=9, seed=3, x0=[1.0, -2.0], attack=plain.attacks, link=plain.link, noise=plain.noise
+    ).estimate
+    files = []
+    for ranks, halo in ((1, 1), (2, 2), (3, 1)):
+        out = tmp_path / f"{ranks}.nc"
+        done = _mpi(ranks, "run", path, "-o", out, "--halo", halo)
+        assert done.returncode == 0, done.stderr
+        files.append(out.read_bytes())
+    assert files[0] == files[1] == files[2]
+    with netcdf_file(str(tmp_path / "3.nc"), mmap=False) as results:
+        got = results.variables["estimate"][:].astype(float)
+    assert np.array_equal(got, np.asarray(expected).reshape(10, 40, 2)[1:])
+
+
+@pytest.mark.parametrize(
+    ("inputs", "message"),
+    [
+        (None, "No such file"),
+        (b"agent,C\n0,1\n", "something else, expected a netCDF file in a classic form"),
+        (b"\x89HDF\r\n\x1a\n" + bytes(500), "HDF5 (netCDF-4)"),
+        (60, "expected a netCDF file in a classic form"),
+        (-8, "cut short"),
+        ({"C": np.ones((40, 3))}, "40 x 3 numbers, expected 40 x 2, a row per agent"),
+        ({"C": np.ones((39, 2))}, "39 x 2 numbers, expected 40 x 2"),
+        ({"C": np.array([[1.0, 0.0]] * 39 + [[0.0, np.inf]])}, "agent 39: got inf, expected a finite number"),
+        ({"measurement_bound": np.full(40, -1.0)}, "expected a finite number >= 0"),
+        ({"measurement_bound": np.ones((40, 1))}, "40 x 1 numbers, expected 40, one per agent"),
+        ({"edges": np.array([[0, 1, 2]], np.int32)}, "1 x 3 numbers, expected edges x 2"),
+        ({"edges": np.array([[0.0, 1.5]])}, "numbers with fractions, expected whole ones"),
+        ({"edges": np.array([[0, 1], [1, 40]], np.int32)}, "row 1: got (1, 40), expected two different agents"),
+        ({"edges": np.array([[0, 1], [5, 5]], np.int32)}, "row 1: got (5, 5)"),
+        ({"edges": np.array([[0, 1], [2, 3]], np.int32)}, "not connected"),
+        ({"edges": np.array([[b"a", b"b"]], "c")}, "text, expected numbers"),
+        ("variable", 'no variable "K", expected one; it has'),
+        ("key", 'did you mean "file"'),
+    ],
+)
+def test_a_file_that_does_not_fit_is_told_once_and_ends_every_rank_with_2(
+    inputs: bytes | int | str | dict[str, np.ndarray] | None, message: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "in.nc"
+    path = _read_scenario(tmp_path, "saturation")
+    _inputs(file, **(inputs if isinstance(inputs, dict) else {}))
+    if inputs is None:
+        file.unlink()
+    elif isinstance(inputs, bytes):
+        file.write_bytes(inputs)
+    elif isinstance(inputs, int):
+        file.write_bytes(file.read_bytes()[:inputs])
+    elif isinstance(inputs, str):
+        change = {"variable": 'file = "in.nc", variable = "K"', "key": 'fil = "in.nc"'}[inputs]
+        path.write_text(path.read_text().replace('file = "in.nc"', change, 1))
+    done = _mpi(3, "run", path)
+    assert done.returncode == 2, done.stderr
+    told = [line for line in done.stderr.splitlines() if line.startswith("garrison-mpi:")]
+    assert len(told) == 1
+    assert message in told[0]
+
+
+def test_a_run_is_not_gone_on_with_after_its_inputs_changed(tmp_path: Path) -> None:
+    _inputs(tmp_path / "in.nc")
+    path = _read_scenario(tmp_path, "saturation")
+    words = ("run", path, "-o", tmp_path / "out.nc", "--checkpoint", "3")
+    assert _mpi(2, *words).returncode == 0
+    _inputs(tmp_path / "in.nc", C=np.ones((40, 2)))
+    done = _mpi(2, *words, "--resume")
+    assert done.returncode == 2
+    assert "another scenario" in done.stderr
 
 
 def test_a_killed_rank_ends_the_job_and_three_ranks_go_on(tmp_path: Path) -> None:

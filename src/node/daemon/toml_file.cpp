@@ -227,6 +227,11 @@ std::int64_t Section::moment(const std::string& key) const {
   refuse(where(key), shown(found), "a time, e.g. 2026-01-31T12:00:00Z, or microseconds since 1970");
 }
 
+bool Section::has_section(const std::string& key) const {
+  const TomlValue* found = find(key);
+  return found != nullptr && std::holds_alternative<TomlTable>(found->value);
+}
+
 Section Section::section(const std::string& key) const {
   const TomlValue* found = find(key);
   if (found == nullptr) return {file_, key, {TomlTable{}, table_->line}};

@@ -35,6 +35,7 @@ class Section {
   void only(std::initializer_list<const char*> keys) const;
   void only(const std::vector<std::string>& keys) const;
   bool has(const std::string& key) const { return find(key) != nullptr; }
+  bool has_section(const std::string& key) const;
   /// Without `otherwise` the key has to be there.
   std::string text(const std::string& key, std::optional<std::string> otherwise = {}) const;
   std::int64_t whole(const std::string& key, std::int64_t least, std::int64_t most,
