@@ -17,6 +17,7 @@
 #include "partition/part_average.hpp"
 #include "partition/part_runner.hpp"
 #include "partition/post.hpp"
+#include "partition/saved.hpp"
 
 namespace garrison::partition {
 
@@ -107,13 +108,10 @@ class PartEngine final : public PartRunner {
 
   void save(int k, std::vector<std::byte>& out) const override {
     settle();
-    const std::vector<std::byte> bytes = wire::to_bytes(states_[static_cast<std::size_t>(at(k))]);
-    out.insert(out.end(), bytes.begin(), bytes.end());
+    save_state(states()[static_cast<std::size_t>(at(k))], known_to(at(k)), out);
   }
   void load(int k, std::span<const std::byte> bytes) override {
-    wire::Reader reader(bytes, names_.agents, false);
-    reader("state", states_[static_cast<std::size_t>(at(k))]);
-    if (reader.end() != Refusal::none)
+    if (!load_state(bytes, known_to(at(k)), names_.agents, state(at(k))))
       refuse("checkpoint",
              "no state of agent " + std::to_string(region_.ids[static_cast<std::size_t>(at(k))]),
              "one that this filter wrote with the same parameters");
@@ -141,6 +139,18 @@ class PartEngine final : public PartRunner {
             region_.degree(place),
             A_.data(),
             rows_.data() + p.first};
+  }
+  /// Itself, and those that it hears.
+  std::vector<Known> known_to(int place) const {
+    const auto known = [&](std::int32_t p) {
+      const auto k = static_cast<std::size_t>(p);
+      return Known{names_.of[k], region_.ids[k]};
+    };
+    std::vector<Known> all{known(place)};
+    const auto k = static_cast<std::size_t>(place);
+    for (std::size_t e = region_.first[k]; e < region_.first[k + 1]; ++e)
+      all.push_back(known(region_.heard[e]));
+    return all;
   }
   const double* measured(int place, const double* y) const {
     return y + places_[static_cast<std::size_t>(place)].offset;

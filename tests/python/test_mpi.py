@@ -284,6 +284,21 @@ def test_a_killed_rank_ends_the_job_and_three_ranks_go_on(tmp_path: Path) -> Non
     assert out.read_bytes() == whole.read_bytes()
 
 
+def test_states_with_sets_of_agents_go_on_on_another_number_of_ranks(tmp_path: Path) -> None:
+    path = _scenario(tmp_path, "structural", "")
+    angles = np.arange(144) * 0.4
+    rows = np.column_stack([np.cos(angles), np.sin(angles)]).tolist()
+    text = re.sub(r"^C = .*$", f"C = {rows}", path.read_text(), flags=re.M)
+    path.write_text(text.replace("rows = 4\ncolumns = 4", "rows = 12\ncolumns = 12"))
+    words = ("run", path, "-o", tmp_path / "out.nc", "--checkpoint", "5")
+    assert _mpi(1, *words).returncode == 0
+    whole = (tmp_path / "out.nc").read_bytes()
+    resumed = _mpi(3, *words, "--resume")
+    assert resumed.returncode == 0, resumed.stderr
+    assert "checkpoint of sample 5" in resumed.stdout
+    assert (tmp_path / "out.nc").read_bytes() == whole
+
+
 @pytest.mark.parametrize(
     ("change", "words", "message"),
     [
