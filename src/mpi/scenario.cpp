@@ -2,16 +2,12 @@
 #include "mpi/scenario.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <map>
 
 #include "garrison/attacks/registry.hpp"
 #include "garrison/engine/any_filter.hpp"
 #include "garrison/wire/blake2b.hpp"
-#include "mpi/hash.hpp"
-#include "mpi/netcdf_file.hpp"
-#include "mpi/netcdf_inputs.hpp"
+#include "mpi/named_files.hpp"
 #include "node/daemon/files.hpp"
 #include "node/daemon/toml_file.hpp"
 #include "partition/families.hpp"
@@ -58,32 +54,6 @@ Matrix matrix(const Section& s, const char* key, std::size_t columns) {
   }
   return M;
 }
-
-/// The netCDF files that a scenario names, relative to itself.
-class Inputs {
- public:
-  explicit Inputs(const std::string& scenario) : folder_(std::filesystem::path(scenario).parent_path()) {}
-
-  /// What `key = { file = "..", variable = ".." }` means; the variable is called as the key is.
-  NetcdfInput of(const Section& s, const char* key) {
-    const Section named = s.section(key);
-    named.only({"file", "variable"});
-    NetcdfInput input{(folder_ / named.text("file")).string(), named.text("variable", key)};
-    if (!checksums_.contains(input.path)) checksums_[input.path] = checksum_of_file(input.path);
-    return input;
-  }
-  std::uint64_t checksum(const NetcdfInput& input) const { return checksums_.at(input.path); }
-  /// Of all of them, whatever they are called.
-  std::uint64_t checksum() const {
-    std::uint64_t sum = 0;
-    for (const auto& [path, one] : checksums_) sum += mixed(one);
-    return sum;
-  }
-
- private:
-  std::filesystem::path folder_;
-  std::map<std::string, std::uint64_t> checksums_;
-};
 
 partition::Sensors read_sensors(const Section& s, int agents, Inputs& inputs) {
   s.only({"A", "C", "rows", "rows_seed", "process_bound", "measurement_bound", "process_covariance",
