@@ -10,6 +10,7 @@
 #include "mpi/here.hpp"
 #include "mpi/owners.hpp"
 #include "mpi/run.hpp"
+#include "mpi/spectrum.hpp"
 #include "partition/split.hpp"
 
 using namespace garrison;
@@ -21,10 +22,12 @@ constexpr const char* kUsage =
     "usage: mpirun -n R garrison-mpi run SCENARIO [-o FILE.nc] [--halo ROUNDS] [--checkpoint SAMPLES] "
     "[--resume] [--force] [--hash]\n"
     "       garrison-mpi partition SCENARIO --ranks R\n"
+    "       mpirun -n R garrison-mpi spectrum SCENARIO [--products K] [--slepc]\n"
     "       garrison-mpi whole SCENARIO [--threads T]\n"
     "\n"
     "  run        runs the scenario on all ranks; the bits do not depend on their number\n"
     "  partition  decides beforehand which rank has which agents, and keeps it beside the scenario\n"
+    "  spectrum   lambda_2 and lambda_max of the network, and the step that averages best\n"
     "  whole      runs it with the engine of one process and prints its hash, to compare\n"
     "\n"
     "  -o            results, netCDF\n"
@@ -34,6 +37,8 @@ constexpr const char* kUsage =
     "  --resume      go on from the last checkpoint, on any number of ranks\n"
     "  --force       replace results that are there\n"
     "  --hash        print a hash of all estimates\n"
+    "  --products    products with the Laplacian after which the search for its spectrum ends (5000)\n"
+    "  --slepc       SLEPc in place of Lanczos, where it is built in\n"
     "  --version\n"
     "\n"
     "Exit codes: 0 done, 2 a file or the command line was refused (the message comes from rank 0 alone).\n";
@@ -41,6 +46,7 @@ constexpr const char* kUsage =
 struct Words {
   std::string command;
   RunCommand run;
+  SpectrumCommand spectrum;
   std::int64_t ranks = 0;
   std::int64_t threads = 0;
 };
@@ -57,8 +63,10 @@ std::int64_t number(const std::string& option, const char* word) {
 Words read_words(int count, char** words) {
   Words out;
   out.command = count > 1 ? words[1] : "";
-  if (out.command != "run" && out.command != "partition" && out.command != "whole")
-    refuse("garrison-mpi", "\"" + out.command + "\"", "run, partition or whole", "see --help");
+  const bool known = out.command == "run" || out.command == "partition" || out.command == "spectrum" ||
+                     out.command == "whole";
+  if (!known)
+    refuse("garrison-mpi", "\"" + out.command + "\"", "run, partition, spectrum or whole", "see --help");
   for (int k = 2; k < count; ++k) {
     const std::string word = words[k];
     const auto value = [&] {
@@ -80,6 +88,10 @@ Words read_words(int count, char** words) {
       out.run.hash = true;
     else if (out.command == "partition" && word == "--ranks")
       out.ranks = number(word, value());
+    else if (out.command == "spectrum" && word == "--products")
+      out.spectrum.products = number(word, value());
+    else if (out.command == "spectrum" && word == "--slepc")
+      out.spectrum.slepc = true;
     else if (out.command == "whole" && word == "--threads")
       out.threads = number(word, value());
     else if (word.starts_with("-") || !out.run.scenario.empty())
@@ -89,6 +101,7 @@ Words read_words(int count, char** words) {
   }
   if (out.run.scenario.empty())
     refuse("garrison-mpi " + out.command, "no SCENARIO", "a TOML file", "see --help");
+  out.spectrum.scenario = out.run.scenario;
   if (out.command == "partition" && out.ranks == 0) refuse("--ranks", "nothing", "a number of ranks");
   if (out.run.results.empty() && (out.run.checkpoint > 0 || out.run.resume))
     refuse("-o", "nothing", "the results that a checkpoint belongs to");
@@ -107,6 +120,7 @@ int obey(int count, char** words, int rank) {
   try {
     const Words given = read_words(count, words);
     if (given.command == "run") run(given.run);
+    if (given.command == "spectrum") print_spectrum(given.spectrum);
     if (rank == 0 && given.command == "partition") make_partition(given);
     if (rank == 0 && given.command == "whole") run_whole(given.run.scenario, static_cast<int>(given.threads));
     return 0;

@@ -11,10 +11,11 @@
 
 #include "garrison/engine/any_filter.hpp"
 #include "mpi/checkpoint.hpp"
+#include "mpi/cut.hpp"
 #include "mpi/ending.hpp"
 #include "mpi/hash.hpp"
 #include "mpi/mpi_exchange.hpp"
-#include "mpi/owners.hpp"
+#include "mpi/progress.hpp"
 #include "mpi/results.hpp"
 #include "mpi/together.hpp"
 #include "partition/connected.hpp"
@@ -50,8 +51,10 @@ class Share {
     const double start = MPI_Wtime();
     waited_before_ = exchange_.waited();
     const std::int64_t from = trial_->sample();
+    Progress progress("sample", scenario_.plant.steps);
     while (trial_->sample() < scenario_.plant.steps) {
       trial_->advance();
+      progress.at(trial_->sample());
       keep();
       const std::int64_t t = trial_->sample();
       if (command_.checkpoint > 0 && t % command_.checkpoint == 0) save();
@@ -60,36 +63,16 @@ class Share {
   }
 
  private:
-  /// Decides who has which agents: on one rank, for all.
   void cut() {
-    Owners owners;
-    together([&] {
-      if (exchange_.rank() == 0) owners = owners_of(scenario_, exchange_.ranks());
-    });
-    owners.of.resize(static_cast<std::size_t>(scenario_.agents()));
-    MPI_Bcast(owners.of.data(), scenario_.agents(), MPI_INT32_T, 0, MPI_COMM_WORLD);
-    together([&] {
-      ids_ = partition::agents_of(owners.of, exchange_.rank());
-      const int rounds = std::max(1, partition::rounds_of(scenario_.family, scenario_.params));
-      region_ = partition::region_of(
-          scenario_.agents(), ids_,
-          [&](std::span<const int> ids) { return scenario_.ground->neighbours(ids); }, owners.of,
-          exchange_.rank(), std::min(rounds, static_cast<int>(command_.halo)));
-    });
+    together([&] { rounds_ = std::max(1, partition::rounds_of(scenario_.family, scenario_.params)); });
+    Cut mine = cut_of(scenario_, exchange_, std::min(rounds_, static_cast<int>(command_.halo)));
+    ids_ = std::move(mine.ids);
+    region_ = std::move(mine.region);
     if (partition::needs_connected(scenario_.family)) partition::require_connected(region_, exchange_);
-    std::int64_t counts[] = {region_.ghosts(), static_cast<std::int64_t>(region_.first[ids_.size()])};
-    double most[] = {static_cast<double>(region_.own)};
-    exchange_.sum(counts);
-    exchange_.largest(most);
-    if (exchange_.rank() != 0) return;
-    std::printf(
-        "%d agents, %.1f neighbours each; %d ranks (%s): at most %.0f agents on one, ghosts %.3f %%\n",
-        scenario_.agents(), static_cast<double>(counts[1]) / scenario_.agents(), exchange_.ranks(),
-        owners.made.c_str(), most[0], 100.0 * static_cast<double>(counts[0]) / scenario_.agents());
-    if (command_.halo > 1)
+    say_cut(region_, exchange_, mine.made);
+    if (exchange_.rank() == 0 && command_.halo > 1)
       std::printf("one exchange for every %d of the rounds of a sample%s\n", region_.depth(),
                   region_.depth() < command_.halo ? ", which has no more" : "");
-    std::fflush(stdout);
   }
 
   void build() {
@@ -196,6 +179,7 @@ class Share {
   const RunCommand& command_;
   MpiExchange exchange_;
   Scenario scenario_;
+  int rounds_ = 1;
   std::vector<int> ids_;
   partition::Region region_;
   std::unique_ptr<Model> model_;

@@ -20,9 +20,9 @@ Spectrum spectrum_of(const Network& network, std::span<const std::int32_t> owner
   test::FakeWorld world(ranks);
   world.run([&](Exchange& exchange) {
     const std::vector<int> ids = agents_of(owner, exchange.rank());
-    const Region region =
-        region_of(network.agents(), ids, [&](std::span<const int> some) { return ground->neighbours(some); },
-                  owner, exchange.rank());
+    const Region region = region_of(
+        network.agents(), ids, [&](std::span<const int> some) { return ground->neighbours(some); }, owner,
+        exchange.rank());
     all[static_cast<std::size_t>(exchange.rank())] = laplacian_spectrum(region, exchange, most);
   });
   for (const Spectrum& one : all) {
@@ -57,8 +57,7 @@ TEST_CASE("the spectrum by products is that of the whole, with the same bits on 
       if (agents < ranks) continue;
       const Spectrum parts = spectrum_of(network, test::random_owners(rng, agents, ranks), ranks, 5000);
       CHECK(std::bit_cast<std::uint64_t>(parts.lambda2) == std::bit_cast<std::uint64_t>(alone.lambda2));
-      CHECK(std::bit_cast<std::uint64_t>(parts.lambda_max) ==
-            std::bit_cast<std::uint64_t>(alone.lambda_max));
+      CHECK(std::bit_cast<std::uint64_t>(parts.lambda_max) == std::bit_cast<std::uint64_t>(alone.lambda_max));
     }
   }
 }
