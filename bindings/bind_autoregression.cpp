@@ -44,14 +44,14 @@ void bind_autoregression(py::module_& m) {
       "identified",
       [](const Autoregression& a, const Matrix& season, int harmonics, double period, bool root,
          double factor,
-         double noise) { return identified(a, season, {1, harmonics, period, root, factor}, noise); },
+         double noise) { return identified(a, season, {1, harmonics, period, root, factor, {}}, noise); },
       py::arg("autoregression"), py::arg("season"), py::kw_only(), py::arg("harmonics"), py::arg("period"),
       py::arg("root"), py::arg("factor"), py::arg("noise"), "An autoregression as an Identified model.");
   m.def(
       "anomalies",
       [](const MatrixRef& raw, std::int64_t first, int harmonics, double period, bool root, double factor) {
         Matrix season;
-        Matrix rest = anomalies(raw, first, {1, harmonics, period, root, factor}, season);
+        Matrix rest = anomalies(raw, first, {1, harmonics, period, root, factor, {}}, season);
         return py::make_tuple(std::move(rest), std::move(season));
       },
       py::arg("raw"), py::arg("first"), py::kw_only(), py::arg("harmonics"), py::arg("period"),

@@ -17,20 +17,22 @@ void bind_fit(py::module_& m) {
       .def_readonly("harmonics", &O::harmonics)
       .def_readonly("period", &O::period, "samples")
       .def_readonly("root", &O::root)
-      .def_readonly("factor", &O::factor);
+      .def_readonly("factor", &O::factor)
+      .def_readonly("standardise", &O::standardise);
   py::class_<Identified> identified(m, "Identified",
                                     "A model identified from clean records; use garrison.fit.");
   using I = Identified;
   keep_fields<I>(identified, "garrison._core.Identified", KeptField{"options", &I::options},
-                 KeptField{"season", &I::season}, KeptField{"scale", &I::scale}, KeptField{"A", &I::A},
-                 KeptField{"C", &I::C}, KeptField{"share", &I::share},
-                 KeptField{"process_covariance", &I::process_covariance},
+                 KeptField{"season", &I::season}, KeptField{"scale", &I::scale},
+                 KeptField{"weight", &I::weight}, KeptField{"A", &I::A}, KeptField{"C", &I::C},
+                 KeptField{"share", &I::share}, KeptField{"process_covariance", &I::process_covariance},
                  KeptField{"measurement_variance", &I::measurement_variance},
                  KeptField{"process_bound", &I::process_bound},
                  KeptField{"measurement_bound", &I::measurement_bound});
   identified.def_readonly("options", &I::options)
       .def_readonly("season", &Identified::season, "(1 + 2 harmonics, N)")
       .def_readonly("scale", &Identified::scale, "(N,): anomaly / scale = measurement")
+      .def_readonly("weight", &Identified::weight, "(N,): of a measurement in the least squares of the state")
       .def_readonly("A", &Identified::A, "(n, n)")
       .def_readonly("C", &Identified::C, "(N, n), rows of unit length")
       .def_readonly("share", &Identified::share, "(n,): part of the variance that each factor carries")
@@ -51,17 +53,17 @@ void bind_fit(py::module_& m) {
   m.def(
       "identify",
       [](const MatrixRef& raw, std::int64_t first, int factors, int harmonics, double period, bool root,
-         double factor) {
+         double factor, std::optional<bool> standardise) {
         if (harmonics < 0) refuse("fit.harmonics", std::to_string(harmonics), "a number >= 0");
         if (const std::int64_t least = 2 * std::int64_t{harmonics} + 2; raw.rows() < least)
           refuse("fit.harmonics",
                  std::to_string(harmonics) + " with " + std::to_string(raw.rows()) + " records",
                  "at least " + std::to_string(least) + " records", "use more records, or fewer harmonics");
         require_range("fit.period", period, std::numeric_limits<double>::min());
-        return identify(raw, first, {factors, harmonics, period, root, factor});
+        return identify(raw, first, {factors, harmonics, period, root, factor, standardise});
       },
       py::arg("raw"), py::arg("first"), py::kw_only(), py::arg("factors") = standard.factors,
       py::arg("harmonics") = standard.harmonics, py::arg("period") = standard.period,
       py::arg("root") = standard.root, py::arg("factor") = standard.factor,
-      "Fit a model to clean records (T, N), nan = missing.");
+      py::arg("standardise") = standard.standardise, "Fit a model to clean records (T, N), nan = missing.");
 }

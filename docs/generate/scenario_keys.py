@@ -33,6 +33,8 @@ MEANINGS = {
         "period": "with `fit`: length of the season in samples; with `vehicles`: sampling time in s",
         "root": "true: work with square roots of the records (wind speeds are then close to Gaussian)",
         "factor": "multiplies every record first, to change units",
+        "standardise": "true: factors of every column in units of its own spread; false: all columns have one unit; "
+        "left out: true where the header names different units",
         "vehicles": "number of vehicles in a string: position (m) and velocity (m/s) each",
         "names": "names of the agents (with `vehicles`: of these), for tables and pictures",
         "inputs": "with `B`: names of the known inputs; with `fit`: columns that are known inputs; with `vehicles`: "

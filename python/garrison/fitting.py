@@ -166,14 +166,15 @@ class Fit(Result):
         )
 
 
-#: reweightings of `_least_absolute`, and the deviation below which a station counts as met
+#: reweightings of `_least_absolute`, and the part of the largest number that counts as no deviation
 _SWEEPS, _MET = 60, 1e-9
 
 
 def _least_absolute(C: Array, y: Array) -> Array:
     """argmin over x of sum_i |y_i - C_i x| of every row of y, by iteratively reweighted least squares."""
     known = np.isfinite(y)
-    values = np.where(known, y, 0.0)
+    size = float(np.abs(y[known]).max(initial=0.0)) or 1.0
+    values = np.where(known, y, 0.0) / size
     weights = known.astype(float)
     n = C.shape[1]
     x = np.zeros((len(y), n))
@@ -182,10 +183,10 @@ def _least_absolute(C: Array, y: Array) -> Array:
         x = np.linalg.solve(normal, np.einsum("ti,ij,ti->tj", weights, C, values)[..., None])[..., 0]
         weights = known / np.maximum(np.abs(values - x @ C.T), _MET)
     x[known.sum(axis=1) < n] = np.nan
-    return x
+    return x * size
 
 
-_OPTIONS = ("factors", "harmonics", "period", "root", "factor")
+_OPTIONS = ("factors", "harmonics", "period", "root", "factor", "standardise")
 #: most factors and harmonics that anybody could mean
 _MOST = 10_000
 
@@ -193,9 +194,11 @@ _MOST = 10_000
 def _options(records: Records, given: dict[str, Any]) -> dict[str, Any]:
     only("fit", given, _OPTIONS)
     out: dict[str, Any] = {"period": records.samples_per_year}
+    if len(set(filter(None, records.units))) > 1:  # factors of deviations in different units mean nothing
+        out["standardise"] = True
     for name, value in given.items():
         where = f"fit.{name}"
-        if name == "root":
+        if name in ("root", "standardise"):
             if not isinstance(value, bool):
                 raise refusal(where, shown(value), "true or false")
         elif (found := real(value)) is None:

@@ -105,9 +105,8 @@ def fit_full(records: Records, **options: Any) -> FullFit:
     stations = records.of([s for s in records.stations if s not in inputs])
     if not stations.stations:
         raise refusal("fit.inputs", "all columns", "fewer: some must be stations")
-    season_options = {"harmonics": 2, "root": False, "factor": 1.0} | _options(
-        stations, {k: v for k, v in options.items() if k in _SEASON}
-    )
+    given = _options(stations, {k: v for k, v in options.items() if k in _SEASON})
+    season_options = {"harmonics": 2, "root": False, "factor": 1.0} | {k: v for k, v in given.items() if k in _SEASON}
     u = records.of(inputs).values if inputs else np.zeros((len(records.values), 0))
     how: dict[str, Any] = {k: whole(f"fit.{k}", options[k], 0) for k in ("order", "most") if k in options}
     if "held_out" in options:

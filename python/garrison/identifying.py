@@ -17,13 +17,15 @@ def fit(records: Records, **options: Any) -> Fit:
     records : Records
         Of garrison.tables.read_records.
     **options
-        factors (state dimension, default 2), harmonics (2), period (of the cycle in samples, default a year),
-        root (False: True works on square roots), factor (1: unit conversion); states ("factors", or "all": every
-        station is a state, a vector autoregression). With states = "all" and in place of factors: order (samples of
-        the past; 0, the default: the likeliest for held-out samples), most (largest order that is tried, 4), held_out
-        (share of the samples, the last ones, that choose it, 0.25), inputs (names of columns that are known inputs)
-        and noise (part of a station's residual variance that is taken for measurement noise, 0.01: such records
-        cannot tell it from the rest).
+        factors (state dimension, default 2), harmonics (2), period (of the cycle in samples, default a year), root
+        (False: True works on square roots), factor (1: unit conversion), standardise (True: factors of every column
+        in units of its own spread, whatever the columns' units are; False: all columns have one unit; left out: True
+        where the header names different units, else False where their sizes are comparable); states ("factors", or
+        "all": every station is a state, a vector autoregression). With states = "all" and in place of factors: order
+        (samples of the past; 0, the default: the likeliest for held-out samples), most (largest order that is tried,
+        4), held_out (share of the samples, the last ones, that choose it, 0.25), inputs (names of columns that are
+        known inputs) and noise (part of a station's residual variance that is taken for measurement noise, 0.01: such
+        records cannot tell it from the rest).
 
     Returns
     -------

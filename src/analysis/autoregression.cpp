@@ -49,6 +49,13 @@ Matrix targets(const MatrixRef& z, const std::vector<Index>& rows) {
   return Y;
 }
 
+/// Lengths of the columns, rounded to powers of 2 (bits stay): regressors have units of their own, which must
+/// not decide what follows from what.
+Vector column_lengths(const Matrix& X) {
+  return X.colwise().norm().unaryExpr(
+      [](double l) { return l > 0.0 ? std::exp2(std::round(std::log2(l))) : 1.0; });
+}
+
 Regression regressed(const MatrixRef& z, const MatrixRef& u, int order, const std::vector<Index>& rows) {
   const Matrix X = regressors(z, u, order, rows);
   const Matrix Y = targets(z, rows);
@@ -56,14 +63,15 @@ Regression regressed(const MatrixRef& z, const MatrixRef& u, int order, const st
     refuse("records", std::to_string(X.rows()) + " samples with a complete past",
            "at least " + std::to_string(10 * X.cols()) + " for order " + std::to_string(order),
            "use more records, a smaller order or fewer stations");
-  const Eigen::ColPivHouseholderQR<Matrix> qr(X);
+  const Vector unit = column_lengths(X);
+  const Eigen::ColPivHouseholderQR<Matrix> qr(X * unit.cwiseInverse().asDiagonal());
   if (qr.rank() < X.cols()) {
     detail::refuse_giant_record(z, z);
     refuse("records", "stations or inputs that depend on each other", "independent ones",
            "leave out what follows from the others");
   }
   Regression found;
-  found.coefficients = qr.solve(Y);
+  found.coefficients = unit.cwiseInverse().asDiagonal() * qr.solve(Y);
   const Matrix E = Y - X * found.coefficients;
   found.covariance = E.transpose() * E / static_cast<double>(X.rows());
   return found;
@@ -149,6 +157,7 @@ Identified identified(const Autoregression& found, const Matrix& season, const F
   m.options = options;
   m.season = season;
   m.scale = Vector::Ones(N);
+  m.weight = Vector::Ones(N);
   m.A = found.A;
   m.C = Matrix::Identity(N, n);
   m.process_covariance = Matrix::Zero(n, n);

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "garrison/core/error.hpp"
+#include "median.hpp"
 
 namespace garrison::detail {
 namespace {
@@ -35,7 +37,31 @@ bool rules(const MatrixRef& deviations, Index row, Index station) {
   return others < 1.0;
 }
 
+/// Records that are this much farther from the middle than half of all are: squares of the others are below
+/// rounding of the record's.
+constexpr double kHides = 1e8;
+
+[[noreturn]] void refuse_record(Index row, Index station, double value) {
+  refuse("records[" + std::to_string(row) + ", " + std::to_string(station) + "]", text(value),
+         "a number of the size of the others", "it hides all others: correct it, or leave it out (nan)");
+}
+
 }  // namespace
+
+void refuse_hiding_record(const MatrixRef& records, const MatrixRef& shown) {
+  for (Index k = 0; k < records.cols(); ++k) {
+    std::vector<double> values;
+    for (const double one : records.col(k))
+      if (!std::isnan(one)) values.push_back(one);
+    if (values.empty()) continue;
+    const double middle = median(values);
+    for (double& one : values) one = std::abs(one - middle);
+    const double half = median(values);
+    const Vector apart = (records.col(k).array() - middle).abs();
+    const Index row = largest(apart, 0);
+    if (half > 0.0 && apart(row) > kHides * half) refuse_record(row, k, shown(row, k));
+  }
+}
 
 void refuse_giant_record(const MatrixRef& deviations, const MatrixRef& shown) {
   Index row = -1;
@@ -48,8 +74,7 @@ void refuse_giant_record(const MatrixRef& deviations, const MatrixRef& shown) {
     station = k;
   }
   if (station < 0) return;
-  refuse("records[" + std::to_string(row) + ", " + std::to_string(station) + "]", text(shown(row, station)),
-         "a number of the size of the others", "it hides all others: correct it, or leave it out (nan)");
+  refuse_record(row, station, shown(row, station));
 }
 
 }  // namespace garrison::detail

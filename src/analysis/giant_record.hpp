@@ -11,4 +11,9 @@ namespace garrison::detail {
 /// themselves. @throws InvalidInput
 void refuse_giant_record(const MatrixRef& deviations, const MatrixRef& shown);
 
+/// Before a fit: refuses a record beside which all others of its station are rounding, wherever half of them
+/// differ.
+/// @throws InvalidInput
+void refuse_hiding_record(const MatrixRef& records, const MatrixRef& shown);
+
 }  // namespace garrison::detail

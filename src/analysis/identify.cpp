@@ -8,9 +8,19 @@
 
 #include "core/solvers.hpp"
 #include "giant_record.hpp"
+#include "median.hpp"
 
 namespace garrison {
 namespace {
+
+/// Sizes of two columns beyond which nobody may mean that they have one unit.
+constexpr double kComparable = 100.0;
+/// Deviations whose squares, and sums of these, are doubles.
+constexpr double kTiny = 1e-70;
+constexpr double kVast = 1e70;
+/// Part of the largest record, and of the largest deviation from the middle, that is rounding.
+constexpr double kRounding = 64.0 * 0x1p-52;
+constexpr double kSeasonRounding = 1e-9;
 
 std::string shape(const MatrixRef& m) { return std::to_string(m.rows()) + " x " + std::to_string(m.cols()); }
 
@@ -58,14 +68,24 @@ Matrix seasonal_design(Eigen::Index rows, std::int64_t first, const FitOptions& 
   return X;
 }
 
-/// Seasonal coefficients of one station from the samples that are present.
+/// Refuses what does not vary, or so little or so much that squares are no doubles.
+void require_spread(const std::string& which, double spread, double largest, double from_middle) {
+  if (!(spread > kSeasonRounding * from_middle + kRounding * largest))
+    refuse(which, "records without variation", "records that vary around their season", "leave it out");
+  if (!(spread > kTiny && spread < kVast))
+    refuse(which, "records that vary by " + text(spread), "between " + text(kTiny) + " and " + text(kVast),
+           "bring them to another unit (fit.factor)");
+}
+
+/// Seasonal coefficients of one station from the samples that are present. Relative to their middle, so that
+/// an offset does not hide what varies.
 Vector season_of(const Matrix& X, const Vector& z, Eigen::Index station) {
   const auto present = (z.array() == z.array());
   const Eigen::Index count = present.count();
   const std::string which = "station " + std::to_string(station);
   if (count < 10 * X.cols())
     refuse(which, std::to_string(count) + " records", "at least " + std::to_string(10 * X.cols()),
-           "use more years");
+           "use more years, or fewer harmonics");
   Matrix rows(count, X.cols());
   Vector values(count);
   for (Eigen::Index r = 0, k = 0; r < z.size(); ++r)
@@ -73,11 +93,43 @@ Vector season_of(const Matrix& X, const Vector& z, Eigen::Index station) {
       rows.row(k) = X.row(r);
       values(k++) = z(r);
     }
-  const Vector coefficients = rows.colPivHouseholderQr().solve(values);
-  const double spread = (values - rows * coefficients).norm() / std::sqrt(static_cast<double>(count));
-  if (!(spread > 1e-9 * (1.0 + values.cwiseAbs().maxCoeff())))
-    refuse(which, "records without variation", "records that vary around their season", "leave it out");
+  const double largest = values.cwiseAbs().maxCoeff();
+  Vector ordered = values;
+  const double middle = detail::median(ordered);
+  values.array() -= middle;
+  Vector coefficients = rows.colPivHouseholderQr().solve(values);
+  const double spread = (values - rows * coefficients).stableNorm() / std::sqrt(static_cast<double>(count));
+  require_spread(which, spread, largest, values.cwiseAbs().maxCoeff());
+  coefficients(0) += middle;
   return coefficients;
+}
+
+/// Standard deviation of every station around its season.
+Vector spreads(const Matrix& deviations) {
+  Vector found(deviations.cols());
+  for (Eigen::Index i = 0; i < deviations.cols(); ++i) {
+    const auto present = (deviations.col(i).array() == deviations.col(i).array());
+    found(i) = std::sqrt(present.select(deviations.col(i).array().square(), 0.0).sum() /
+                         static_cast<double>(present.count()));
+  }
+  return found;
+}
+
+/// What every station's deviations are measured in where factors are looked for; equal numbers keep their
+/// bits.
+Vector column_units(const Matrix& deviations, const MatrixRef& raw, std::optional<bool> standardise) {
+  const Vector spread = spreads(deviations);
+  if (standardise.value_or(false)) return spread;
+  Eigen::Index least = 0;
+  const double largest = spread.maxCoeff();
+  if (!standardise && spread.minCoeff(&least) * kComparable < largest) {
+    detail::refuse_giant_record(deviations, raw);
+    refuse("station " + std::to_string(least),
+           "a spread of " + text(spread(least)) + " beside one of " + text(largest),
+           "columns of comparable sizes",
+           "set standardise (true: every column in units of its own spread; false: all have one unit)");
+  }
+  return Vector::Constant(spread.size(), std::exp2(std::round(std::log2(largest))));
 }
 
 /// Covariance over the samples at which both stations are present.
@@ -151,6 +203,7 @@ Matrix anomalies(const MatrixRef& raw, std::int64_t first, const FitOptions& opt
            std::to_string(options.harmonics) + " with " + std::to_string(raw.rows()) + " records",
            "at least " + std::to_string(least) + " records", "use more records, or fewer harmonics");
   const Matrix z = transformed(raw, options);
+  detail::refuse_hiding_record(z, raw);
   const Matrix X = seasonal_design(z.rows(), first, options);
   season.resize(X.cols(), z.cols());
   for (Eigen::Index i = 0; i < z.cols(); ++i) season.col(i) = season_of(X, z.col(i), i);
@@ -161,21 +214,29 @@ Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& 
   Identified m;
   m.options = options;
   const Matrix deviations = anomalies(raw, first, options, m.season);
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(pairwise_covariance(deviations));
+  const bool standardise = options.standardise.value_or(false);
+  const Vector unit = column_units(deviations, raw, options.standardise);
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(
+      pairwise_covariance(deviations * unit.cwiseInverse().asDiagonal()));
   const auto N = raw.cols();
   const auto n = options.factors;
   m.share = eigen.eigenvalues().reverse().head(n) / eigen.eigenvalues().sum();
   Matrix loadings = eigen.eigenvectors().rowwise().reverse().leftCols(n) * std::sqrt(static_cast<double>(N));
   for (int k = 0; k < n; ++k)  // a sign that does not depend on the eigenvalue solver
     if (loadings.col(k).sum() < 0.0) loadings.col(k) *= -1.0;
-  m.scale = loadings.rowwise().norm();
+  const Vector length = loadings.rowwise().norm();
   for (Eigen::Index i = 0; i < N; ++i)
-    if (!(m.scale(i) > 1e-9)) {
+    if (!(length(i) > 1e-9)) {
       detail::refuse_giant_record(deviations, raw);
       refuse("station " + std::to_string(i), "no share in the factors",
-             "a station that varies with the others", "leave it out or use more factors");
+             "a station that varies with the others",
+             standardise ? "leave it out or use more factors"
+                         : "leave it out, use more factors, or set standardise (every column in units of its "
+                           "own spread)");
     }
-  m.C = m.scale.cwiseInverse().asDiagonal() * loadings;
+  m.C = length.cwiseInverse().asDiagonal() * loadings;
+  m.weight = length.cwiseAbs2();
+  m.scale = standardise ? Vector(length.cwiseProduct(unit)) : length;
   const Matrix y = measurements(m, raw, first);
   const Matrix x = reference_states(m, y);
   fit_dynamics(x, m);
@@ -198,15 +259,14 @@ Matrix reference_states(const Identified& model, const MatrixRef& measured) {
     refuse("measured", shape(measured), "samples x " + std::to_string(model.C.rows()));
   Matrix x = Matrix::Constant(measured.rows(), n, kNaN);
   for (Eigen::Index r = 0; r < measured.rows(); ++r) {
-    // Weighted by scale^2: least squares of the anomalies themselves, the projection that defined the
-    // factors.
+    // Least squares of the anomalies themselves (each in its unit, where they are standardised), the
+    // projection that defined the factors.
     Matrix normal = Matrix::Zero(n, n);
     Vector right = Vector::Zero(n);
     for (Eigen::Index i = 0; i < measured.cols(); ++i) {
       if (std::isnan(measured(r, i))) continue;
-      const double weight = model.scale(i) * model.scale(i);
-      normal += weight * model.C.row(i).transpose() * model.C.row(i);
-      right += weight * measured(r, i) * model.C.row(i).transpose();
+      normal += model.weight(i) * model.C.row(i).transpose() * model.C.row(i);
+      right += model.weight(i) * measured(r, i) * model.C.row(i).transpose();
     }
     const Eigen::LDLT<Matrix> factor(normal);
     if (factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 1e-9) x.row(r) = factor.solve(right);

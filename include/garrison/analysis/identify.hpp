@@ -2,6 +2,8 @@
 // From clean records of a sensor network to a model: seasonal cycle, factors, A, C, noise.
 #pragma once
 
+#include <optional>
+
 #include "garrison/core/error.hpp"
 #include "garrison/core/types.hpp"
 
@@ -14,6 +16,10 @@ struct FitOptions {
   double period = 365.25;  ///< of the cycle, in samples, > 0
   bool root = false;       ///< work on the square root (right for speeds and counts); records must be >= 0
   double factor = 1.0;     ///< records are multiplied by it first (a unit conversion), > 0
+  /// Factors of the stations' deviations, each in units of its own standard deviation: they do not depend on
+  /// the units of the columns. false: as the records are, whose unit must be one. Left out: false, where
+  /// their sizes are comparable.
+  std::optional<bool> standardise;
 };
 
 /// The identified model, and the fixed map from raw records to measurements.
@@ -21,6 +27,7 @@ struct GARRISON_EXPORT Identified {
   FitOptions options;
   Matrix season;  ///< (1 + 2 harmonics) x N: mean, then cosine and sine of each harmonic
   Vector scale;   ///< N: an anomaly divided by it is the measurement y_i, whose row C_i has unit length
+  Vector weight;  ///< N: of y_i in the least squares that say what the state was
   Matrix A;       ///< n x n
   Matrix C;       ///< N x n, rows of unit length
   Vector share;   ///< n: part of the anomalies' variance that each factor carries, 0..1
@@ -32,9 +39,10 @@ struct GARRISON_EXPORT Identified {
 
 /// Fits by least squares. `raw`: T x N records, NaN = missing; row r is sample `first + r` of the seasonal
 /// clock. The state at a time is what the leading principal directions of the anomalies say of all records of
-/// that time (divided by sqrt(N), so that an anomaly and its measurement have about the same size).
+/// that time (divided by sqrt(N), so that an anomaly, in its unit, and its measurement have about the same
+/// size).
 /// @throws InvalidInput on wrong options, fewer than 10 n complete rows, a constant or empty column, a
-/// negative record with `root`
+/// negative record with `root`, columns whose sizes differ by more than 100 where nothing is said of them
 GARRISON_EXPORT Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& options);
 
 /// Records without their seasonal cycle, T x N, which is written to `season` as Identified keeps it. @throws

@@ -56,6 +56,12 @@ def add(commands: Commands) -> None:
         "--scale", type=number, default=1.0, help="multiply the records by this number, to convert units (default 1)"
     )
     command.add_argument(
+        "--standardise",
+        action=argparse.BooleanOptionalAction,
+        help="take every column in units of its own spread; --no-standardise: all columns have one unit (default: "
+        "standardise where the header names different units)",
+    )
+    command.add_argument(
         "--attacked",
         type=whole_number,
         help="also store levels for certificates with so many stations attacked, and wider bounds",
@@ -105,6 +111,7 @@ def _options(args: argparse.Namespace) -> dict[str, Any]:
         "order": args.order,
         "inputs": args.inputs,
         "period": args.period,
+        "standardise": args.standardise,
     }
     options = {key: value for key, value in given.items() if value is not None}
     return {**options, "harmonics": args.harmonics, "root": args.root, "factor": args.scale}
@@ -112,6 +119,8 @@ def _options(args: argparse.Namespace) -> dict[str, Any]:
 
 def _show_factors(found: Fit, console: Console) -> None:
     i = found.identified
+    if i.options.standardise:
+        console.print("every column is taken in units of its own spread")
     console.print(f"factors carry {', '.join(f'{s:.1%}' for s in i.share)} of the variance around the season")
     console.print(f"A = {np.asarray(i.A).round(4).tolist()}, ||w|| <= {i.process_bound:.4g}")
     rows = [
@@ -142,6 +151,8 @@ def _require_options(args: argparse.Namespace) -> None:
         raise refusal("--scale", f"{args.scale:g}", "a finite number > 0", "it multiplies all records")
     if args.states == "all" and args.factors is not None:
         raise refusal("--factors", f"{args.factors} beside --states all", "one of them", "there are no factors then")
+    if args.states == "all" and args.standardise is not None:
+        raise refusal("--standardise", "--states all beside it", "one of them", "units of stations do not matter then")
     for option, value in (("--order", args.order), ("--input", args.inputs)):
         if args.states == "factors" and value is not None:
             raise refusal(option, shown(value), "--states all beside it")

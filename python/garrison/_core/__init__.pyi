@@ -849,6 +849,8 @@ class FitOptions:
         """
     @property
     def root(self) -> bool: ...
+    @property
+    def standardise(self) -> bool | None: ...
 
 class Identified:
     """
@@ -865,6 +867,7 @@ class Identified:
         options: FitOptions,
         season: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
         scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
         A: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
         C: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
         share: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -933,6 +936,11 @@ class Identified:
     def share(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         (n,): part of the variance that each factor carries
+        """
+    @property
+    def weight(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,): of a measurement in the least squares of the state
         """
 
 class Autoregression:
@@ -1214,6 +1222,7 @@ def identify(
     period: typing.SupportsFloat | typing.SupportsIndex = 365.25,
     root: bool = False,
     factor: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+    standardise: bool | None = None,
 ) -> Identified:
     """
     Fit a model to clean records (T, N), nan = missing.

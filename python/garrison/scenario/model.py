@@ -23,6 +23,7 @@ _FIT_KEYS = [
     "period",
     "root",
     "factor",
+    "standardise",
     "states",
     "order",
     "most",
@@ -99,6 +100,8 @@ def _fitted(section: Section) -> Fit:
         if key in section:
             options[key] = section.number(key, 0.0, positive=True)
     options["root"] = section.flag("root", False)
+    if "standardise" in section:
+        options["standardise"] = section.flag("standardise", False)
     return fit(records, **options)
 
 

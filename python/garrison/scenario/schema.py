@@ -13,7 +13,7 @@ Schema = dict[str, Any]
 _WHOLE = {"steps", "trials", "threads", "seed", "delay_rounds", "factors", "harmonics", "vehicles", "range", "rows"}
 _NUMBERS = {"drop", "delay", "failure", "gate", "huber", "radius", "radius_km", "start_error", "factor", "period"}
 _WORDS = {"fit", "file", "stations", "spread", "law", "label"}
-_FLAGS = {"root", "directed", "memory"}
+_FLAGS = {"root", "directed", "memory", "standardise"}
 
 
 def schema() -> Schema:
