@@ -63,17 +63,19 @@ void bind_designs(py::module_& m) {
   py::class_<Prepared, std::shared_ptr<Prepared>>(m, "Design", "A filter designed for one model and network.")
       .def(py::init([](const Model& model, const Network& network, const FilterHandle& filter,
                        const std::string& certificate, double failure, int attacked,
-                       const std::pair<double, double>& levels, bool memory) {
+                       const std::pair<double, double>& levels, bool memory, const py::object& progress) {
              const auto wanted = wanted_of(certificate, failure, attacked, levels, memory);
-             return within_budget(kInfinity, [&] {
+             const auto design = [&] {
                auto prepared = filter.filter->prepare(model, network);
                if (wanted) prepared = certified(*prepared, *wanted);
                return std::const_pointer_cast<Prepared>(prepared);
-             });
+             };
+             return within_budget(kInfinity, design,
+                                  {progress, "the design of " + std::string(filter.filter->name())});
            }),
            py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("certificate") = "none",
            py::arg("failure") = 1e-6, py::arg("attacked") = 0, py::arg("levels") = std::pair(0.0, 0.0),
-           py::arg("memory") = false)
+           py::arg("memory") = false, py::arg("progress") = py::none())
       .def_property_readonly(
           "certificate",
           [](const Prepared& p) -> py::object {

@@ -196,24 +196,33 @@ void bind_drivers(py::module_& m) {
       "(tests, above) per agent, the last axis: samples with a test (no nan), and those above its "
       "threshold.");
   m.def(
-      "contradiction",
-      [](const Model& model, const MatrixRef& measurements, int attacked, bool for_good, bool constant,
+      "contradictions",
+      [](const Model& model, const Array& measurements, int attacked, bool for_good, bool constant,
          const std::vector<int>& owner, const Matrix& inputs) {
+        if (measurements.ndim() != 3)
+          refuse("measurements", shape_of(measurements), "trials x samples x outputs");
+        const auto trials = static_cast<int>(measurements.shape(0));
+        using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+        const Matrix rows = Eigen::Map<const Rows>(measurements.data(), trials * measurements.shape(1),
+                                                   measurements.shape(2));
         const auto found = within_budget(kInfinity, [&] {
-          return contradiction(model, measurements, {attacked, for_good, constant, owner, inputs});
+          return contradictions(model, rows, trials, {attacked, for_good, constant, owner, inputs});
         });
-        const char* const bound = found.refuted == Refuted::measurement_bound ? "measurement_bound"
-                                  : found.refuted == Refuted::process_bound   ? "process_bound"
-                                                                              : nullptr;
-        return py::make_tuple(bound, found.row);
+        py::list all;
+        for (const Contradiction& one : found)
+          all.append(py::make_tuple(one.refuted == Refuted::measurement_bound ? "measurement_bound"
+                                    : one.refuted == Refuted::process_bound   ? "process_bound"
+                                                                              : nullptr,
+                                    one.row));
+        return all;
       },
       py::arg("model"), py::arg("measurements"), py::kw_only(), py::arg("attacked"), py::arg("for_good"),
       py::arg("constant"), py::arg("owner"), py::arg("inputs"),
-      "(bound, row): which bound measurements (samples, outputs) refute whichever `attacked` sources lie, "
-      "and "
-      "where; (None, -1) =\nnone. owner: whose each measurement is, [] = its agent's; inputs: row r leads "
-      "from "
-      "sample r to the next one.");
+      "(bound, row) per trial: which bound measurements (trials, samples, outputs) refute whichever "
+      "`attacked` "
+      "sources lie, and\nwhere; (None, -1) = none. owner: whose each measurement is, [] = its agent's; "
+      "inputs: "
+      "row r leads from sample r to the next one.");
   m.def(
       "simulate",
       [](const std::shared_ptr<Prepared>& prepared, int steps, const Vector& x0, double start_error,

@@ -196,8 +196,10 @@ void bind_filters(py::module_& m) {
       "All families with the description of their parameters.");
   m.def(
       "check",
-      [](const Model& model, const Network& network, const FilterHandle& f, double seconds) {
-        const Check check = within_budget(seconds, [&] { return f.filter->check(model, network); });
+      [](const Model& model, const Network& network, const FilterHandle& f, double seconds,
+         const py::object& progress) {
+        const Check check = within_budget(seconds, [&] { return f.filter->check(model, network); },
+                                          {progress, "the conditions of " + std::string(f.filter->name())});
         py::list conditions;
         for (const auto& c : check.conditions)
           conditions.append(py::dict(py::arg("name") = c.name, py::arg("value") = c.value,
@@ -210,8 +212,9 @@ void bind_filters(py::module_& m) {
         return py::make_tuple(conditions, quantities);
       },
       py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("seconds") = kInfinity,
+      py::arg("progress") = py::none(),
       "Conditions and quantities of the family's theorems, as two lists of dicts. Searches end after "
       "`seconds` with a\n"
       "certified interval; a computation without partial results raises InvalidInput then. Ctrl-C ends it, "
-      "too.");
+      "too. progress(what, seconds) is called about once a second.");
 }

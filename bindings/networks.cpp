@@ -185,7 +185,12 @@ Network make_network(const py::object& source, const py::object& agents, bool di
     return from_graph(source, agents, std::move(names));
   if (py::isinstance<py::str>(source) || py::isinstance<py::bytes>(source) ||
       py::isinstance<py::dict>(source) || convert::scalar(source))
-    if (!py::hasattr(source, "tocoo")) refuse("edges", convert::shown(source), kSources);
+    if (!py::hasattr(source, "tocoo"))
+      refuse("edges", convert::shown(source), kSources,
+             convert::scalar(source)
+                 ? "the order is Network(edges, agents); Network.complete(agents), .ring, .path "
+                   "and others need no edges"
+                 : "");
   const bool sparse = py::hasattr(source, "tocoo");
   const py::list items = sparse          ? py::list()
                          : table(source) ? py::list(source.attr("to_numpy")())

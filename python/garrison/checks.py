@@ -1,6 +1,7 @@
 """Conditions and bounds of a filter's theorems."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -80,6 +81,7 @@ def check(
     attacked: int | None = None,
     levels: tuple[float, float] | None = None,
     memory: bool = False,
+    progress: Callable[[str, float], None] | None = None,
 ) -> Check:
     """Evaluate all conditions and bounds of the filter's theorems for this model and network.
 
@@ -107,6 +109,8 @@ def check(
         (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.
     memory : bool
         Certify from all measurements so far, too, see `prepare`.
+    progress : callable, optional
+        progress(what, seconds) is called about once a second: what is computed, and for how long already.
 
     Returns
     -------
@@ -119,7 +123,8 @@ def check(
         Something does not fit; the message says which, and what was expected.
     """
     require_order("check", model, network, filter)
-    conditions, quantities = _core.check(model, network, filter, number("seconds", seconds))
+    tell = arguments.callback("progress", progress, "(what, seconds)")
+    conditions, quantities = _core.check(model, network, filter, number("seconds", seconds), tell)
     if wanted := arguments.certificate(filter, certificate, failure, attacked, levels, memory):
-        quantities += expected_certificate(_core.Design(model, network, filter, **wanted))
+        quantities += expected_certificate(_core.Design(model, network, filter, **wanted, progress=tell))
     return Check(conditions, quantities)

@@ -51,6 +51,20 @@ def of_conditions(model: _core.Model, network: _core.Network, filter: _core.Filt
     ]
 
 
+def of_blind(model: _core.Model) -> list[str]:
+    """A line that names sensors whose row of C is zero, which no filter can use and no test can judge."""
+    blind = [
+        f"agent {i}" + (f" (output {k})" if len(rows) > 1 else "")
+        for i, rows in enumerate(model.C)
+        for k, row in enumerate(rows)
+        if not np.any(row)
+    ]
+    if not blind:
+        return []
+    which = ", ".join(blind[:_NAMES]) + (f" and {len(blind) - _NAMES} more" if len(blind) > _NAMES else "")
+    return [f"a sensor of {which} sees nothing of the state (its row of C is zero): what it says is not used"]
+
+
 def of_attacks(attacks: list[_core.Attack], samples: int) -> list[str]:
     """One line per attack on nobody, or that starts after the last sample."""
     nobody = [f"the attack {a.name} names no agent: nothing is attacked" for a in attacks if not a.agents]

@@ -1,5 +1,6 @@
 """A filter designed once, for any number of runs and agents; it can leave the process."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -130,6 +131,7 @@ def prepare(
     attacked: int | None = None,
     levels: tuple[float, float] | None = None,
     memory: bool = False,
+    progress: Callable[[str, float], None] | None = None,
 ) -> Prepared:
     """Design the filter for this model and network, once.
 
@@ -162,6 +164,8 @@ def prepare(
         determine the state, and get ever sharper. Stronger assumptions: the liars are always the same, and noise
         is white, with the covariances of the model. After a refutation, a restart or a gap of more than 1000
         samples it starts anew. Takes failure > 0, without `levels`.
+    progress : callable, optional
+        progress(what, seconds) is called about once a second: what is computed, and for how long already.
 
     Returns
     -------
@@ -177,4 +181,5 @@ def prepare(
     """
     require_order("prepare", model, network, filter)
     wanted = arguments.certificate(filter, certificate, failure, attacked, levels, memory)
-    return Prepared(_core.Design(model, network, filter, **wanted))
+    tell = arguments.callback("progress", progress, "(what, seconds)")
+    return Prepared(_core.Design(model, network, filter, **wanted, progress=tell))

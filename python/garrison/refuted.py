@@ -97,7 +97,7 @@ def of_bounds(
     inputs: Array | None = None,
     constant: bool = True,
 ) -> list[str]:
-    """A line when measurements contradict the bounds of the noise whichever sensors lie, by the first trial.
+    """A line when measurements (trial, time, output) contradict the bounds of the noise whichever sensors lie.
 
     attacked: most sources that may lie at a time, where the filter does not say it of its sensors. inputs: of the run,
     the last row leads to the last sample. constant: A holds at all times, and all inputs are known.
@@ -109,35 +109,48 @@ def of_bounds(
     if measurements is None or liars is None or len(bounds) != model.agents:
         return []
     for_good = family_of(filter).proves and accuses(filter, ())  # whoever has lied once is left out
-    most = _pairs(model, measurements[0], bounds, for_good=for_good) if own else 0
-    if most > liars:
+    most = _pairs(model, measurements, bounds, for_good=for_good) if own else np.zeros(1, dtype=np.int64)
+    if most.max() > liars:
         return [
-            f"{most} pairs of sensors that measure the same differ by more than measurement_bound allows, and only "
-            f"{liars} sensors may be attacked: measurement_bound is too small, or more of them lie"
+            f"{most.max()} pairs of sensors that measure the same differ by more than measurement_bound allows, and "
+            f"only {liars} sensors may be attacked{_trials(most > liars)}: measurement_bound is too small, or more of "
+            "them lie"
         ]
-    refuted, row = _core.contradiction(
+    found = _core.contradictions(
         model,
-        measurements[0],
+        measurements,
         attacked=liars,
         for_good=for_good,
         constant=constant,
         owner=[] if own else _sources(model),
-        inputs=np.zeros((0, 0)) if inputs is None else inputs[len(inputs) - len(measurements[0]) + 1 :],
+        inputs=np.zeros((0, 0)) if inputs is None else inputs[len(inputs) - measurements.shape[1] + 1 :],
     )
-    if refuted is None:
+    # what one sample shows says more than what two do
+    words = next((bound for bound in ("measurement_bound", "process_bound") if (bound in dict(found))), None)
+    if words is None:
         return []
+    there = np.array([bound == words for bound, _ in found])
+    row = found[int(np.argmax(there))][1]
     ever = "the same all the time" if for_good else "at a time"
     whoever = f"whichever {liars} of the sources lie, {ever}" if liars else "and none of the sources may lie"
-    if refuted == "measurement_bound":
+    if words == "measurement_bound":
         return [
             f"measurements of one sample contradict each other by more than measurement_bound allows, {whoever} (row "
-            f"{row} of the measurements): measurement_bound is too small, C is wrong, or more of them lie"
+            f"{row} of the measurements{_trials(there)}): measurement_bound is too small, C is wrong, or more of them "
+            "lie"
         ]
     return [
         f"measurements change from one sample to the next by more than process_bound and measurement_bound allow, "
-        f"{whoever} (from row {row} of the measurements on): process_bound or measurement_bound is too small, A or C "
-        "is wrong, or more of them lie"
+        f"{whoever} (from row {row} of the measurements on{_trials(there)}): process_bound or measurement_bound is too "
+        "small, A or C is wrong, or more of them lie"
     ]
+
+
+def _trials(there: NDArray[np.bool_]) -> str:
+    """In which trials something is, where there are several."""
+    if len(there) == 1:
+        return ""
+    return f", trial {int(np.argmax(there))}; in {int(there.sum())} of {len(there)} trials"
 
 
 def _sources(model: _core.Model) -> list[int]:
@@ -156,16 +169,18 @@ def shared_sources(model: _core.Model) -> list[str]:
     return [name for name, agents in behind.items() if len(agents) > 1]
 
 
-def _pairs(model: _core.Model, measurements: Array, bounds: Array, *, for_good: bool) -> int:
-    """Pairs without a common sensor that measure the same and differ by more than the sum of their bounds.
+def _pairs(model: _core.Model, measurements: Array, bounds: Array, *, for_good: bool) -> NDArray[np.int64]:
+    """Per trial, pairs without a common sensor that measure the same and differ by more than the sum of their bounds.
 
     Over the whole record where the attacked ones stay the same, else in one sample.
     """
     groups = _groups(model)
     pairs = _for_good if for_good else _in_one_sample
+    found: NDArray[np.int64] = np.zeros(measurements.shape[:1] + (() if for_good else measurements.shape[1:2]), int)
     with np.errstate(invalid="ignore", over="ignore"):
-        found = sum(pairs(measurements[:, columns], bounds[agents]) for columns, agents in groups)
-    return int(np.max(found)) if groups else 0
+        for columns, agents in groups:
+            found += pairs(measurements[..., columns], bounds[agents])
+    return found if for_good else found.max(axis=1, initial=0)
 
 
 def _groups(model: _core.Model) -> list[tuple[list[int], list[int]]]:
@@ -183,27 +198,28 @@ def _groups(model: _core.Model) -> list[tuple[list[int], list[int]]]:
 
 
 def _in_one_sample(y: Array, bounds: Array) -> NDArray[np.int64]:
-    """Pairs without a common sensor that contradict each other, per sample: the extremes, then the next ones, ..."""
-    ordered = np.sort(np.where(np.isfinite(y), y, np.nan), axis=1)  # nan at the end
-    known = np.isfinite(ordered).sum(axis=1)
-    count = np.zeros(len(y), dtype=np.int64)
-    limit = 2.0 * float(bounds.max()) * (1.0 + 1e-9) + _ROUNDING * np.where(np.isfinite(y), np.abs(y), 0.0).max(axis=1)
-    samples = np.arange(len(y))
-    for k in range(y.shape[1] // 2):
+    """Pairs without a common sensor that contradict each other, (trial, time): the extremes, then the next ones, ..."""
+    ordered = np.sort(np.where(np.isfinite(y), y, np.nan), axis=-1)  # nan at the end
+    known = np.isfinite(ordered).sum(axis=-1)
+    count = np.zeros(y.shape[:-1], dtype=np.int64)
+    limit = 2.0 * float(bounds.max()) * (1.0 + 1e-9) + _ROUNDING * np.where(np.isfinite(y), np.abs(y), 0.0).max(axis=-1)
+    for k in range(y.shape[-1] // 2):
         top = known - 1 - k
-        apart = ordered[samples, np.maximum(top, 0)] - ordered[:, k]
-        count += (top > k) & (apart > limit)
+        upper = np.take_along_axis(ordered, np.maximum(top, 0)[..., None], axis=-1)[..., 0]
+        count += (top > k) & (upper - ordered[..., k] > limit)
     return count
 
 
-def _for_good(y: Array, bounds: Array) -> int:
-    """The same for pairs that contradict each other in any sample."""
-    free = set(range(y.shape[1]))
-    count = 0
-    for i in range(y.shape[1]):
+def _for_good(y: Array, bounds: Array) -> NDArray[np.int64]:
+    """The same per trial, for pairs that contradict each other in any sample."""
+    free = np.ones((len(y), y.shape[-1]), dtype=bool)
+    count = np.zeros(len(y), dtype=np.int64)
+    for i in range(y.shape[-1]):
         for j in range(i):
-            limit = (bounds[i] + bounds[j]) * (1.0 + 1e-9) + _ROUNDING * np.maximum(np.abs(y[:, i]), np.abs(y[:, j]))
-            if {i, j} <= free and (np.abs(y[:, i] - y[:, j]) > limit).any():
-                free -= {i, j}
-                count += 1
+            limit = (bounds[i] + bounds[j]) * (1.0 + 1e-9) + _ROUNDING * np.maximum(
+                np.abs(y[..., i]), np.abs(y[..., j])
+            )
+            apart = free[:, i] & free[:, j] & (np.abs(y[..., i] - y[..., j]) > limit).any(axis=1)
+            free[apart, i] = free[apart, j] = False
+            count += apart
     return count

@@ -34,6 +34,9 @@ constexpr Eigen::Index kMostSamples = 2000;
 /// Multiplications, of a pass over the record without a liar, and of the whole search.
 constexpr double kPass = 5e6;
 constexpr double kMostWork = 3e8;
+/// The trials after the first one share the samples and the work of this many records, but each has some.
+constexpr int kShared = 4;
+constexpr Eigen::Index kFewestSamples = 20;
 
 /// Rows of the model that are not zero, at most kMostRows, evenly.
 struct Chosen {
@@ -116,19 +119,35 @@ struct Votes {
 
 class Search {
  public:
-  Search(const Model& model, const MatrixRef& measurements, const ContradictionOptions& options,
-         Chosen chosen, int groups)
+  Search(const Model& model, const ContradictionOptions& options, const Chosen& chosen, int groups)
       : model_(model),
         options_(options),
+        column_(chosen.column),
         rows_(chosen.measured),
-        bases_(std::move(chosen.measured), groups),
-        y_(measurements(Eigen::all, chosen.column).transpose()),
-        reach_(model.A().norm()),
-        stride_(1 + y_.cols() / kMostSamples) {
+        bases_(chosen.measured, groups),
+        reach_(model.A().norm()) {
     for (const Vector& d : directions_of(rows_.rows)) turn(directions_.emplace_back(), d);
   }
 
-  bool possible() const { return !bases_.empty() && y_.cols() > 0; }
+  bool possible() const { return !bases_.empty(); }
+  /// The measurements of a trial, of which about `samples` are looked at.
+  void record(const MatrixRef& measurements, Eigen::Index samples, double work) {
+    y_ = measurements(Eigen::all, column_).transpose();
+    stride_ = 1 + y_.cols() / samples;
+    row_ = -1;
+    work_ = 0.0;
+    most_work_ = work;
+  }
+  Contradiction found() {
+    // What contradicts itself within a sample does so over a step, too: mostly one pass is enough.
+    Contradiction over{};
+    const bool steps = options_.constant && model_.noise().process_bound < kInfinity && y_.cols() > 1;
+    if (steps && (over = over_steps()).refuted == Refuted::nothing) return over;
+    const Contradiction within = within_samples();
+    return within.refuted != Refuted::nothing ? within : over;
+  }
+
+ private:
   Contradiction within_samples() {
     steps_ = false;
     return options_.for_good ? for_good(Refuted::measurement_bound) : each(Refuted::measurement_bound);
@@ -138,7 +157,6 @@ class Search {
     return options_.for_good ? for_good(Refuted::process_bound) : each(Refuted::process_bound);
   }
 
- private:
   void turn(Direction& one, const Vector& d) const {
     one.d = d;
     bases_.along(model_.A().transpose() * d, one.before);
@@ -220,7 +238,7 @@ class Search {
     return information.ldlt().solve(sum);
   }
 
-  bool tired() { return work_ > kMostWork || current_budget().over(); }
+  bool tired() { return work_ > most_work_ || current_budget().over(); }
 
   /// Sample by sample, or step by step: other sources may lie each time.
   Contradiction each(Refuted what) {
@@ -302,11 +320,12 @@ class Search {
 
   const Model& model_;
   const ContradictionOptions& options_;
+  std::vector<Eigen::Index> column_;
   detail::MeasuredRows rows_;
   RowBases bases_;
   Matrix y_;  // m x samples
   double reach_;
-  Eigen::Index stride_;
+  Eigen::Index stride_ = 1;
   std::vector<Direction> directions_;
   Direction suggested_;
   Votes votes_;
@@ -317,9 +336,14 @@ class Search {
   Readings next_;
   Vector known_;  // what the inputs add from now to next
   double work_ = 0.0;
+  double most_work_ = kMostWork;
 };
 
-void require(const Model& model, const MatrixRef& measurements, const ContradictionOptions& options) {
+void require(const Model& model, const MatrixRef& measurements, int trials,
+             const ContradictionOptions& options) {
+  if (trials < 1 || measurements.rows() % trials != 0)
+    refuse("trials", std::to_string(trials),
+           "a divisor of the " + std::to_string(measurements.rows()) + " rows");
   if (measurements.cols() != model.total_outputs())
     refuse("measurements", std::to_string(measurements.cols()) + " columns",
            std::to_string(model.total_outputs()) + ", one per output of the model");
@@ -328,7 +352,7 @@ void require(const Model& model, const MatrixRef& measurements, const Contradict
     refuse("owner", std::to_string(options.owner.size()) + " numbers",
            std::to_string(model.total_outputs()) + ", one per output of the model");
   if (options.inputs.size() != 0 &&
-      (options.inputs.cols() != model.inputs() || options.inputs.rows() + 1 < measurements.rows()))
+      (options.inputs.cols() != model.inputs() || options.inputs.rows() + 1 < measurements.rows() / trials))
     refuse("inputs",
            std::to_string(options.inputs.rows()) + " rows of " + std::to_string(options.inputs.cols()),
            "one row from each sample to the next, a number per input");
@@ -336,24 +360,29 @@ void require(const Model& model, const MatrixRef& measurements, const Contradict
 
 }  // namespace
 
-Contradiction contradiction(const Model& model, const MatrixRef& measurements,
-                            const ContradictionOptions& options) {
-  require(model, measurements, options);
-  if (model.noise().measurement_bound.size() == 0 || model.states() > kMostStates) return {};
-  Chosen chosen = choose(model, options);
-  if (chosen.column.empty()) return {};
+std::vector<Contradiction> contradictions(const Model& model, const MatrixRef& measurements, int trials,
+                                          const ContradictionOptions& options) {
+  require(model, measurements, trials, options);
+  std::vector<Contradiction> found(static_cast<std::size_t>(trials));
+  const Eigen::Index times = measurements.rows() / trials;
+  if (model.noise().measurement_bound.size() == 0 || model.states() > kMostStates || times == 0) return found;
+  const Chosen chosen = choose(model, options);
+  if (chosen.column.empty()) return found;
   const double directions = std::min<double>(kMostDirections, static_cast<double>(chosen.column.size()));
-  const auto samples = static_cast<double>(std::clamp<Eigen::Index>(measurements.rows(), 1, kMostSamples));
+  const auto samples = static_cast<double>(std::clamp<Eigen::Index>(times, 1, kMostSamples));
   const double one = (3.0 * directions + 4.0) * (model.states() + 3.0) * samples;  // of one group
   const int groups = std::clamp(static_cast<int>(std::min(kPass / one, 1e9)), kFewestGroups, kMostGroups);
-  Search search(model, measurements, options, std::move(chosen), groups);
-  if (!search.possible()) return {};
-  // What contradicts itself within a sample does so over a step, too: mostly one pass is enough.
-  Contradiction over{};
-  const bool steps = options.constant && model.noise().process_bound < kInfinity && measurements.rows() > 1;
-  if (steps && (over = search.over_steps()).refuted == Refuted::nothing) return over;
-  const Contradiction within = search.within_samples();
-  return within.refuted != Refuted::nothing ? within : over;
+  Search search(model, options, chosen, groups);
+  if (!search.possible()) return found;
+  const auto share = [&](double whole) { return std::min(whole, whole * kShared / trials); };
+  for (int k = 0; k < trials; ++k) {
+    const Eigen::Index fewer = static_cast<Eigen::Index>(share(static_cast<double>(kMostSamples)));
+    search.record(measurements.middleRows(k * times, times),
+                  k == 0 ? kMostSamples : std::max(fewer, kFewestSamples),
+                  k == 0 ? kMostWork : share(kMostWork));
+    found[static_cast<std::size_t>(k)] = search.found();
+  }
+  return found;
 }
 
 }  // namespace garrison

@@ -368,12 +368,38 @@ def test_observability_of_which_one_cannot_tell_is_not_denied() -> None:
     assert not gr.observable(np.eye(2), C)
 
 
-@pytest.mark.parametrize("call", [gr.prepare, gr.check, lambda *parts: gr.simulate(*parts, steps=3)])
-def test_an_interrupt_ends_a_long_design(call: Callable[..., Any]) -> None:
+def long_design() -> tuple[gr.Model, gr.Network, gr.Filter]:
+    """Parts whose design takes far longer than anybody waits."""
     rng = np.random.default_rng(0)
     A = 0.98 * np.linalg.qr(rng.normal(size=(12, 12)))[0]
     model = gr.Model(A, list(rng.normal(size=(40, 1, 12))), process_covariance=0.1, measurement_covariance=0.1)
-    parts = model, gr.Network.random_geometric(40, 0.5, 1), gr.filters.Structural(design="h2")
+    return model, gr.Network.random_geometric(40, 0.5, 1), gr.filters.Structural(design="h2")
+
+
+@pytest.mark.parametrize("call", [gr.prepare, gr.check])
+def test_what_takes_long_says_so_and_can_be_ended_from_there(call: Callable[..., Any]) -> None:
+    class Enough(Exception):
+        pass
+
+    told: list[tuple[str, float]] = []
+
+    def progress(what: str, seconds: float) -> None:
+        told.append((what, seconds))
+        if len(told) == 2:
+            raise Enough
+
+    with pytest.raises(Enough):
+        call(*long_design(), progress=progress)
+    assert all("structural" in what for what, _ in told) and 0 < told[0][1] < told[1][1]
+    with pytest.raises(gr.InvalidInput, match=r"progress: got .*expected a function of \(what, seconds\)"):
+        call(*long_design(), progress=lambda: None)
+    with pytest.raises(gr.InvalidInput, match="progress: got 1, expected a function"):
+        call(*long_design(), progress=1)
+
+
+@pytest.mark.parametrize("call", [gr.prepare, gr.check, lambda *parts: gr.simulate(*parts, steps=3)])
+def test_an_interrupt_ends_a_long_design(call: Callable[..., Any]) -> None:
+    parts = long_design()
     before = signal.signal(signal.SIGALRM, signal.default_int_handler)
     signal.setitimer(signal.ITIMER_REAL, 0.5)
     started = time.monotonic()

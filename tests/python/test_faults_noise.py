@@ -45,6 +45,30 @@ def test_more_liars_than_told_are_named() -> None:
         assert any("or more of them lie" in w for w in run.warnings) == named
 
 
+@pytest.mark.parametrize("detector", [True, False])
+@pytest.mark.parametrize("model", ["pairs", "apart"])
+def test_every_trial_of_a_run_is_looked_at(detector: bool, model: str) -> None:
+    """The first trials are as told, a later one is not: its measurements are those of larger noise."""
+    rows = [[1, 0], [0, 1]] * 3 if model == "pairs" else [[np.cos(k), np.sin(k)] for k in range(6)]
+
+    def plant(size: float) -> gr.Model:
+        return gr.Model([[1.0, 0.1], [0.0, 0.9]], rows, process_bound=0.02, measurement_bound=0.01 * size)
+
+    filt = gr.filters.Saturation(
+        threshold=1.0, rounds=12, attacked=1, initial_error=2.0, chebyshev=True, detector=detector
+    )
+    for trials in (3, 40):
+        true = gr.simulate(plant(1.0), NET, filt, steps=80, trials=trials, x0=[1, 1], start=[1, 0])
+        worse = gr.simulate(plant(3.0), NET, filt, steps=80, noise="extreme", x0=[1, 1], start=[1, 0])
+        assert not any("is too small" in w for w in true.warnings)
+        y = true.measurements.copy()  # type: ignore[union-attr]
+        y[-1] = worse.measurements[0]  # type: ignore[index]
+        said = [
+            w for w in gr.replay(plant(1.0), NET, filt, measurements=y, start=[1, 0]).warnings if "is too small" in w
+        ]
+        assert len(said) == 1 and f"trial {trials - 1}; in 1 of {trials} trials" in said[0]
+
+
 @pytest.mark.parametrize("options", [{}, {"window": 5}, {"test": "innovation"}, {"isolate": True}])
 def test_covariances_told_too_small(options: dict[str, object]) -> None:
     filt = gr.filters.Structural(**options)

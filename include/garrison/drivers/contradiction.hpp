@@ -28,13 +28,14 @@ struct Contradiction {
   int row = -1;  ///< of the measurements, the first of the two; the last look where the same sources lie
 };
 
-/// Looks for a sample, and for two in a row, that no state and no noise within the bounds explains, whichever
-/// `attacked` sources are left out. Sound up to rounding, which it allows for; not complete: groups of n
-/// measurements are compared along the measured directions and along the noise that they suggest.
-/// `measurements`: samples x Model::total_outputs(), NaN = missing. Nothing is said without
-/// measurement_bound.
-/// @throws InvalidInput on sizes that do not fit
-GARRISON_EXPORT Contradiction contradiction(const Model& model, const MatrixRef& measurements,
-                                            const ContradictionOptions& options);
+/// Looks in every trial for a sample, and for two in a row, that no state and no noise within the bounds
+/// explains, whichever `attacked` sources are left out. Sound up to rounding, which it allows for; not
+/// complete: groups of n measurements are compared along the measured directions and along the noise that
+/// they suggest, in at most 2000 evenly spread samples of the first trial; the others share 8000, at least 20
+/// each. `measurements`: trials times samples x Model::total_outputs(), trial by trial, NaN = missing.
+/// Nothing is said without measurement_bound. @return one per trial @throws InvalidInput on sizes that do not
+/// fit
+GARRISON_EXPORT std::vector<Contradiction> contradictions(const Model& model, const MatrixRef& measurements,
+                                                          int trials, const ContradictionOptions& options);
 
 }  // namespace garrison

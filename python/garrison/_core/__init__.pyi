@@ -44,7 +44,7 @@ __all__: list[str] = [
     "certificate",
     "chebyshev_contraction",
     "check",
-    "contradiction",
+    "contradictions",
     "custom_attack",
     "design_summary",
     "discretise",
@@ -748,6 +748,7 @@ class Design:
             0.0,
         ),
         memory: bool = False,
+        progress: typing.Any = None,
     ) -> None: ...
     def __reduce__(self) -> tuple: ...
     def agent(self, id: typing.SupportsInt | typing.SupportsIndex) -> Agent: ...
@@ -1101,26 +1102,30 @@ def chebyshev_contraction(
     """
 
 def check(
-    model: Model, network: Network, filter: Filter, seconds: typing.SupportsFloat | typing.SupportsIndex = ...
+    model: Model,
+    network: Network,
+    filter: Filter,
+    seconds: typing.SupportsFloat | typing.SupportsIndex = ...,
+    progress: typing.Any = None,
 ) -> tuple[list, list]:
     """
     Conditions and quantities of the family's theorems, as two lists of dicts. Searches end after `seconds` with a
-    certified interval; a computation without partial results raises InvalidInput then. Ctrl-C ends it, too.
+    certified interval; a computation without partial results raises InvalidInput then. Ctrl-C ends it, too. progress(what, seconds) is called about once a second.
     """
 
-def contradiction(
+def contradictions(
     model: Model,
-    measurements: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    measurements: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     *,
     attacked: typing.SupportsInt | typing.SupportsIndex,
     for_good: bool,
     constant: bool,
     owner: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
     inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-) -> tuple[str, int]:
+) -> list:
     """
-    (bound, row): which bound measurements (samples, outputs) refute whichever `attacked` sources lie, and where; (None, -1) =
-    none. owner: whose each measurement is, [] = its agent's; inputs: row r leads from sample r to the next one.
+    (bound, row) per trial: which bound measurements (trials, samples, outputs) refute whichever `attacked` sources lie, and
+    where; (None, -1) = none. owner: whose each measurement is, [] = its agent's; inputs: row r leads from sample r to the next one.
     """
 
 def custom_attack(

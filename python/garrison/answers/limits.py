@@ -86,9 +86,10 @@ def saturation_facts(sensors: Sensors, added: Array, attacked: int, gamma: float
     n = sensors.model.states
     silent = np.zeros((0, n))
     C = [silent] * sensors.model.agents
-    if len(sensors.rows):
-        for agent, row in zip(sensors.agent, _unit(sensors.rows), strict=True):
-            C[agent] = row[None]
+    sees = [k for k, row in enumerate(sensors.rows) if np.any(row)]
+    if sees:
+        for k, row in zip(sees, _unit(sensors.rows[sees]), strict=True):
+            C[sensors.agent[k]] = row[None]
     C += [row[None] for row in _unit(added)] if len(added) else []
     # Any connected network of as many agents: what is asked of the check depends on plant and rows only.
     params = {"threshold": 1.0, "rounds": 1, "attacked": attacked}

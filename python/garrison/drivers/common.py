@@ -84,6 +84,7 @@ def recorded(
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
     if "A" in series or "C" in series:
         run.warnings.append("the plant changes in time: no theorem and no condition of a filter covers it")
+    run.warnings += [] if "C" in series else doubts.of_blind(model)
     run.warnings += refuted.of_sources(model, filter)
     run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
     run.warnings += doubts.of_alarms(filter, run.shape[1] - 1)

@@ -40,6 +40,15 @@ bool scalar_unit_rows(const Model& model) {
   return true;
 }
 
+/// What to do about rows that are not scalar_unit_rows.
+std::string row_advice(const Model& model) {
+  for (int i = 0; i < model.agents(); ++i)
+    if (model.outputs(i) == 1 && model.C(i).isZero(0.0))
+      return "the sensor of agent " + std::to_string(i) +
+             " sees nothing of the state (its row of C is zero): take the row away";
+  return "assumption of all bounds; see normalise_rows and split_outputs";
+}
+
 /// Samples until what one agent knows has reached everybody: at most twice the distance to the farthest from
 /// agent 0.
 int spread_of(const Network& network, int rounds) {
@@ -210,8 +219,8 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   c.quantities.push_back({"contraction", rates.contraction, "of the disagreement by all rounds of a sample"});
   const bool bound_asked = !std::isnan(p.initial_error);
   const bool unit = scalar_unit_rows(model);
-  c.conditions.push_back({"one output of unit length per agent", unit ? 1.0 : 0.0, "= 1", unit,
-                          "assumption of all bounds; see normalise_rows and split_outputs", bound_asked});
+  c.conditions.push_back(
+      {"one output of unit length per agent", unit ? 1.0 : 0.0, "= 1", unit, row_advice(model), bound_asked});
   const Noise& noise = model.noise();
   const bool gaussian = p.failure > 0.0;
   const bool noise_known = gaussian

@@ -41,7 +41,7 @@ UnitRows normalise_rows(MatrixRef C, VectorRef b_v) {
     const double length = C.row(i).stableNorm();
     if (length == 0.0)
       refuse("C[" + std::to_string(i) + "]", "a zero row", "a row of positive length",
-             "leave out the sensor, it measures nothing");
+             "leave this sensor out, it sees nothing of the state");
     unit.scale[i] = 1.0 / length;
     unit.C.row(i) /= length;
     unit.b_v[i] /= length;

@@ -28,10 +28,16 @@ void require_bound_assumptions(const Model& model, bool gaussian) {
              "at most one row per agent",
              "an error bound needs scalar sensors: split_outputs gives each row an agent of its own");
     if (model.outputs(i) == 0) continue;
-    const double length = model.C(i).norm();
+    const double length = model.C(i).stableNorm();
+    if (length == 0.0)
+      refuse("C[" + std::to_string(i) + "]", "zeros", "a row of unit length",
+             "the sensor of agent " + std::to_string(i) +
+                 " sees nothing of the state: take its row away (C[" + std::to_string(i) +
+                 "] = [], an agent without sensors)");
     if (std::abs(length - 1.0) > 1e-9)
       refuse("C[" + std::to_string(i) + "]", "a row of length " + text(length), "a row of unit length",
-             "normalise it together with y and the noise bound: normalise_rows");
+             "divide the row, its measurements and their noise by " + text(length) +
+                 " (saturation.normalise_rows does)");
   }
 }
 

@@ -43,7 +43,7 @@ Case recorded(test::Rng& rng, int n, int agents, int liars, bool for_good, doubl
 }
 
 Refuted verdict(const Case& c, int attacked, bool for_good) {
-  return contradiction(c.model, c.y, {.attacked = attacked, .for_good = for_good}).refuted;
+  return contradictions(c.model, c.y, 1, {.attacked = attacked, .for_good = for_good})[0].refuted;
 }
 
 }  // namespace
@@ -74,10 +74,10 @@ TEST_CASE("measurements that nobody reaches do not lie") {
   const Matrix I = Matrix::Identity(1, 1);
   const Noise noise{.process_bound = 1.0, .measurement_bound = Vector::Constant(2, 0.1)};
   const Matrix y{{0.0, 5.0}, {0.0, 5.0}};
-  CHECK(contradiction(Model(I, {I, I}, noise), y, {.attacked = 1}).refuted == Refuted::nothing);
+  CHECK(contradictions(Model(I, {I, I}, noise), y, 1, {.attacked = 1})[0].refuted == Refuted::nothing);
   const Model secured(I, {I, I}, noise, {0, 0});
-  CHECK(contradiction(secured, y, {.attacked = 1}).refuted == Refuted::measurement_bound);
-  CHECK(contradiction(secured, y, {.attacked = 1}).row == 0);
+  CHECK(contradictions(secured, y, 1, {.attacked = 1})[0].refuted == Refuted::measurement_bound);
+  CHECK(contradictions(secured, y, 1, {.attacked = 1})[0].row == 0);
 }
 
 TEST_CASE("the search keeps to its budget and refuses what does not fit") {
@@ -88,8 +88,30 @@ TEST_CASE("the search keeps to its budget and refuses what does not fit") {
     const BudgetScope scope(over);
     CHECK(verdict(c, 0, false) == Refuted::nothing);
   }
-  CHECK_THROWS_AS(contradiction(c.model, c.y.leftCols(3), {}), InvalidInput);
-  CHECK_THROWS_AS(contradiction(c.model, c.y, {.owner = {0}}), InvalidInput);
-  CHECK_THROWS_AS(contradiction(c.model, c.y, {.attacked = -1}), InvalidInput);
-  CHECK_THROWS_AS(contradiction(c.model, c.y, {.inputs = Matrix::Zero(59, 1)}), InvalidInput);
+  CHECK_THROWS_AS(contradictions(c.model, c.y.leftCols(3), 1, {}), InvalidInput);
+  CHECK_THROWS_AS(contradictions(c.model, c.y, 1, {.owner = {0}}), InvalidInput);
+  CHECK_THROWS_AS(contradictions(c.model, c.y, 1, {.attacked = -1}), InvalidInput);
+  CHECK_THROWS_AS(contradictions(c.model, c.y, 1, {.inputs = Matrix::Zero(59, 1)}), InvalidInput);
+}
+
+TEST_CASE("every trial is looked at, and by what it says itself") {
+  test::Rng rng(5);
+  for (const int trials : {2, 30, 300}) {
+    const Case honest = recorded(rng, 2, 9, 1, false, 1.0, 1.0);
+    Matrix all = honest.y.replicate(trials, 1);
+    const std::vector<int> wrong{trials / 2, trials - 1};
+    for (const int k : wrong)
+      for (int t = 0; t < 60; ++t)
+        for (int i = 0; i < 9; ++i) all(60 * k + t, i) += test::whole(rng, 0, 1) == 0 ? -0.06 : 0.06;
+    const auto found = contradictions(honest.model, all, trials, {.attacked = 1});
+    REQUIRE(found.size() == static_cast<std::size_t>(trials));
+    for (int k = 0; k < trials; ++k) {
+      CAPTURE(k);
+      const bool named = std::find(wrong.begin(), wrong.end(), k) != wrong.end();
+      CHECK((found[static_cast<std::size_t>(k)].refuted != Refuted::nothing) == named);
+    }
+  }
+  const Case c = recorded(rng, 2, 7, 0, false, 1.0, 1.0);
+  CHECK_THROWS_AS(contradictions(c.model, c.y, 7, {}), InvalidInput);
+  CHECK_THROWS_AS(contradictions(c.model, c.y, 0, {}), InvalidInput);
 }
