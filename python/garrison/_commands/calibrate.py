@@ -51,9 +51,8 @@ def _now(c: Calibration) -> str:
 
 def _unjudged(label: str, c: Calibration) -> str:
     return (
-        f"{label}: an alarm in {1.0 / c.asked:.0f} tests is too rare, or comes too much in clusters, to be judged on "
-        "these records; on others the rate may be another one, by a factor of 10 and more: calibrate on longer "
-        "records, or ask for more frequent alarms or a shorter window"
+        f"{label}: not judged: {c.doubt}; on other records the rate may be another one, by a factor of 10 and more: "
+        "calibrate on longer records, or ask for more frequent alarms or a shorter window"
     )
 
 
@@ -79,6 +78,7 @@ def _plain(label: str, scenario: Scenario, c: Calibration) -> dict[str, Any]:
         "got": c.got,
         "by_part": list(c.by_part),
         "judged": c.judged,
+        "doubt": c.doubt,
         "tests": c.tests,
         "levels": levels,
         "process_bound": c.model.process_bound,
