@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Identification of a model from records, and the central Kalman filter.
+#include <cmath>
+
 #include "bindings.hpp"
 #include "garrison/analysis/identify.hpp"
 #include "kept.hpp"
@@ -59,7 +61,8 @@ void bind_fit(py::module_& m) {
           refuse("fit.harmonics",
                  std::to_string(harmonics) + " with " + std::to_string(raw.rows()) + " records",
                  "at least " + std::to_string(least) + " records", "use more records, or fewer harmonics");
-        require_range("fit.period", period, std::numeric_limits<double>::min());
+        if (!(period > 0.0) || !std::isfinite(period))
+          refuse("fit.period", text(period), "a number of samples > 0");
         return identify(raw, first, {factors, harmonics, period, root, factor, standardise});
       },
       py::arg("raw"), py::arg("first"), py::kw_only(), py::arg("factors") = standard.factors,

@@ -52,7 +52,9 @@ def of_conditions(model: _core.Model, network: _core.Network, filter: _core.Filt
 
 
 def of_blind(model: _core.Model) -> list[str]:
-    """A line that names sensors whose row of C is zero, which no filter can use and no test can judge."""
+    """A line that names sensors whose row of C is zero, which no filter can use; or that there is no sensor at all."""
+    if model.outputs == 0:
+        return ["no agent has a sensor (every C is empty): estimates are predictions from the start alone"]
     blind = [
         f"agent {i}" + (f" (output {k})" if len(rows) > 1 else "")
         for i, rows in enumerate(model.C)

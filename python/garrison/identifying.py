@@ -42,4 +42,10 @@ def fit(records: Records, **options: Any) -> Fit:
     states = options.pop("states", "factors")
     if states not in ("factors", "all"):
         raise refusal("fit.states", shown(states), '"factors" or "all"')
+    alone = ("factors", "standardise") if states == "all" else ("order", "most", "held_out", "noise", "inputs")
+    for name in alone:
+        if name in options:
+            got = f"{shown(options[name])} with states = {states!r}"
+            other = "none: there are no factors then" if states == "all" else 'states = "all" beside it'
+            raise refusal(f"fit.{name}", got, other)
     return (fit_full if states == "all" else fit_factors)(records, **options)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison.bound_kind import BoundKind
 from garrison.families import accuses, family_of
+from garrison.words import count
 
 Array = NDArray[np.float64]
 #: times `false_alarm` that most sensors must exceed, and standard deviations of a rate beyond that
@@ -112,9 +113,9 @@ def of_bounds(
     most = _pairs(model, measurements, bounds, for_good=for_good) if own else np.zeros(1, dtype=np.int64)
     if most.max() > liars:
         return [
-            f"{most.max()} pairs of sensors that measure the same differ by more than measurement_bound allows, and "
-            f"only {liars} sensors may be attacked{_trials(most > liars)}: measurement_bound is too small, or more of "
-            "them lie"
+            f"{count(int(most.max()), 'pair')} of sensors that measure the same differ by more than measurement_bound "
+            f"allows, and only {count(liars, 'sensor')} may be attacked{_trials(most > liars)}: measurement_bound is "
+            "too small, or more of them lie"
         ]
     found = _core.contradictions(
         model,
@@ -201,19 +202,19 @@ def _in_one_sample(y: Array, bounds: Array) -> NDArray[np.int64]:
     """Pairs without a common sensor that contradict each other, (trial, time): the extremes, then the next ones, ..."""
     ordered = np.sort(np.where(np.isfinite(y), y, np.nan), axis=-1)  # nan at the end
     known = np.isfinite(ordered).sum(axis=-1)
-    count = np.zeros(y.shape[:-1], dtype=np.int64)
+    pairs = np.zeros(y.shape[:-1], dtype=np.int64)
     limit = 2.0 * float(bounds.max()) * (1.0 + 1e-9) + _ROUNDING * np.where(np.isfinite(y), np.abs(y), 0.0).max(axis=-1)
     for k in range(y.shape[-1] // 2):
         top = known - 1 - k
         upper = np.take_along_axis(ordered, np.maximum(top, 0)[..., None], axis=-1)[..., 0]
-        count += (top > k) & (upper - ordered[..., k] > limit)
-    return count
+        pairs += (top > k) & (upper - ordered[..., k] > limit)
+    return pairs
 
 
 def _for_good(y: Array, bounds: Array) -> NDArray[np.int64]:
     """The same per trial, for pairs that contradict each other in any sample."""
     free = np.ones((len(y), y.shape[-1]), dtype=bool)
-    count = np.zeros(len(y), dtype=np.int64)
+    pairs = np.zeros(len(y), dtype=np.int64)
     for i in range(y.shape[-1]):
         for j in range(i):
             limit = (bounds[i] + bounds[j]) * (1.0 + 1e-9) + _ROUNDING * np.maximum(
@@ -221,5 +222,5 @@ def _for_good(y: Array, bounds: Array) -> NDArray[np.int64]:
             )
             apart = free[:, i] & free[:, j] & (np.abs(y[..., i] - y[..., j]) > limit).any(axis=1)
             free[apart, i] = free[apart, j] = False
-            count += apart
-    return count
+            pairs += apart
+    return pairs

@@ -36,7 +36,9 @@ def shown(value: Any, most: int = 60) -> str:
 
 def near(name: str, known: Iterable[str]) -> str:
     """Ending of a refusal: the known name that was probably meant, or nothing."""
-    found = _core.nearest_name(name, list(known)) if name.isprintable() else ""
+    known = list(known)
+    other_case = (one for one in known if one.casefold() == name.casefold())
+    found = next(other_case, "") or (_core.nearest_name(name, known) if name.isprintable() else "")
     return f'did you mean "{found}"?' if found else ""
 
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "core/solvers.hpp"
 #include "giant_record.hpp"
@@ -85,7 +86,7 @@ Vector season_of(const Matrix& X, const Vector& z, Eigen::Index station) {
   const std::string which = "station " + std::to_string(station);
   if (count < 10 * X.cols())
     refuse(which, std::to_string(count) + " records", "at least " + std::to_string(10 * X.cols()),
-           "use more years, or fewer harmonics");
+           count == 0 ? "leave it out" : "use more years, or fewer harmonics");
   Matrix rows(count, X.cols());
   Vector values(count);
   for (Eigen::Index r = 0, k = 0; r < z.size(); ++r)
@@ -115,21 +116,36 @@ Vector spreads(const Matrix& deviations) {
   return found;
 }
 
-/// What every station's deviations are measured in where factors are looked for; equal numbers keep their
-/// bits.
-Vector column_units(const Matrix& deviations, const MatrixRef& raw, std::optional<bool> standardise) {
-  const Vector spread = spreads(deviations);
-  if (standardise.value_or(false)) return spread;
+/// Size of a station's deviations that a few wild records do not change: the median, or the standard
+/// deviation where half of them are 0.
+double typical_size(const Vector& deviations, double spread) {
+  std::vector<double> sizes;
+  for (const double one : deviations)
+    if (!std::isnan(one)) sizes.push_back(std::abs(one));
+  const double middle = detail::median(sizes);
+  return middle > 0.0 ? middle : spread;
+}
+
+/// Refuses stations whose deviations nobody may mean to have one unit.
+void require_comparable(const Matrix& deviations, const Vector& spread) {
+  Vector size(spread.size());
+  for (Eigen::Index i = 0; i < size.size(); ++i) size(i) = typical_size(deviations.col(i), spread(i));
   Eigen::Index least = 0;
-  const double largest = spread.maxCoeff();
-  if (!standardise && spread.minCoeff(&least) * kComparable < largest) {
-    detail::refuse_giant_record(deviations, raw);
+  const double largest = size.maxCoeff();
+  if (size.minCoeff(&least) * kComparable < largest)
     refuse("station " + std::to_string(least),
-           "a spread of " + text(spread(least)) + " beside one of " + text(largest),
+           "deviations of about " + text(size(least)) + " beside " + text(largest),
            "columns of comparable sizes",
            "set standardise (true: every column in units of its own spread; false: all have one unit)");
-  }
-  return Vector::Constant(spread.size(), std::exp2(std::round(std::log2(largest))));
+}
+
+/// What every station's deviations are measured in where factors are looked for; equal numbers keep their
+/// bits.
+Vector column_units(const Matrix& deviations, std::optional<bool> standardise) {
+  const Vector spread = spreads(deviations);
+  if (standardise.value_or(false)) return spread;
+  if (!standardise) require_comparable(deviations, spread);
+  return Vector::Constant(spread.size(), std::exp2(std::round(std::log2(spread.maxCoeff()))));
 }
 
 /// Covariance over the samples at which both stations are present.
@@ -215,7 +231,7 @@ Identified identify(const MatrixRef& raw, std::int64_t first, const FitOptions& 
   m.options = options;
   const Matrix deviations = anomalies(raw, first, options, m.season);
   const bool standardise = options.standardise.value_or(false);
-  const Vector unit = column_units(deviations, raw, options.standardise);
+  const Vector unit = column_units(deviations, options.standardise);
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(
       pairwise_covariance(deviations * unit.cwiseInverse().asDiagonal()));
   const auto N = raw.cols();

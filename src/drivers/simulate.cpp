@@ -63,9 +63,9 @@ Matrix starts(const Model& model, const Matrix& given) {
   const int N = model.agents();
   if (given.size() == 0) return Matrix::Zero(n, N);
   if (given.rows() != n || (given.cols() != 1 && given.cols() != N))
-    refuse("start", std::to_string(given.rows()) + " x " + std::to_string(given.cols()),
-           std::to_string(n) + " x 1 or " + std::to_string(n) + " x " + std::to_string(N),
-           "one initial estimate for all, or one per agent");
+    refuse("start", std::to_string(given.cols()) + " x " + std::to_string(given.rows()) + " numbers",
+           "1 x " + std::to_string(n) + " or " + std::to_string(N) + " x " + std::to_string(n),
+           "agents x states: one initial estimate for all, or one per agent");
   if (!(given.cwiseAbs().maxCoeff() < kHuge))
     refuse("start", "a number that is not finite, or beyond 1e150", "finite initial estimates");
   return given.cols() == N ? given : given.replicate(1, N);

@@ -91,7 +91,7 @@ to = 2020-03-10
     [
         ({"inputs": ["vane"]}, "fit.inputs: got vane, expected columns of the records: east, west, valve"),
         ({"inputs": ["east", "west", "valve"]}, "some must be stations"),
-        ({"factors": 2}, "the unknown key 'factors'"),
+        ({"factors": 2}, "fit.factors: got 2 with states = 'all'"),
         ({"order": -1}, "fit.order"),
         ({"held_out": 1.0}, "fit.held_out: got 1"),
         ({"noise": 0.0}, "fit.noise: got 0"),

@@ -82,7 +82,7 @@ def test_units_of_single_columns_with_every_station_a_state() -> None:
 
 
 def test_what_depends_on_units_is_refused_and_the_advice_works(tmp_path: Path, capsys: Any) -> None:
-    with pytest.raises(gr.InvalidInput, match=r"station S0: got a spread of .* set standardise"):
+    with pytest.raises(gr.InvalidInput, match=r"station S0: got deviations of about .* set standardise"):
         one_factor(raw() * UNITS)
     path = tmp_path / "records.csv"
     given = records(raw() * UNITS)

@@ -38,7 +38,7 @@ def test_replay_of_what_was_simulated(system: tuple[gr.Model, gr.Network, gr.Fil
         ({"measurements": np.ones((0, 5))}, "measurements: got 0 samples"),
         ({"measurements": np.ones((2, 4, 5)), "trials": 3}, "trials: got 3, expected 2"),
         ({"measurements": np.ones((4, 5)), "truth": np.ones((4, 2))}, r"truth: got \(4, 2\), expected \(5, 2\)"),
-        ({"measurements": np.ones((4, 5)), "start": [1.0]}, "start: got 1 x 1, expected 2 x 1"),
+        ({"measurements": np.ones((4, 5)), "start": [1.0]}, "start: got 1 x 1 numbers, expected 1 x 2 or"),
         ({"measurements": np.ones((4, 5)), "keep": ["estimates"]}, 'did you mean "estimate"'),
         ({"measurements": np.ones((4, 5)), "link": {"drops": 0.1}}, 'did you mean "drop"'),
         ({"measurements": np.ones((4, 5)), "link": {"drop": 1.5}}, "1.5"),

@@ -248,7 +248,7 @@ def test_the_command(scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixtu
     assert json.loads((out / "sweep.json").read_text())["trials"] == 8
     assert main([*command, "-o", str(out), "--json"]) == 0
     assert len(json.loads(capsys.readouterr().out)["points"]) == 6 * 2 * 2
-    assert main(["sweep", str(scenario), "--set", "filter.threshold=-1", "-o", str(tmp_path / "bad")]) == 1
+    assert main(["sweep", str(scenario), "--set", "filter.threshold=-1", "-o", str(tmp_path / "bad")]) == 2
     points = tmp_path / "points.csv"
     points.write_text("filter.threshold,attack.value\n0.5,1\n0.7,3\n", encoding="utf-8")
     assert main(["sweep", str(scenario), "--points", str(points), "-o", str(tmp_path / "rows")]) == 0

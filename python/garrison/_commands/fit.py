@@ -19,6 +19,9 @@ from garrison.words import count, refusal, shown
 if TYPE_CHECKING:
     from rich.console import Console
 
+#: rate at which clean records exceed the levels where nothing else is asked for
+_FAILURE = 1e-3
+
 
 def add(commands: Commands) -> None:
     """Declare the command."""
@@ -83,7 +86,9 @@ def do(args: argparse.Namespace) -> int:
     records = read_records(args.records).between(start, end)
     print_warnings(records.notes, stderr=True)  # first: what is wrong with records may end the fit
     found = fit(records, **_options(args))
-    text = found.to_json(args.attacked, *([] if args.failure is None else [args.failure]))
+    if args.attacked is not None and found.levels(args.attacked, args.failure or _FAILURE) is None:
+        print_warnings([f"no levels for certificates: {_without_levels(found, args)}"], stderr=True)
+    text = found.to_json(args.attacked, args.failure or _FAILURE)
     if args.output:
         write_whole(new_file(args.output, args.force), lambda path: path.write_text(text + "\n", encoding="utf-8"))
     if args.json or not args.output:
@@ -101,6 +106,15 @@ def do(args: argparse.Namespace) -> int:
     console.print(str(found.whiteness()))
     console.print(f"written to {args.output}")
     return OK
+
+
+def _without_levels(found: Fit, args: argparse.Namespace) -> str:
+    """Why there are no levels."""
+    if found.model.states > 1:
+        return f"the model has {found.model.states} states, and they exist for --factors 1 alone"
+    complete = int(np.isfinite(found.measurements(found.records)).all(axis=1).sum())
+    rate = args.failure or _FAILURE
+    return f"{count(complete, 'complete record')}, and a rate of {rate:g} takes {2 / rate - 1:.0f}: raise --failure"
 
 
 def _options(args: argparse.Namespace) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from garrison._commands.terminal import (
     INTERRUPTED,
     NO,
     OK,
+    REFUSED,
     Commands,
     console_for,
     print_json,
@@ -85,6 +86,8 @@ def do(args: argparse.Namespace) -> int:
         return INTERRUPTED
     pictures = _pictures(found)
     _print(found, args, pictures)
+    if found.trials and all(str(row["status"]).startswith("refused") for row in found.trials):
+        return REFUSED
     return NO if found.refused or found.lost else OK
 
 

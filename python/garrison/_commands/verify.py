@@ -4,7 +4,7 @@ import argparse
 import math
 import sys
 
-from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table
+from garrison._commands.terminal import NO, OK, REFUSED, Commands, console_for, print_json, print_table
 from garrison.verify import FileResult, verify
 from garrison.words import count
 
@@ -58,7 +58,7 @@ def do(args: argparse.Namespace) -> int:
                     )
     if not results:
         print(f"verify: no case files in {args.folder}", file=sys.stderr)
-        return NO
+        return REFUSED
     print(
         f"verify: {count(len(results), 'file')}, {count(fields, 'field')}, {misses} missed",
         file=sys.stderr if args.json else sys.stdout,

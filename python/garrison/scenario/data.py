@@ -59,18 +59,19 @@ def read_data(section: Section, model: _core.Model, fitted: Fit | None, names: l
         known = columns_of(path.name, names_of, values, wanted)
         rest = [k for k, name in enumerate(names_of) if name not in wanted]
         names_of, values = [names_of[k] for k in rest], values[:, rest]
-    columns = _by_name(path.name, names_of, names if model.outputs == model.agents else [], list(model.output_names))
-    values = values[:, columns]
+    agents = names if model.outputs == model.agents else []
+    columns, doubt = _by_name(path.name, names_of, agents, list(model.output_names))
+    values, notes = values[:, columns], table.notes + doubt
     if table.clock is None:
         if "from" in section or "to" in section:
             raise refusal(section.where, "from or to", "none, because the file has no column of times")
-        return _require_width(Recording(values, notes=table.notes, inputs=known), path.name, model)
+        return _require_width(Recording(values, notes=notes, inputs=known), path.name, model)
     kept = [k for k, name in enumerate(table.names) if name not in wanted]
     units = [table.columns[k].unit for k in kept]
     # Inputs go through the choice of times beside the measurements.
     both = values if known is None else np.hstack([values, known])
     records = Records(
-        table.clock.moments, [*names_of, *wanted], both, table.clock.step, [*units, *[""] * len(wanted)], table.notes
+        table.clock.moments, [*names_of, *wanted], both, table.clock.step, [*units, *[""] * len(wanted)], notes
     )
     records = between(section, records)
     if known is not None:
@@ -80,20 +81,27 @@ def read_data(section: Section, model: _core.Model, fitted: Fit | None, names: l
     return _require_width(found, path.name, model)
 
 
-def _by_name(file: str, have: list[str], agents: list[str], outputs: list[str]) -> list[int]:
+def _by_name(file: str, have: list[str], agents: list[str], outputs: list[str]) -> tuple[list[int], list[str]]:
     """The columns in the order of the agents, or of the outputs, where they have these names; else as they come.
 
-    Raises InvalidInput where only some have them: then it is not the order that is meant.
+    Capitals do not matter where they tell no names apart. With a line where names of agents are passed over. Raises
+    InvalidInput where only some columns have them: then it is not the order that is meant.
     """
-    for wanted in filter(None, (agents, outputs)):
-        if sorted(have) == sorted(wanted):
-            return [have.index(name) for name in wanted]
-    for wanted in filter(None, (agents, outputs)):
-        missing = [name for name in wanted if name not in have]
+    known = [wanted for wanted in (agents, outputs) if wanted]
+    for wanted in known:
+        for folded in (str, str.casefold):
+            there, meant = [folded(name) for name in have], [folded(name) for name in wanted]
+            if len(set(there)) == len(there) and sorted(there) == sorted(meant):
+                return [there.index(name) for name in meant], []
+    for wanted in known:
+        there = [name.casefold() for name in have]
+        missing = [name for name in wanted if name.casefold() not in there]
         if len(have) == len(wanted) > len(missing):
             advice = "columns are matched by name"
             raise refusal(f"[data].file {file}", f"no column {', '.join(missing)}", ", ".join(wanted), advice)
-    return list(range(len(have)))
+    told = next((wanted for wanted in known if wanted != [str(k) for k in range(len(wanted))]), [])
+    doubt = f"{file}: columns {', '.join(have)} are taken in this order for {', '.join(told)}"
+    return list(range(len(have))), [doubt] if len(told) == len(have) else []
 
 
 def _input_columns(section: Section, model: _core.Model) -> list[str]:

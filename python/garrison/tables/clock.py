@@ -78,9 +78,11 @@ def read_clock(rows: Rows, cells: list[str], name: str = "", unit: str = "") -> 
     with a time.
     """
     places = [f"{rows.path}, line {line}" for line in rows.lines[1:]]
-    for place, cell in zip(places, cells, strict=True):
+    for place, cell, row in zip(places, cells, rows.cells[1:], strict=True):
         if is_missing(cell):
-            raise refusal(place, "no time", "a date or a number of seconds in the first column")
+            words = all(number(other, True) is None for other in row[1:]) and not all(map(is_missing, row[1:]))
+            advice = "units belong into the header: A [unit]" if words else ""
+            raise refusal(place, "no time", "a date or a number of seconds in the first column", advice)
     cells = spelt_out(cells)
     if _IMPLIED.get(name.lower()) == "a" and all(_YEAR.fullmatch(c.strip()) for c in cells):
         cells = [f"{c.strip()}-01-01" for c in cells]

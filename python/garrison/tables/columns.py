@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison.tables.cells import is_missing, number
 from garrison.tables.clock import Clock, doubt, read_clock
+from garrison.tables.joined import with_joined_date
 from garrison.tables.moments import is_time_of_day, looks_like_time
 from garrison.tables.text import Rows, decimal_comma, read_rows, require_widths
 from garrison.words import count, refusal
@@ -77,7 +78,7 @@ def read_table(path: str | Path) -> Table:
     Separators (comma, semicolon, tab, bar, blanks) and decimal commas are detected; units may stand in the header as
     `name [unit]`. Raises IoError or InvalidInput with the line when something does not fit.
     """
-    rows = _with_joined_time(_with_header(read_rows(path)))
+    rows = _with_joined_time(with_joined_date(_with_header(read_rows(path))))
     head = rows.cells[0]
     if _starts_with_data(rows):
         row = ", ".join(head)[:60]
@@ -172,7 +173,10 @@ def _require_names(rows: Rows, columns: list[Column]) -> None:
     seen: dict[str, int] = {}
     for k, column in enumerate(columns, start=1):
         if not column.name:
-            raise refusal(f"{rows.path}, line {rows.lines[0]}", f"no name for column {k}", "a name for every column")
+            advice = "leave the column out if it numbers the rows" if k == 1 else ""
+            raise refusal(
+                f"{rows.path}, line {rows.lines[0]}", f"no name for column {k}", "a name for every column", advice
+            )
         if column.name in seen:
             places = f"columns {seen[column.name]} and {k}"
             raise refusal(

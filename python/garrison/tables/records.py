@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from garrison.result import Result
 from garrison.tables.clock import Moment, of_number, seconds_of
 from garrison.tables.columns import read_table
-from garrison.words import hinted_methods, refusal, shown
+from garrison.words import count, hinted_methods, refusal, shown
 
 Array = NDArray[np.float64]
 _DAY = 86400.0
@@ -84,7 +84,7 @@ class Records(Result):
             span = f"{self.dates[0]}..{self.dates[-1]}"
             raise refusal(
                 f"dates {'' if start is None else start}..{'' if end is None else end}",
-                f"{max(last - first, 0)} records",
+                count(max(last - first, 0), "record"),
                 f"at least 2; the file has {span}",
             )
         notes = [*self.notes, *self._beyond(start, end)]
