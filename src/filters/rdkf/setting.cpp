@@ -21,6 +21,12 @@ Eigen::SelfAdjointEigenSolver<Matrix> require_definite(const std::string& which,
   return eigen;
 }
 
+/// The covariance of states in units of their own noise: whether it is definite does not depend on units.
+Matrix correlations(const Matrix& S) {
+  const Vector size = S.diagonal().unaryExpr([](double v) { return v > 0.0 ? 1.0 / std::sqrt(v) : 1.0; });
+  return size.asDiagonal() * S * size.asDiagonal();
+}
+
 }  // namespace
 
 bool detectable(const MatrixRef& A, const MatrixRef& C) {
@@ -47,7 +53,7 @@ Setting part_setting(const Model& model, const Network& network) {
     s.C.push_back(model.C(i));
     s.Sw.push_back(noise.agent_process_covariance.empty() ? noise.process_covariance
                                                           : noise.agent_process_covariance[k]);
-    require_definite("process_covariance (Sw[" + agent + "])", s.Sw.back());
+    require_definite("process_covariance (Sw[" + agent + "])", correlations(s.Sw.back()));
     if (model.outputs(i) > 0) {
       s.Sv.push_back(noise.measurement_covariance[k]);
       const auto root = require_definite("measurement_covariance (Sv[" + agent + "])", s.Sv.back());
