@@ -210,3 +210,34 @@ def test_numbers_that_conditions_of_platoon_advise() -> None:
 
         steps.append(follow(check, given))
     assert len([s for s in steps if s]) > 3
+
+
+def in_units(states: list[float], outputs: list[float]) -> gr.Model:
+    """The same plant in other units."""
+    T, inverse = np.diag(states), np.diag(1.0 / np.array(states))
+    return gr.Model(
+        T @ A @ inverse,
+        [s * np.array(c) @ inverse for s, c in zip(outputs, ROWS, strict=True)],
+        process_covariance=0.1 * T @ T,
+        measurement_covariance=[[[0.2 * s * s]] for s in outputs],
+    )
+
+
+def test_units_of_models() -> None:
+    """Estimates are those in other units; where a filter depends on units, it says what to change."""
+    y = np.random.default_rng(0).normal(size=(30, 4))
+    plain, far, odd = in_units([1, 1], [1] * 4), in_units([1e-9, 1e9], [1] * 4), in_units([1, 1], [1e-9, 1, 1e9, 1])
+    for filter in (gr.filters.Dkf(), gr.filters.Rdkf()):
+        expected = gr.replay(plain, NET, filter, measurements=y).estimate
+        scaled = gr.replay(far, NET, filter, measurements=y).estimate
+        weighed = gr.replay(odd, NET, filter, measurements=y * [1e-9, 1, 1e9, 1]).estimate
+        assert expected is not None and scaled is not None and weighed is not None
+        assert np.allclose(scaled / [1e-9, 1e9], expected, rtol=1e-9, atol=1e-12)
+        assert np.allclose(weighed, expected, rtol=1e-9, atol=1e-12)
+    structural = gr.filters.Structural()
+    with pytest.raises(gr.DesignInfeasible, match="bring them to comparable units"):
+        gr.prepare(far, NET, structural)
+    run = gr.replay(odd, NET, structural, measurements=y * [1e-9, 1, 1e9, 1])
+    assert any("by the noise's standard deviation" in w for w in run.warnings)
+    again = gr.replay(in_units([1, 1], [0.2**-0.5] * 4), NET, structural, measurements=y * 0.2**-0.5)
+    assert not any("standard deviation" in w for w in again.warnings)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/QR>
+#include <string>
 
 #include "core/solvers.hpp"
 #include "garrison/filters/structural/setting.hpp"
@@ -58,5 +59,8 @@ inline Matrix best_gain(const View& v, const Matrix& P) {
   const Matrix PH = P * v.H.transpose();
   return PH * pseudo_inverse(v.H * PH + v.noise);
 }
+
+/// What to do where no gains are found because the states are in units far apart; empty where they are not.
+std::string far_apart(const Setting& s);
 
 }  // namespace garrison::structural::detail

@@ -86,6 +86,19 @@ double error_radius(const Setting& s, const GainMatrices& K) {
   return rho;
 }
 
+std::string detail::far_apart(const Setting& s) {
+  constexpr double kFar = 1e12;  // of variances
+  if (s.E.size() == 0) return {};
+  const Vector variance = s.E.diagonal();
+  const double most = variance.maxCoeff();
+  double least = most;
+  for (const double one : variance)
+    if (one > 0.0) least = std::min(least, one);
+  if (!(most > kFar * least)) return {};
+  return "the states have process noise from " + text(std::sqrt(least)) + " to " + text(std::sqrt(most)) +
+         ": bring them to comparable units";
+}
+
 Designed design_gains(const Setting& s, const std::string& method) {
   const std::vector<std::string> known{"auto", "riccati", "kalman", "h2", "projection"};
   if (std::find(known.begin(), known.end(), method) == known.end())
@@ -126,8 +139,9 @@ Designed design_gains(const Setting& s, const std::string& method) {
     return d;
   }
   throw DesignInfeasible("no stabilising gain by the design '" + method +
-                         "': spectral radius reached: " + text(reached) +
-                         ", needed below 1; try the design 'h2', or smaller self-weights W_ii");
+                         "': spectral radius reached: " + text(reached) + ", needed below 1; " +
+                         (detail::far_apart(s).empty() ? "try the design 'h2', or smaller self-weights W_ii"
+                                                       : detail::far_apart(s)));
 }
 
 ScalarGainChoice best_scalar_gain(double a, const MatrixRef& W) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "garrison/analysis/modes.hpp"
+#include "garrison/core/error.hpp"
 #include "garrison/filters/structural/filter.hpp"
 
 namespace garrison {
@@ -63,6 +64,24 @@ double long_row(const Structural::Params& p, const VerdictLog& log) {
   return std::max<double>(kLong, p.clear_after * std::ceil(std::log(kByChance / samples) / std::log(q)));
 }
 
+/// A line where outputs are in units so different that some of them hardly count: an agent adds up what its
+/// sensors say, C_j' y_j, as it is (K_i times the sum), whatever their noise.
+void add_units(const Model& model, std::vector<std::string>& all) {
+  constexpr double kFar = 1e3;
+  double least = kInfinity;
+  double most = 0.0;
+  for (const Matrix& R : model.noise().measurement_covariance)
+    if (R.size() == 1 && R(0, 0) > 0.0) {
+      least = std::min(least, std::sqrt(R(0, 0)));
+      most = std::max(most, std::sqrt(R(0, 0)));
+    }
+  if (most > kFar * least)
+    all.push_back(
+        "measurements have noise from " + text(least) + " to " + text(most) +
+        " in their units, and gains weigh them as they are: divide every measurement, its row of C and its "
+        "noise by the noise's standard deviation");
+}
+
 }  // namespace
 
 std::vector<std::string> Structural::warnings(const Params& params, const Model& model,
@@ -72,10 +91,12 @@ std::vector<std::string> Structural::warnings(const Params& params, const Model&
   for (int i = 0; i < model.agents(); ++i) sensors += model.outputs(i) > 0 ? 1 : 0;
   const Counts c = count(log, sensors);
   std::vector<std::string> all;
+  if (params.gain.empty()) add_units(model, all);
+  int named = 0;
   int more = 0;
   for (std::size_t i = 0; i < c.measured.size(); ++i) {
     if (2 * c.tested[i] >= c.measured[i]) continue;
-    if (static_cast<int>(all.size()) < kMostNamed)
+    if (named++ < kMostNamed)
       all.push_back("sensor " + std::to_string(i) + " was tested in " + percent(c.tested[i], c.measured[i]) +
                     " of the samples; in the others it was used untested");
     else
