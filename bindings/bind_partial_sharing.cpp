@@ -205,8 +205,8 @@ void bind_partial_sharing(py::module_& m) {
       "N agents, m states; network covariances are (N m, N m), agent by agent. k counts samples from\n"
       "0: k = t - 1. Sigma: (N m, N m), zero on regular agents, None = no attack. P_0 and the start\n"
       "belong to k = 0.")
-      .def(py::init<const Model&, const Network&, const FilterHandle&>(), py::arg("model"), py::arg("network"),
-           py::arg("filter"))
+      .def(py::init<const Model&, const Network&, const FilterHandle&>(), py::arg("model"),
+           py::arg("network"), py::arg("filter"))
       .def_property_readonly("selection", [](const Analysis& a) { return a.setting.selection; })
       .def_property_readonly(
           "shared_fraction", [](const Analysis& a) { return a.setting.shared_fraction(); },

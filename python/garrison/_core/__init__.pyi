@@ -1251,7 +1251,7 @@ def lambda0_orthogonal(
     Closed form of lambda0 for rows that are parallel or orthogonal; None for others.
     """
 
-def lfre_parents(filter: Filter, model: Model, network: Network) -> list[list[int]]:
+def lfre_parents(model: Model, network: Network, filter: Filter) -> list[list[int]]:
     """
     Parents of every agent in an Lfre filter.
     """

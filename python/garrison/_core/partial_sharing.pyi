@@ -70,7 +70,7 @@ class Analysis:
     belong to k = 0.
     """
     def __init__(
-        self, filter: garrison._core.Filter, model: garrison._core.Model, network: garrison._core.Network
+        self, model: garrison._core.Model, network: garrison._core.Network, filter: garrison._core.Filter
     ) -> None: ...
     def __reduce__(self) -> tuple: ...
     def coupling_form(

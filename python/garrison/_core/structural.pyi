@@ -192,7 +192,7 @@ def predictions(
     """
 
 def projection_gains(setting: Setting) -> list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]: ...
-def setting(filter: garrison._core.Filter, model: garrison._core.Model, network: garrison._core.Network) -> Setting:
+def setting(model: garrison._core.Model, network: garrison._core.Network, filter: garrison._core.Filter) -> Setting:
     """
     The setting that a Structural filter is designed for on this model and network.
     """
