@@ -93,7 +93,9 @@ std::unique_ptr<PartRunner> kalman(const typename F::Params& params, const Whole
 }
 
 std::string saturation_needs(const Saturation::Params& p) {
-  if (std::isnan(p.step)) return "the best step follows from the spectrum of the network: give \"step\" (garrison-mpi spectrum prints it)";
+  if (std::isnan(p.step))
+    return "the best step follows from the spectrum of the network: give \"step\" (garrison-mpi spectrum "
+           "prints it)";
   if (p.chebyshev) return "Chebyshev weights follow from the spectrum of the network";
   return std::isnan(p.initial_error) ? "" : "bounds follow from all sensors: leave initial_error out";
 }

@@ -85,6 +85,24 @@ TEST_CASE("replay gives the bits of agents driven by hand, and survives bad meas
   }
 }
 
+TEST_CASE("nobody starts anew because measurements are missing") {
+  for (const int n : {1, 3, 9}) {
+    Setup s = setup(n, 7, static_cast<std::uint64_t>(80 + n));
+    test::Rng rng(90 + static_cast<std::uint64_t>(n));
+    s.y = test::normal_matrix(rng, 30, 7);
+    for (Eigen::Index t = 4; t < 26; t += 2) s.y.row(t).head(t % 7).setConstant(kNaN);
+    for (const auto& filter : test::every_filter()) {
+      CAPTURE(n);
+      CAPTURE(filter->name());
+      const Record record =
+          replay(s.model, s.network, *filter, s.y, Matrix(), options_with(Vector::Constant(n, 0.3)));
+      CHECK(record.missing > 20);
+      CHECK(record.resets == 0);
+      CHECK(record.overflows == 0);
+    }
+  }
+}
+
 TEST_CASE("agents driven by bytes lose and hear just what the engine says, bit for bit") {
   for (const int n : {1, 3, 9}) {
     const Setup s = setup(n, 7, static_cast<std::uint64_t>(60 + n));
