@@ -243,3 +243,39 @@ def test_a_function_of_other_arguments_is_refused_when_it_is_given() -> None:
         gr.attacks.custom(lambda t: t, agents=[1])
     with pytest.raises(gr.InvalidInput, match=r"expected a function of \(t, round, sender, receiver, message, rng\)"):
         gr.attacks.custom_message(lambda t, message: message, agents=[1])
+
+
+class Blamer(gr.Filter):
+    """Accuses agent 1 from the start, and has attributes whose names mean something in other filters."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.window, self.settle, self.attacked, self.detector, self.false_alarm = 50, 40, 1, True, 1e-9
+
+    def sense(self, agent: gr.AgentInfo, state: Any, y: Any, t: int) -> dict[str, Any]:
+        return {"estimate": state.estimate}
+
+    def fuse(self, agent: gr.AgentInfo, state: Any, inbox: Any, round: int) -> None:
+        return None
+
+    def report(self, agent: gr.AgentInfo, state: Any) -> dict[str, Any]:
+        return {"accused": [1]}
+
+
+def test_accusations_of_own_filters_are_shown_and_their_attributes_are_their_own() -> None:
+    model = gr.Model([[0.9]], [[1.0]] * 3, process_bound=0.1, measurement_bound=0.1)
+    run = gr.simulate(model, gr.Network.ring(3), Blamer(), attack=gr.attacks.Bias([1], value=3.0), steps=5, seed=1)
+    assert set(run.first_accused()) == {1}
+    assert not any("window" in w or "settle" in w or "level of their test" in w for w in run.warnings), run.warnings
+    found = gr.compare(
+        model,
+        gr.Network.ring(3),
+        [1],
+        filters={"mine": Blamer()},
+        attacks={"bias": gr.attacks.Bias([1], value=3.0)},
+        steps=8,
+        start=3,
+        trials=1,
+    )
+    (row,) = [r for r in found.rows if r["filter"] == "mine" and r["attack"] == "bias"]
+    assert row["false_alarms"] == 1.0  # before there was a lie
