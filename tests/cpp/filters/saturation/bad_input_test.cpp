@@ -72,7 +72,9 @@ TEST_CASE("different starts are refused where a promise rests on equal ones") {
                        InvalidInput);
   CHECK_NOTHROW(run({{"threshold", 1.0}}));
   o.start = Matrix::Zero(1, 2);
-  CHECK_THROWS_WITH_AS(run({{"threshold", 1.0}}), doctest::Contains("1 x 2"), InvalidInput);
+  CHECK_THROWS_WITH_AS(run({{"threshold", 1.0}}),
+                       doctest::Contains("got 2 x 1 numbers, expected 1 x 1 or 3 x 1; agents x states"),
+                       InvalidInput);
 }
 
 TEST_CASE("drivers refuse what does not fit") {
