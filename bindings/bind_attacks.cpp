@@ -168,9 +168,7 @@ void bind_attacks(py::module_& m) {
       .def_property_readonly("probability", [](const AnyAttack& a) { return a.schedule().probability(); })
       .def("__repr__", &code);
   keep(attack, arguments, attack_from);
-  compare<AnyAttack>(
-      attack, [](const AnyAttack& a, const AnyAttack& b) { return code(a) == code(b); },
-      [](const AnyAttack& a) { return py::str(code(a)); });
+  compare_arguments<AnyAttack>(attack, arguments);
   bind_functions(m);
   m.def(
       "custom_attack",

@@ -6,6 +6,7 @@
 #include "budget.hpp"
 #include "bytes.hpp"
 #include "garrison/node/log.hpp"
+#include "own_filter.hpp"
 
 using namespace garrison;
 
@@ -29,6 +30,13 @@ std::optional<certificate::Wanted> wanted_of(const std::string& name, double fai
   }
   wanted.spread = static_cast<certificate::Spread>(found - kSpreads);
   return wanted;
+}
+
+/// The prepared filter with what its runs are to certify.
+std::shared_ptr<Prepared> certifying(std::shared_ptr<const Prepared> prepared,
+                                     const std::optional<certificate::Wanted>& wanted) {
+  if (wanted) prepared = certified(*prepared, *wanted);
+  return std::const_pointer_cast<Prepared>(prepared);
 }
 
 void bind_log(py::module_& m) {
@@ -65,17 +73,29 @@ void bind_designs(py::module_& m) {
                        const std::string& certificate, double failure, int attacked,
                        const std::pair<double, double>& levels, bool memory, const py::object& progress) {
              const auto wanted = wanted_of(certificate, failure, attacked, levels, memory);
-             const auto design = [&] {
-               auto prepared = filter.filter->prepare(model, network);
-               if (wanted) prepared = certified(*prepared, *wanted);
-               return std::const_pointer_cast<Prepared>(prepared);
-             };
-             return within_budget(kInfinity, design,
+             return within_budget(kInfinity,
+                                  [&] { return certifying(filter.filter->prepare(model, network), wanted); },
                                   {progress, "the design of " + std::string(filter.filter->name())});
            }),
            py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("certificate") = "none",
            py::arg("failure") = 1e-6, py::arg("attacked") = 0, py::arg("levels") = std::pair(0.0, 0.0),
            py::arg("memory") = false, py::arg("progress") = py::none())
+      .def_static(
+          "from_gains",
+          [](const Model& model, const Network& network, const FilterHandle& filter, const py::object& gains,
+             const std::string& certificate, double failure, int attacked,
+             const std::pair<double, double>& levels, bool memory) {
+            const auto prepared = own::with_gains(*filter.filter, model, network, gains);
+            const auto wanted = wanted_of(certificate, failure, attacked, levels, memory);
+            return within_budget(kInfinity, [&] { return certifying(prepared, wanted); });
+          },
+          py::arg("model"), py::arg("network"), py::arg("filter"), py::arg("gains"),
+          py::arg("certificate") = "none", py::arg("failure") = 1e-6, py::arg("attacked") = 0,
+          py::arg("levels") = std::pair(0.0, 0.0), py::arg("memory") = false,
+          "The design of a filter written in Python, from what its `design` returned before.")
+      .def_property_readonly(
+          "gains", [](const Prepared& p) { return own::gains_of(p); },
+          "What `design` of a filter written in Python returned; None of a family's.")
       .def_property_readonly(
           "certificate",
           [](const Prepared& p) -> py::object {

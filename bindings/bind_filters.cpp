@@ -82,6 +82,13 @@ py::dict params_shown(const FilterHandle& f) {
   return own::is_own(*f.filter) ? own::attributes_of(*f.filter) : from_params(f.filter->params());
 }
 
+/// What equal filters have in common: a class of one's own is the one that is found by its module and name.
+py::tuple identity(const FilterHandle& f) {
+  if (!own::is_own(*f.filter)) return py::make_tuple(f.filter->name(), params_shown(f));
+  const auto type = py::type::of(own::object_of(*f.filter));
+  return py::make_tuple(type.attr("__module__"), type.attr("__qualname__"), params_shown(f));
+}
+
 std::string code(const FilterHandle& f) {
   const std::string name = f.filter->name();
   if (own::is_own(*f.filter)) return as_code(name, own::attributes_of(*f.filter));
@@ -115,7 +122,7 @@ changed in place, a message is a dict of named arrays, inbox a dict: sender -> m
 and optionally:
 
   rounds = 1                               rounds per sample (attribute, or set in __init__)
-  signals = ("name", ...)                  numbers of `report` that a run can keep
+  signals = ("name", ...)                  numbers of `report` that a run can keep; names that a file can hold
   layout(model) -> {"estimate": n}         fields of a message and how many numbers each has (the default)
   design(model, network) -> gains          once; agents find it as agent.gains
   start(agent, x0) -> state                an object or dict with "estimate", (n,); default: just that
@@ -126,8 +133,8 @@ and optionally:
   alarm_level(agent, state) -> number      deviation from that which it tolerates; default inf
 
 A message of None sends nothing. Attributes set in __init__ (after super().__init__()) are the parameters: they stand
-in the repr, in pickles and in saved runs. What a method raises comes back with its traceback and a note that names
-the agent and the sample.)";
+in the repr, in pickles and in saved runs, which hold no functions and no objects of other classes. What a method
+raises comes back with its traceback and a note that names the agent and the sample.)";
 
 }  // namespace
 
@@ -164,9 +171,7 @@ void bind_filters(py::module_& m) {
           "detail_names", [](const FilterHandle& f) { return f.filter->detail_names(); },
           "Names of the lists (sets, gains) that a run can keep.")
       .def("__repr__", &code);
-  compare<FilterHandle>(
-      filter, [](const FilterHandle& a, const FilterHandle& b) { return code(a) == code(b); },
-      [](const FilterHandle& f) { return py::str(code(f)); });
+  compare_arguments<FilterHandle>(filter, &identity);
   auto classes = m.def_submodule("filters", "One class per filter family.");
   Families::each([&]<class F> { bind_family<F>(classes); });
 

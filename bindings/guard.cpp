@@ -33,15 +33,21 @@ void translate(const Front& front, const std::vector<py::object>& values) {
   py::error_already_set error;
   const std::string words = error.value() ? py::str(error.value()).cast<std::string>() : "";
   const auto is = [&](PyObject* type) { return error.type().ptr() == type && !error.trace(); };
-  if (is(PyExc_TypeError) && (words.find("incompatible function arguments") != std::string::npos ||
-                              words.find("incompatible constructor arguments") != std::string::npos))
+  const bool plain = is(PyExc_KeyError) || is(PyExc_RuntimeError) || is(PyExc_IndexError) ||
+                     is(PyExc_ValueError) || is(PyExc_TypeError);
+  if (plain && front.name.ends_with(".__setstate__"))
+    raise("InvalidInput",
+          front.name + ": got a state " + (is(PyExc_KeyError) ? "without " + words : "of other types") +
+              ", expected what pickle kept of an object; it is damaged, or of another version");
+  else if (is(PyExc_TypeError) && (words.find("incompatible function arguments") != std::string::npos ||
+                                   words.find("incompatible constructor arguments") != std::string::npos))
     raise("InvalidInput", blame(front, values));
   else if (is(PyExc_MemoryError) || (is(PyExc_ValueError) && words.find("vector") != std::string::npos))
     raise("InvalidInput",
           front.name + ": got sizes that take more memory than there is, expected smaller ones");
   else if (is(PyExc_UnicodeDecodeError))
     raise("InvalidInput", front.name + ": got words that are not UTF-8, expected text; the file is damaged");
-  else if (is(PyExc_RuntimeError) || is(PyExc_IndexError) || is(PyExc_ValueError) || is(PyExc_TypeError))
+  else if (plain && !is(PyExc_KeyError))
     raise("Error", front.name + ": got an unexpected failure (" + words +
                        "), expected none; this is a bug of garrison");
   else

@@ -7,8 +7,16 @@
 
 #include <string>
 
-/// "garrison.Model(A=[[0.9]], C=[[[1.0]]])"; arrays as lists, numbers with all their digits.
+/// "garrison.Model(A=[[0.9]], C=[[[1.0]]])"; arrays as lists, numbers with all their digits, functions and
+/// classes by module and name. What has no code is shown as Python does, without its address: equal on every
+/// run.
 std::string as_code(const std::string& maker, const pybind11::dict& arguments);
+
+/// Equal in value: entry by entry in arrays, lists, tuples and dicts; nan is nan, and 0 is -0. What cannot be
+/// compared differs.
+bool same(pybind11::handle a, pybind11::handle b);
+/// A number that is the same for all that is the same.
+Py_hash_t alike(pybind11::handle value);
 
 /// `arguments(object)` gives the constructor's arguments as a dict and `make(dict)` an equal object.
 template <class Class, class Arguments, class Make>
@@ -34,17 +42,22 @@ void compare(Class& bound, const Same& same, const Hash& hash) {
   bound.def("__hash__", [hash](const T& self) { return pybind11::hash(hash(self)); });
 }
 
+/// The same of the arguments that make an equal object.
+template <class T, class Class, class Arguments>
+void compare_arguments(Class& bound, Arguments arguments) {
+  compare<T>(
+      bound, [arguments](const T& a, const T& b) { return same(arguments(a), arguments(b)); },
+      [arguments](const T& x) { return pybind11::int_(alike(arguments(x))); });
+}
+
 /// All of it for a class whose constructor takes `arguments(object)` by name; `maker` is what Python calls
 /// it.
 template <class T, class Class, class Arguments>
 void keep_as_code(Class& bound, const std::string& maker, Arguments arguments) {
   const pybind11::handle type = bound;
   keep(bound, arguments, [type](const pybind11::dict& given) { return type(**given).template cast<T>(); });
-  const auto code = [maker, arguments](const T& x) { return as_code(maker, arguments(x)); };
-  bound.def("__repr__", code);
-  compare<T>(
-      bound, [code](const T& a, const T& b) { return code(a) == code(b); },
-      [code](const T& x) { return pybind11::str(code(x)); });
+  bound.def("__repr__", [maker, arguments](const T& x) { return as_code(maker, arguments(x)); });
+  compare_arguments<T>(bound, arguments);
 }
 
 template <class T, class M>
@@ -73,9 +86,6 @@ void keep_fields(Class& bound, const std::string& maker, KeptField<T, M>... fiel
     ((x.*(fields.member) = given[fields.name].template cast<M>()), ...);
     return x;
   });
-  const auto code = [maker, state](const T& x) { return as_code(maker, state(x)); };
-  bound.def("__repr__", code);
-  compare<T>(
-      bound, [code](const T& a, const T& b) { return code(a) == code(b); },
-      [code](const T& x) { return pybind11::str(code(x)); });
+  bound.def("__repr__", [maker, state](const T& x) { return as_code(maker, state(x)); });
+  compare_arguments<T>(bound, state);
 }

@@ -2,6 +2,7 @@
 #include "own_family.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include "convert.hpp"
 #include "garrison/core/params.hpp"
@@ -107,11 +108,13 @@ std::ptrdiff_t place_of_estimate(const Layout& layout, std::size_t states) {
   return -1;
 }
 
-/// A verdict by its word, or as a garrison.Verdict.
+/// A verdict by its name or word (NOT_TESTED, not_tested, not tested), or as a garrison.Verdict.
 Verdict verdict_of(const std::string& which, py::handle given) {
   const std::vector<std::string> words{"cleared", "suspected", "attacked", "silent", "not_tested"};
   if (py::isinstance<py::str>(given)) {
-    const auto word = given.cast<std::string>();
+    auto word = given.cast<std::string>();
+    for (char& letter : word)
+      letter = letter == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     for (std::size_t k = 0; k < words.size(); ++k)
       if (word == words[k]) return static_cast<Verdict>(k);
     garrison::refuse_unknown(which, word, words);

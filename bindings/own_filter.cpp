@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "own_filter.hpp"
 
+#include <algorithm>
+#include <optional>
+
 #include "convert.hpp"
 #include "own_family.hpp"
 
@@ -9,6 +12,39 @@ namespace own {
 using namespace garrison;
 
 namespace {
+
+/// Bytes of the longest name of a signal: with the prefix of a saved run it is still the name of a file.
+constexpr std::size_t kLongestSignal = 200;
+
+/// Why a saved run (an archive, netCDF, or a folder of zarr) could not hold a signal of this name; empty
+/// where it can.
+std::string unfit(const std::string& name) {
+  if (name.empty()) return "is empty";
+  if (name.size() > kLongestSignal) return "has more than " + std::to_string(kLongestSignal) + " bytes";
+  if (name.find_first_of("/\\") != std::string::npos || name == "." || name == "..")
+    return "is a path of folders";
+  if (name.front() == ' ' || name.back() == ' ') return "begins or ends with a space";
+  if (name.find('\'') != std::string::npos) return "has an apostrophe, which netCDF refuses";
+  const py::object known = py::module_::import("unicodedata").attr("is_normalized")("NFC", name);
+  if (!known.cast<bool>()) return "has letters and accents in two parts, which netCDF refuses";
+  if (!py::str(name).attr("isprintable")().cast<bool>()) return "has characters that cannot be printed";
+  return {};
+}
+
+/// Names of the signals: each is that of an array in a saved run, and of a file in a folder of zarr.
+std::vector<std::string> signals_of(const std::string& which, const py::object& given) {
+  auto names = convert::names(which, given);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string& name = names[k];
+    const bool twice = std::count(names.begin(), names.end(), name) > 1;
+    if (const auto why = twice ? "is there twice" : unfit(name); !why.empty())
+      refuse(which + "[" + std::to_string(k) + "]",
+             py::repr(py::str(name).attr("__getitem__")(py::slice(0, 40, 1))).cast<std::string>() +
+                 ", which " + why,
+             "a name that a saved run can give to an array", "use one word for each, such as \"residual\"");
+  }
+  return names;
+}
 
 /// The C++ part of a Python object never outlives it, so a plain pointer does; who needs the object longer
 /// holds it (OwnPrepared).
@@ -36,7 +72,7 @@ class OwnFilter final : public AnyFilter {
     const py::gil_scoped_acquire gil;
     const py::object self = object();
     if (!py::hasattr(self, "signals")) return {};
-    return convert::names(name() + ".signals", self.attr("signals"));
+    return signals_of(name() + ".signals", self.attr("signals"));
   }
   std::vector<std::string> warnings(const Model&, const VerdictLog&) const override { return {}; }
   std::vector<std::string> refuted(unsigned) const override { return {}; }
@@ -165,7 +201,8 @@ class OwnRunner final : public Runner {
 
 class OwnPrepared final : public Prepared {
  public:
-  OwnPrepared(const py::object& self, const OwnFilter& filter, const Model& model, const Network& network)
+  OwnPrepared(const py::object& self, const OwnFilter& filter, const Model& model, const Network& network,
+              std::optional<py::object> gains = std::nullopt)
       : object_(self), filter_(filter), name_(filter.name()), model_(model), network_(network) {
     for (const char* needed : {"sense", "fuse"})
       if (!py::hasattr(self, needed))
@@ -174,7 +211,9 @@ class OwnPrepared final : public Prepared {
     layout_ = layout_of(self, name_, model);
     rounds_ = rounds_of(self, name_);
     signals_ = filter.signal_names();
-    if (py::hasattr(self, "design"))
+    if (gains)
+      gains_ = Held(std::move(*gains));
+    else if (py::hasattr(self, "design"))
       gains_ = Held(noted(name_ + ".design", [&] { return self.attr("design")(model, network); }));
     else
       gains_ = Held(py::none());
@@ -183,6 +222,7 @@ class OwnPrepared final : public Prepared {
   const Model& model() const override { return model_; }
   const Network& network() const override { return network_; }
   const AnyFilter& filter() const override { return filter_; }
+  const py::object& gains() const { return *gains_; }
   std::unique_ptr<Runner> runner(int) const override {
     const py::gil_scoped_acquire gil;
     SessionPtr session(new Session);
@@ -259,6 +299,20 @@ std::shared_ptr<const AnyFilter> filter_of(const FilterHandle* handle) {
 bool is_own(const AnyFilter& filter) { return dynamic_cast<const OwnFilter*>(&filter) != nullptr; }
 
 py::object object_of(const AnyFilter& filter) { return dynamic_cast<const OwnFilter&>(filter).object(); }
+
+py::object gains_of(const Prepared& prepared) {
+  const auto* const found = dynamic_cast<const OwnPrepared*>(&prepared);
+  return found == nullptr ? py::object(py::none()) : found->gains();
+}
+
+std::shared_ptr<const Prepared> with_gains(const AnyFilter& filter, const Model& model,
+                                           const Network& network, py::object gains) {
+  const auto* const found = dynamic_cast<const OwnFilter*>(&filter);
+  if (found == nullptr)
+    refuse("filter", filter.name(), "a class of your own", "a family comes from its design file");
+  require_same_size(model, network);
+  return std::make_shared<OwnPrepared>(found->object(), *found, model, network, std::move(gains));
+}
 
 py::dict attributes_of(const AnyFilter& filter) {
   const py::object object = object_of(filter);

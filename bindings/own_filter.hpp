@@ -17,5 +17,11 @@ bool is_own(const garrison::AnyFilter& filter);
 py::object object_of(const garrison::AnyFilter& filter);
 /// What the user keeps in the object: its parameters.
 py::dict attributes_of(const garrison::AnyFilter& filter);
+/// What the user's `design` returned; None where the filter is a family.
+py::object gains_of(const garrison::Prepared& prepared);
+/// The filter, prepared with gains that its `design` returned before.
+std::shared_ptr<const garrison::Prepared> with_gains(const garrison::AnyFilter& filter,
+                                                     const garrison::Model& model,
+                                                     const garrison::Network& network, py::object gains);
 
 }  // namespace own

@@ -123,6 +123,6 @@ def test_bad_arguments_and_copies() -> None:
         [3],
         {"function": shifted},
     )
-    assert repr(attack).startswith("garrison.attacks.custom(agents=[3], function=<function shifted")
+    assert repr(attack) == "garrison.attacks.custom(agents=[3], function=test_own_attack.shifted, start=2, stop=9)"
     phases = gr.attacks.custom_message(forged, schedule=[(1, [2]), (5, [0, 1])])
     assert phases.target == "message" and phases.schedule == [(1, [2]), (5, [0, 1])]

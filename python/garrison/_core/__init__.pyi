@@ -454,7 +454,7 @@ class Filter:
     and optionally:
 
       rounds = 1                               rounds per sample (attribute, or set in __init__)
-      signals = ("name", ...)                  numbers of `report` that a run can keep
+      signals = ("name", ...)                  numbers of `report` that a run can keep; names that a file can hold
       layout(model) -> {"estimate": n}         fields of a message and how many numbers each has (the default)
       design(model, network) -> gains          once; agents find it as agent.gains
       start(agent, x0) -> state                an object or dict with "estimate", (n,); default: just that
@@ -465,8 +465,8 @@ class Filter:
       alarm_level(agent, state) -> number      deviation from that which it tolerates; default inf
 
     A message of None sends nothing. Attributes set in __init__ (after super().__init__()) are the parameters: they stand
-    in the repr, in pickles and in saved runs. What a method raises comes back with its traceback and a note that names
-    the agent and the sample.
+    in the repr, in pickles and in saved runs, which hold no functions and no objects of other classes. What a method
+    raises comes back with its traceback and a note that names the agent and the sample.
     """
     def __eq__(self, other: typing.Any) -> typing.Any: ...
     def __getstate__(self) -> dict: ...
@@ -735,6 +735,24 @@ class Design:
     """
     @staticmethod
     def from_bytes(data: typing.Any) -> Design: ...
+    @staticmethod
+    def from_gains(
+        model: Model,
+        network: Network,
+        filter: Filter,
+        gains: typing.Any,
+        certificate: str = "none",
+        failure: typing.SupportsFloat | typing.SupportsIndex = 1e-06,
+        attacked: typing.SupportsInt | typing.SupportsIndex = 0,
+        levels: tuple[typing.SupportsFloat | typing.SupportsIndex, typing.SupportsFloat | typing.SupportsIndex] = (
+            0.0,
+            0.0,
+        ),
+        memory: bool = False,
+    ) -> Design:
+        """
+        The design of a filter written in Python, from what its `design` returned before.
+        """
     def __init__(
         self,
         model: Model,
@@ -764,6 +782,11 @@ class Design:
         """
     @property
     def filter(self) -> typing.Any: ...
+    @property
+    def gains(self) -> typing.Any:
+        """
+        What `design` of a filter written in Python returned; None of a family's.
+        """
     @property
     def model(self) -> Model: ...
     @property
