@@ -32,6 +32,7 @@ def dimensions(run: Run) -> dict[str, tuple[str, ...]]:
         "estimate": (*_PER_AGENT, "state"),
         "box": (*_PER_AGENT, "state"),
         "measurements": ("trial", "sample", "output"),
+        "log": ("record", "sample", "output"),
         "inputs": ("step", "input"),
         "varying_A": ("step", "state", "state_before"),
         "varying_B": ("step", "state", "input"),

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from garrison import _core
+from garrison.encoded import Kind, decoded, encoded
 from garrison.numeric import numbers
 
 Plain = dict[str, Any]
@@ -15,25 +16,25 @@ def described(model: _core.Model, network: _core.Network, filter: _core.Filter) 
     return {"model": described_model(model), "network": _network(network), "filter": _filter(filter)}
 
 
-def _lists(value: Any) -> Any:
-    """Arrays, also inside lists, as nested lists; None stays."""
+def plain_lists(value: Any) -> Any:
+    """Arrays and tuples, also inside lists, as nested lists; None stays."""
     if isinstance(value, (list, tuple)):
-        return [_lists(v) for v in value]
+        return [plain_lists(v) for v in value]
     if isinstance(value, dict):
-        return {key: _lists(v) for key, v in value.items()}
+        return {key: plain_lists(v) for key, v in value.items()}
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
 def plain_data(value: Any) -> Any:
     """Numbers of any kind as nested lists; None stays."""
-    return None if value is None else _lists(numbers("value", value))
+    return None if value is None else plain_lists(numbers("value", value))
 
 
 def described_attack(attack: _core.Attack) -> Plain:
     """The attack by what makes it; one of the user's own by its code alone."""
     if attack.own:
         return {"own": repr(attack)}
-    return {key: _lists(value) for key, value in attack.__getstate__().items()}
+    return {key: plain_lists(value) for key, value in attack.__getstate__().items()}
 
 
 def attack_of(plain: Plain) -> _core.Attack:
@@ -50,7 +51,7 @@ def attack_of(plain: Plain) -> _core.Attack:
 def _arguments(thing: Any) -> Plain | None:
     """The arguments that make an equal object, where the core keeps them for pickles."""
     state = thing.__getstate__() if hasattr(thing, "__getstate__") else None
-    return {key: _lists(value) for key, value in state.items()} if isinstance(state, dict) else None
+    return {key: plain_lists(value) for key, value in state.items()} if isinstance(state, dict) else None
 
 
 def described_model(model: _core.Model) -> Plain:
@@ -59,7 +60,9 @@ def described_model(model: _core.Model) -> Plain:
         return arguments
     bounds = np.asarray(model.measurement_bound)
     out: Plain = {"A": model.A, "C": model.C, "process_bound": model.process_bound}
-    return {key: _lists(value) for key, value in (out | ({"measurement_bound": bounds} if bounds.size else {})).items()}
+    return {
+        key: plain_lists(value) for key, value in (out | ({"measurement_bound": bounds} if bounds.size else {})).items()
+    }
 
 
 def model_of(plain: Plain) -> _core.Model:
@@ -76,7 +79,7 @@ def model_of(plain: Plain) -> _core.Model:
 def _network(network: _core.Network) -> Plain:
     if (arguments := _arguments(network)) is not None:
         return arguments
-    return {"agents": network.agents, "directed": network.directed, "edges": _lists(network.edges)}
+    return {"agents": network.agents, "directed": network.directed, "edges": plain_lists(network.edges)}
 
 
 def network_of(plain: Plain) -> _core.Network:
@@ -95,15 +98,15 @@ def named(network: _core.Network, names: list[str] | None) -> _core.Network:
 
 def _filter(filter: _core.Filter) -> Plain:
     kind = type(filter)
-    own = {"class": f"{kind.__module__}.{kind.__qualname__}"} if filter.own else {}
-    return {"name": filter.name, "params": _lists(filter.params)} | own
+    if not filter.own:
+        return {"name": filter.name, "params": plain_lists(filter.params)}
+    where = f"{filter.name}."
+    params = {key: encoded(where + key, value, _KINDS) for key, value in filter.params.items()}
+    return {"name": filter.name, "params": params, "class": f"{kind.__module__}.{kind.__qualname__}"}
 
 
 def filter_of(plain: Plain) -> _core.Filter:
-    """The filter that was described; one of the user's own needs its class defined, and nothing is imported for it.
-
-    Its attributes come back as plain data: arrays as lists.
-    """
+    """The filter that was described; one of the user's own needs its class defined, and nothing is imported for it."""
     if "class" not in plain:
         return _core.make_filter(plain["name"], plain["params"])
     pending: list[type[_core.Filter]] = _core.Filter.__subclasses__()
@@ -111,8 +114,16 @@ def filter_of(plain: Plain) -> _core.Filter:
         kind = pending.pop()
         if f"{kind.__module__}.{kind.__qualname__}" == plain["class"]:
             made = kind.__new__(kind)
-            made.__setstate__(plain["params"])
+            made.__setstate__({key: decoded(value, _KINDS) for key, value in plain["params"].items()})
             return made
         pending += kind.__subclasses__()
     missing = f"the filter {plain['class']}, which is not defined here"
     raise _core.IoError(f"filter: got {missing}, expected its class; define or import it first")
+
+
+#: objects of garrison that a filter of one's own may have as attributes
+_KINDS = (
+    Kind("model", _core.Model, described_model, model_of),
+    Kind("network", _core.Network, _network, network_of),
+    Kind("filter", _core.Filter, _filter, filter_of),
+)

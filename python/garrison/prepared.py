@@ -9,6 +9,7 @@ from garrison.arguments import whole
 from garrison.checks import Check, check
 from garrison.paths import read, write
 from garrison.record import Run
+from garrison.result import same
 from garrison.words import Hinting, hinted, hinted_methods, refusal, require_order, shown
 
 
@@ -17,7 +18,8 @@ class Prepared(metaclass=Hinting):
     """A filter designed for one model and network: `prepare` makes it, `save` and `load` carry it elsewhere.
 
     The gains travel with it, so that every run and agent of it has the same bits, here and on another machine; nothing
-    is designed again. Compares by value, copies and pickles.
+    is designed again. Copies and pickles; equal to another one of an equal model, network and filter that certifies
+    the same. One of a filter of your own has no design file.
     """
 
     def __init__(self, design: _core.Design) -> None:
@@ -107,17 +109,29 @@ class Prepared(metaclass=Hinting):
         return found
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Prepared) and self.to_bytes() == other.to_bytes()
+        return isinstance(other, Prepared) and same(self._made_from(), other._made_from())
 
     def __hash__(self) -> int:
-        return hash(self.to_bytes())
+        return hash((self.model, self.network, self.filter))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Prepared.from_bytes, (self.to_bytes(),)
+        if not self.filter.own:
+            return Prepared.from_bytes, (self.to_bytes(),)
+        return _from_gains, (self.model, self.network, self.filter, self._design.gains, self.certificate)
+
+    def _made_from(self) -> tuple[Any, ...]:
+        return self.model, self.network, self.filter, self.certificate
 
     def __repr__(self) -> str:
         wanted = "".join(f", {k}={v!r}" for k, v in (self.certificate or {}).items())
         return f"garrison.prepare({self.model!r}, {self.network!r}, {self.filter!r}{wanted})"
+
+
+def _from_gains(
+    model: _core.Model, network: _core.Network, filter: _core.Filter, gains: Any, wanted: dict[str, Any] | None
+) -> Prepared:
+    """A filter of one's own with what its `design` returned before."""
+    return Prepared(_core.Design.from_gains(model, network, filter, gains, **(wanted or {})))
 
 
 @hinted

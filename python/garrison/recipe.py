@@ -33,9 +33,9 @@ def recipe(run: Run) -> tuple[str, tuple[Any, ...], dict[str, Any]]:
     else:
         if run.measurements is None:
             raise refusal("again", "a replay without its measurements", 'keep to contain "measurements"')
-        # Attacks on measurements are in what was kept.
-        given |= {"measurements": run.measurements, "truth": run.truth}
-        given["attack"] = [attack for attack in attacks if attack.target == "message"]
+        given |= {"measurements": run.measurements if run.log is None else run.log, "truth": run.truth}
+        # Without the log, as runs were saved before they kept it, attacks on measurements are in what was kept.
+        given["attack"] = [attack for attack in attacks if run.log is not None or attack.target == "message"]
     return run.made["driver"], (plant, run.network, run.filter), given
 
 

@@ -20,6 +20,8 @@ from garrison.objects import described, filter_of, model_of, network_of
 from garrison.paths import path as path_of
 from garrison.paths import read, write
 from garrison.recipe import code
+from garrison.result import same
+from garrison.shapes import require_arrays, require_lists
 from garrison.verdict import Verdict
 from garrison.words import Hinting, count, hinted_methods, near, refusal
 
@@ -31,6 +33,7 @@ Array = NDArray[np.float64]
 ARRAYS = (
     "truth",
     "measurements",
+    "log",
     "inputs",
     "estimate",
     "error",
@@ -52,6 +55,22 @@ _VARYING = "varying_"
 #: names that a dataset of the run has for other things than signals
 _TAKEN = {*ARRAYS, "trial", "time", "agent", "state", "sample", "output", "input", "step"}
 _TAKEN |= {"state_unit", "output_unit", "input_unit"}
+#: and names that netCDF has for types
+_TAKEN |= {
+    "byte",
+    "char",
+    "short",
+    "ushort",
+    "int",
+    "uint",
+    "int64",
+    "uint64",
+    "float",
+    "real",
+    "double",
+    "bool",
+    "string",
+}
 
 
 @hinted_methods
@@ -83,6 +102,8 @@ class Run(metaclass=Hinting):
         Values of garrison.Verdict.
     measurements : (trial, time 1.., output) array
         As the network received them; from time 0 in families with a sample at the start.
+    log : (1 or trial, sample, output) array
+        Of a replay with attacks on measurements that keeps measurements: what it was given, before the attacks.
     inputs : (step, input) array
         Known ones; row t led from time t to t + 1.
     varying : dict
@@ -123,6 +144,7 @@ class Run(metaclass=Hinting):
         self.filter = filter
         self.truth: Array | None = data.get("truth")
         self.measurements: Array | None = data.get("measurements")
+        self.log: Array | None = data.get("log")
         self.estimate: Array | None = data.get("estimate")
         self.error: Array | None = data.get("error")
         self.bound: Array | None = data.get("bound")
@@ -250,16 +272,14 @@ class Run(metaclass=Hinting):
         return pack(self._document(), self._arrays())
 
     def __reduce__(self) -> Any:
-        return _restored, (self._packed(), "pickle")
+        parts = self.model, self.network, self.filter, self.made
+        return _made_of, (*parts, {name: getattr(self, name) for name in _LISTS}, self._arrays())
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Run):
             return NotImplemented
-        same = (repr({k: v for k, v in run._document().items() if k != "made"}) for run in (self, other))
-        if next(same) != next(same):
-            return False
-        one, two = self._arrays(), other._arrays()
-        return one.keys() == two.keys() and all(np.array_equal(one[k], two[k], equal_nan=True) for k in one)
+        parts = ("model", "network", "filter", *_LISTS)
+        return all(same(getattr(self, k), getattr(other, k)) for k in parts) and same(self._arrays(), other._arrays())
 
     def __hash__(self) -> int:
         return hash((self.model, self.network, self.filter, self.shape))
@@ -311,7 +331,7 @@ class Run(metaclass=Hinting):
 
         Coordinates: trial, time, agent, state and output by name where they have names, state_unit and output_unit,
         sample (the time of a measurement). Attributes: model, network and filter as JSON, counters and warnings. A
-        signal whose name is that of another array or coordinate is called signal_<name>.
+        signal whose name is that of another array or coordinate, or none in netCDF, is called signal_<name>.
         """
         from garrison.labelled import dataset
 
@@ -344,11 +364,29 @@ class Run(metaclass=Hinting):
 def _label(name: str) -> str:
     """What a dataset calls an array of a saved run."""
     own = name.removeprefix(_SIGNAL)
-    return name if own in _TAKEN or own.startswith((_SIGNAL, _VARYING)) else own
+    first = own[:1]
+    fit = first.isalnum() or first == "_" or first > "\x7f"  # how names of netCDF begin
+    return own if fit and own not in _TAKEN and not own.startswith((_SIGNAL, _VARYING)) else name
 
 
 def _unlabelled(label: str) -> str:
     return label if label in ARRAYS or label.startswith((_SIGNAL, _VARYING)) else f"{_SIGNAL}{label}"
+
+
+def _made_of(
+    model: _core.Model,
+    network: _core.Network,
+    filter: _core.Filter,
+    made: dict[str, Any],
+    lists: dict[str, Any],
+    found: dict[str, NDArray[Any]],
+) -> Run:
+    """The run of what it was made of, its lists, and its arrays by the names of a saved run."""
+    changed = {key.removeprefix(_VARYING): value for key, value in found.items() if key.startswith(_VARYING)}
+    arrays = {key: found[key] for key in ARRAYS if key in found}
+    run = Run(lists | {"made": made} | arrays, model, network, filter, changed)
+    run.signals = {key.removeprefix(_SIGNAL): value for key, value in found.items() if key.startswith(_SIGNAL)}
+    return run
 
 
 def _restored(data: bytes, name: str) -> Run:
@@ -362,14 +400,15 @@ def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: s
     """The run of a document and arrays, signals marked by their prefix."""
     try:
         objects, document = document["objects"], {"proved": []} | document
-        content: dict[str, Any] = {key: document[key] for key in _LISTS} | {"made": document.get("made", {})}
+        made = document.get("made", {})
+        content: dict[str, Any] = {key: document[key] for key in _LISTS}
+        require_lists(content | {"made": made})
         content["accusations"] = [(k, t, sets) for k, t, sets in content["accusations"]]
         content["proved"] = [(k, t, sets) for k, t, sets in content["proved"]]
         content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
         parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
-        changed = {key.removeprefix(_VARYING): value for key, value in found.items() if key.startswith(_VARYING)}
-        run = Run(content | {key: found[key] for key in ARRAYS if key in found}, *parts, changed)
-    except (KeyError, TypeError, ValueError) as error:
+        run = _made_of(*parts, made, content, found)
+        require_arrays(found, run.network.agents)
+    except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         raise _core.IoError(f"{name}: got {error!r}, expected a run written by Run.save") from None
-    run.signals = {key.removeprefix(_SIGNAL): value for key, value in found.items() if key.startswith(_SIGNAL)}
     return run

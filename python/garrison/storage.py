@@ -54,6 +54,8 @@ def unpack(data: bytes, name: str) -> tuple[dict[str, Any], dict[str, NDArray[An
             found = {key: archive[key] for key in archive.files}
         text = str(found.pop(_DOCUMENT))
         document = json.loads(text)
+        if not isinstance(document, dict):
+            raise ValueError(f"{_DOCUMENT} without entries")
         version = document.pop("version")
         given = str(found.pop(_DIGEST, ""))
     except (

@@ -12,7 +12,7 @@ PACKAGE = ROOT / "python" / "garrison"
 #: bottom first; a module imports modules of its own layer or below. Packages stand for all that is in them.
 LAYERS = (
     ("_core",),
-    ("words", "verdict", "bound_kind", "drawing", "files", "result"),
+    ("words", "verdict", "bound_kind", "drawing", "files", "result", "shapes", "encoded"),
     ("numeric", "sizes", "storage", "paths", "objects", "filters", "notebook", "alarms"),
     ("arguments", "parameters", "clean", "families", "tables", "longform", "labelled"),
     ("attacks", "varying", "varying_network", "certifying"),

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, doubts, refuted
 from garrison.certifying.plant import sources_of
-from garrison.objects import described_attack, plain_data
+from garrison.objects import described_attack, plain_data, plain_lists
 from garrison.record import Run
 from garrison.sizes import require_memory
 from garrison.words import count, refusal
@@ -107,7 +107,7 @@ def recorded(
 
 def with_recipe(run: Run, made: dict[str, Any]) -> Run:
     """The run with what made it, and the doubts that depend on that."""
-    run.made = made
+    run.made = plain_lists(made)
     run.warnings += refuted.of_memory(run.proved)
     run.warnings += refuted.of_certificates(run.bound_kind, made.get("failure", 0.0))
     return run

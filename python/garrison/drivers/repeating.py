@@ -14,7 +14,7 @@ def again(run: Run) -> Run:
     Parameters
     ----------
     run : Run
-        Of simulate or replay. A replay needs the measurements that were kept; attacks on them are in there.
+        Of simulate or replay. A replay needs the measurements that were kept.
 
     Returns
     -------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, doubts
@@ -153,5 +154,7 @@ def replay(
     )
     run = recorded(data, base, ground, filter, design, attacks, wanted, known)
     run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
+    if run.measurements is not None and any(a.target == "measurement" for a in attacks):
+        run.log = np.array(y if y.ndim == 3 else y[None])
     both = made_of(trials, first_trial, seed, start, attacks, links, kept, design, wanted)
     return with_recipe(run, {"driver": "replay"} | both)
