@@ -26,11 +26,14 @@ inline std::vector<double> chebyshev_weights(double gamma, int rounds) {
 
 /// 1 / T_L(1/gamma): what `rounds` filtered rounds leave of a disagreement; 1 for no round.
 inline double chebyshev_contraction(double gamma, int rounds) {
+  constexpr int kMany = 10'000;
   double product = 1.0;
   double r = gamma;
-  for (int l = 0; l < rounds; ++l) {
+  for (int l = 0; l < rounds && product > 0.0; ++l) {
     product *= r;
-    if (gamma > 0.0) r = 1.0 / (2.0 / gamma - r);
+    const double next = gamma > 0.0 ? 1.0 / (2.0 / gamma - r) : r;
+    if (next == r && rounds - l > kMany) return product * std::pow(r, rounds - l - 1);  // it stays so
+    r = next;
   }
   return product;
 }
