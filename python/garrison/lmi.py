@@ -81,7 +81,13 @@ def lmi_gains(setting: structural.Setting, *, iterations: int = 20, margin: floa
     radius = float("inf")
     for _ in range(iterations):
         problem = cp.Problem(cp.Minimize(cp.trace(Yk @ X) + cp.trace(Xk @ Y)), limits)
-        problem.solve(solver=cp.CLARABEL)
+        try:
+            problem.solve(solver=cp.CLARABEL)
+        except cp.error.SolverError:
+            raise DesignInfeasible(
+                f"lmi_gains: got no answer of the solver with margin {margin:g}, expected one that it can use, "
+                "about 1e-4; or take structural.design_gains"
+            ) from None
         if X.value is None:
             break
         K = [np.zeros((n, n)) if M[i] is None else np.asarray(M[i].value) @ bases[i].T for i in range(N)]

@@ -150,6 +150,8 @@ def test_gains_of_the_lmi_are_stable_where_a_plain_choice_is_not() -> None:
     hopeless = theory.Setting(A=np.eye(3) * 1.2, C=np.zeros((4, 3)), W=W, U=np.eye(4))
     with pytest.raises(gr.DesignInfeasible, match="spectral radius"):
         gr.lmi_gains(hopeless, iterations=2)
+    with pytest.raises(gr.DesignInfeasible, match=r"margin 1e\+308"):
+        gr.lmi_gains(setting, margin=1e308)
 
 
 def test_a_residual_that_a_projection_makes_vanish_is_not_tested() -> None:
