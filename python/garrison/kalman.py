@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, arguments
 from garrison.numeric import matched, numbers, output_names
-from garrison.varying import Inputs, VaryingModel, inputs_of, parted
+from garrison.varying import Inputs, VaryingModel, at_time, inputs_of, parted
 from garrison.words import hinted, refusal, require_plant
 
 Array = NDArray[np.float64]
@@ -229,6 +229,6 @@ def _rows(inputs: Any, samples: int) -> Array:
     """One row of inputs per step; none: rows without numbers."""
     if inputs is None:
         return np.zeros((samples, 0))
-    given = [numbers(f"inputs({t})", inputs(t)).ravel() for t in range(samples)] if callable(inputs) else inputs
+    given = [at_time("inputs", inputs, t).ravel() for t in range(samples)] if callable(inputs) else inputs
     found = numbers("inputs", given)
     return found[:, None] if found.ndim == 1 else found

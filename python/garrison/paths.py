@@ -13,7 +13,7 @@ from garrison import _core
 from garrison.files import contents
 from garrison.words import refusal, shown
 
-_NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EIO)
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 
 
 def path(which: str, value: Any) -> Path:
@@ -111,9 +111,11 @@ def _told(where: Path) -> Iterator[None]:
     except _core.Error:
         raise
     except (OSError, ValueError) as error:
-        room = isinstance(error, OSError) and error.errno in _NO_ROOM
-        expected = "room for it; what was there is unchanged" if room else "the name of a file to write"
-        raise _core.IoError(f"{_named(where)}: got {_why(error)}, expected {expected}") from error
+        code = error.errno if isinstance(error, OSError) else None
+        why = "a disk that is full" if code in _FULL else _why(error)
+        room = "room for it; free some (what was there is unchanged), or name another place"
+        expected = room if code in (*_FULL, errno.EFBIG, errno.EIO) else "the name of a file to write"
+        raise _core.IoError(f"{_named(where)}: got {why}, expected {expected}") from error
 
 
 def _named(where: Any) -> str:

@@ -187,6 +187,15 @@ def _on_top(which: str, value: Any) -> Any:
     return value
 
 
+def at_time(which: str, function: Any, t: int) -> Array:
+    """What a function of t gives. Its own errors stay its own, but for one that says it is no function of t."""
+    try:
+        value = function(t)
+    except TypeError as error:
+        raise refusal(f"{which}({t})", f"a TypeError ({error})", "a function of t, a whole number") from error
+    return numbers(f"{which}({t})", value)
+
+
 def _over_time(
     name: str, given: OverTime | None, shape: tuple[int, int], steps: int | None, first: int
 ) -> Array | None:
@@ -195,7 +204,7 @@ def _over_time(
     if callable(given):
         if steps is None:
             raise refusal(f"VaryingModel.{name}", "a function and no steps", "steps, how many times it is asked for")
-        values = [numbers(f"{name}({t})", given(t)) for t in range(first, first + steps)]
+        values = [at_time(name, given, t) for t in range(first, first + steps)]
         for t, value in enumerate(values, first):
             if value.shape != shape:
                 raise refusal(f"{name}({t})", f"{value.shape}", f"{shape}")
@@ -230,7 +239,7 @@ def inputs_of(model: _core.Model, given: Any, steps: int) -> Array:
     if given is None:
         return np.zeros((0, 0))
     if callable(given):
-        given = [numbers(f"inputs({t})", given(t)).ravel() for t in range(steps)]
+        given = [at_time("inputs", given, t).ravel() for t in range(steps)]
     found = numbers("inputs", matched("inputs", given, list(model.input_names) or None))
     if found.ndim == 1 and model.inputs == 1:
         found = found[:, None]

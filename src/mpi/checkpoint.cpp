@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include "garrison/core/error.hpp"
 #include "garrison/wire/blake2b.hpp"
@@ -34,6 +35,18 @@ Checkpoint::Checkpoint(std::string results, std::uint64_t scenario)
 std::string Checkpoint::file_of(std::int64_t t, int rank, int ranks) const {
   return folder_ + "/sample-" + std::to_string(t) + "." + std::to_string(rank) + "-of-" +
          std::to_string(ranks);
+}
+
+void Checkpoint::clear() const {
+  std::error_code failed;
+  std::filesystem::remove(folder_ + "/latest", failed);  // first: without it the others count for nothing
+  if (!failed && std::filesystem::is_directory(folder_))
+    for (const auto& entry : std::filesystem::directory_iterator(folder_, failed))
+      if (entry.path().filename().string().starts_with("sample-"))
+        std::filesystem::remove(entry.path(), failed);
+  if (failed)
+    throw IoError(folder_ + ": got " + failed.message() +
+                  ", expected to remove the checkpoint of an earlier run");
 }
 
 void Checkpoint::write(std::int64_t t, const std::vector<int>& ids,

@@ -18,6 +18,8 @@ class Checkpoint {
   Checkpoint(std::string results, std::uint64_t scenario);
   const std::string& folder() const { return folder_; }
 
+  /// Forgets what an earlier run left; no communication. @throws IoError
+  void clear() const;
   /// All ranks: writes the own agents `ids` after sample `t`. @throws IoError on all ranks
   void write(std::int64_t t, const std::vector<int>& ids, const partition::PartRunner& runner) const;
   /// The sample that can be gone on from; no communication. @throws IoError when there is none, InvalidInput

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "mpi/hash.hpp"
 #include "mpi/netcdf_file.hpp"
@@ -25,6 +26,11 @@ class Inputs {
     NetcdfInput input{(folder_ / named.text("file")).string(), named.text("variable", key)};
     if (!checksums_.contains(input.path)) checksums_[input.path] = checksum_of_file(input.path);
     return input;
+  }
+  std::vector<std::string> paths() const {
+    std::vector<std::string> all;
+    for (const auto& [path, one] : checksums_) all.push_back(path);
+    return all;
   }
   std::uint64_t checksum(const NetcdfInput& input) const { return checksums_.at(input.path); }
   /// Of all of them, whatever they are called.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "garrison/version.hpp"
 #include "mpi/here.hpp"
@@ -145,6 +146,32 @@ void Results::make_room(MPI_Offset record) {
     std::filesystem::resize_file(path_, needed, failed);
   if (failed && failure_.empty())
     failure_ = path_ + ": got " + failed.message() + ", expected to make room in it; free the disk";
+}
+
+void Results::require_until(std::int64_t t) {
+  const MPI_Offset records = t / every_;
+  MPI_Offset written = 0;
+  MPI_Offset begin = 0;
+  MPI_Offset size = 0;
+  int time = -1;
+  check(ncmpi_inq_dimid(file_, "time", &time), "find its records");
+  settle();
+  check(ncmpi_inq_dimlen(file_, time, &written), "find its records");
+  check(ncmpi_inq_varoffset(file_, time_, &begin), "find its records");
+  check(ncmpi_inq_recsize(file_, &size), "find its records");
+  settle();
+  std::error_code failed;
+  const auto length = static_cast<MPI_Offset>(std::filesystem::file_size(path_, failed));
+  bool whole = !failed && written >= records && length >= begin + written * size;
+  std::vector<int> times(static_cast<std::size_t>(whole ? records : 0));
+  const MPI_Offset first = 0;
+  const auto count = static_cast<MPI_Offset>(times.size());
+  check(ncmpi_get_vara_int_all(file_, time_, &first, &count, times.data()), "read its samples");
+  for (std::size_t k = 0; k < times.size(); ++k) whole &= times[k] == static_cast<int>(k + 1) * every_;
+  if (!whole && failure_.empty())
+    failure_ = path_ + ": got results that do not hold all samples up to " + std::to_string(t) +
+               ", where the checkpoint is, expected those of the run that wrote it; start without --resume";
+  settle();
 }
 
 void Results::sync() {

@@ -26,6 +26,8 @@ class Results {
   /// `estimates`: of the range of `order`; `summary` counts on rank 0.
   void write(std::int64_t t, std::span<const double> truth, const Summary& summary, const PublicOrder& order,
              std::span<const double> estimates);
+  /// Refuses a file that does not hold all samples up to `t`. @throws InvalidInput
+  void require_until(std::int64_t t);
   /// What was written so far is on the disk, and the file is whole.
   void sync();
 

@@ -102,13 +102,28 @@ class Share {
     together([&] {
       if (exchange_.rank() != 0) return;
       std::filesystem::remove(flag_);
+      require_other_file();
       if (!command_.resume && !command_.force && std::filesystem::exists(command_.results))
         refuse("-o", command_.results + ", which exists", "a new file",
                "use --force to replace it, or --resume to go on");
     });
+    together([&] {
+      if (exchange_.rank() == 0 && !command_.resume) checkpoint_->clear();
+    });
     results_ = std::make_unique<Results>(command_.results, scenario_, command_.resume);
     order_ = std::make_unique<PublicOrder>(ids_, scenario_.agents(), scenario_.states());
-    say("garrison-mpi: the job was ended; no checkpoint was written yet: start again\n");
+    if (!command_.resume)
+      say("garrison-mpi: the job was ended; no checkpoint was written yet: start again\n");
+  }
+  /// Results may not take the place of what the run reads.
+  void require_other_file() const {
+    std::vector<std::string> inputs{command_.scenario};
+    inputs.insert(inputs.end(), scenario_.inputs.begin(), scenario_.inputs.end());
+    for (const std::string& input : inputs) {
+      std::error_code none;
+      if (std::filesystem::equivalent(command_.results, input, none) && !none)
+        refuse("-o", command_.results + ", which this run reads", "another file");
+    }
   }
 
   void resume() {
@@ -119,6 +134,7 @@ class Share {
       checkpoint_->read(ids_, *runner_);
       trial_->skip_to(t);
     });
+    results_->require_until(t);
     if (exchange_.rank() == 0) std::printf("goes on from the checkpoint of sample %" PRId64 "\n", t);
     resumable(t);
   }
@@ -145,7 +161,9 @@ class Share {
   void resumable(std::int64_t t) {
     say("garrison-mpi: the job was ended; the checkpoint of sample " + std::to_string(t) +
         " is whole. Go on, on any number of ranks: mpirun -n R garrison-mpi run " + command_.scenario +
-        " -o " + command_.results + " --checkpoint " + std::to_string(command_.checkpoint) + " --resume\n");
+        " -o " + command_.results +
+        (command_.checkpoint > 0 ? " --checkpoint " + std::to_string(command_.checkpoint) : "") +
+        " --resume\n");
   }
   void say(const std::string& line) { say_when_ended(line, flag_); }
 

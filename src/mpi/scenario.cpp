@@ -25,6 +25,13 @@ int whole(const Section& s, const char* key, int least, std::optional<std::int64
   return static_cast<int>(s.whole(key, least, kMost, otherwise));
 }
 
+/// The number of an agent.
+int agent_of(const Section& s, const char* key, double value) {
+  if (!(value >= 0.0 && value <= kMost && value == std::floor(value)))
+    refuse(s.where(key), text(value), "whole numbers of agents, from 0");
+  return static_cast<int>(value);
+}
+
 /// Values of a filter or an attack; every key that is no parameter has to be in `others`.
 ParamMap params_of(const Section& s, std::span<const ParamInfo> infos, std::vector<std::string> others) {
   ParamMap params;
@@ -100,7 +107,7 @@ std::unique_ptr<partition::Ground> read_ground(const Section& s, Inputs& inputs)
     std::vector<Edge> edges;
     const Matrix pairs = matrix(s, "edges", 2);
     for (Eigen::Index k = 0; k < pairs.rows(); ++k)
-      edges.emplace_back(static_cast<int>(pairs(k, 0)), static_cast<int>(pairs(k, 1)));
+      edges.emplace_back(agent_of(s, "edges", pairs(k, 0)), agent_of(s, "edges", pairs(k, 1)));
     return partition::listed(Network(whole(s, "agents", 1), edges));
   }
   const std::string kind = s.text("kind");
@@ -138,7 +145,8 @@ void read_attack(const Section& s, RunOptions& run) {
     if (info.name != kind) continue;
     const ParamMap params = params_of(s, info.params, {"kind", "agents", "start", "stop", "probability"});
     std::vector<int> agents;
-    for (const double id : s.numbers("agents")) agents.push_back(static_cast<int>(id));
+    for (const double id : s.numbers("agents")) agents.push_back(agent_of(s, "agents", id));
+    if (agents.empty()) refuse(s.where("agents"), "nobody", "the agents that are attacked");
     AnyAttack attack = make_attack(
         kind,
         Schedule(s.whole("start", 0, kMost, 1), agents, s.whole("stop", 1, INT64_MAX, Schedule::kForever),
@@ -199,6 +207,7 @@ Scenario read_scenario(const std::string& path) {
   out.ground = read_ground(file.section("network"), inputs);
   out.sensors = read_sensors(file.section("model"), out.agents(), inputs);
   out.fingerprint += inputs.checksum();
+  out.inputs = inputs.paths();
   if (!out.sensors.C.empty() && static_cast<int>(out.sensors.C.size()) != out.agents())
     refuse(file.section("model").where("C"), std::to_string(out.sensors.C.size()) + " rows",
            std::to_string(out.agents()) + ", one per agent");

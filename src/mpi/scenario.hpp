@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "garrison/core/params.hpp"
 #include "garrison/drivers/simulate.hpp"
@@ -17,7 +18,8 @@ enum class Kept { estimates, summary };
 
 struct Scenario {
   std::string path;
-  std::uint64_t fingerprint = 0;  ///< of the file's bytes, and of the files that it names
+  std::uint64_t fingerprint = 0;    ///< of the file's bytes, and of the files that it names
+  std::vector<std::string> inputs;  ///< paths of those
   std::unique_ptr<partition::Ground> ground;
   partition::Sensors sensors;
   std::string family;

@@ -48,10 +48,21 @@ void require_sets(const std::string& which, const Region& region, double sets, i
                  sets * region.places() * agents / 8.0);
 }
 
+/// No rank knows lambda_max, but it is at least the largest degree plus one. All ranks together.
+void require_step(double step, const Region& region, Exchange& exchange) {
+  double most[] = {0.0};
+  for (int place = 0; place < region.own; ++place) most[0] = std::max<double>(most[0], region.degree(place));
+  exchange.largest(most);
+  if (most[0] > 0.0 && !std::isnan(step) && !(step < 2.0 / (most[0] + 1.0)))
+    refuse("step", text(step), "a number in (0, 2 / lambda_max), and lambda_max >= " + text(most[0] + 1.0),
+           "garrison-mpi spectrum prints the best one");
+}
+
 template <class F>
 std::unique_ptr<PartRunner> saturation(const std::string& family, const ParamMap& given, const Whole* whole,
                                        const Model& own, const Region& region, Exchange& exchange) {
   const auto params = parse_params<typename F::Params>(family, given);
+  require_step(params.step, region, exchange);
   auto gains = whole == nullptr ? alike<F>(params, own) : F::design(params, whole->model, whole->network);
   if (gains.detector) require_sets("saturation.detector", region, 3.0, region.agents);
   Names names{region.ids, region.agents};

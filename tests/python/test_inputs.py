@@ -344,3 +344,13 @@ def test_labels_of_plots_and_tables() -> None:
     assert run.why_no_bound("b", 3) == run.why_no_bound(1, 3)
     with pytest.raises(gr.InvalidInput, match='did you mean "b"'):
         run.why_no_bound("bb", 3)
+
+
+def test_what_is_no_function_of_time_is_told() -> None:
+    model = gr.Model([[0.9]], [[1.0]] * 3, B=[[1.0]])
+    for call in (
+        lambda: gr.simulate(model, gr.Network.ring(3), gr.filters.ScalarGain(), steps=2, inputs=len),
+        lambda: gr.VaryingModel(model, A=len, steps=3),
+    ):
+        with pytest.raises(gr.InvalidInput, match=r"\(0\): got a TypeError .*expected a function of t"):
+            call()

@@ -20,7 +20,7 @@ def test_the_worst_attack_costs_what_the_analysis_says() -> None:
     filt = gr.filters.PartialSharing(gain=0.3, shared=2, gains="steady")
     attack = gr.attacks.worst_covariance(model, net, filt, [1, 4], energy=40.0)
     assert attack.target == "message" and attack.agents == [1, 4]
-    analysis = ps.Analysis(filt, model, net)
+    analysis = ps.Analysis(model, net, filt)
     honest = np.mean(analysis.periodic_mse())
     expected = honest + attack.gain / 6
     Sigma = analysis.spread([1, 4], attack.covariance)
@@ -74,7 +74,7 @@ def test_optimal_covariance_against_a_semidefinite_solver() -> None:
     cvxpy = pytest.importorskip("cvxpy")
     for seed in range(3):
         model, net = problem(seed, agents=5, states=2)
-        analysis = ps.Analysis(gr.filters.PartialSharing(gain=0.4, shared=1), model, net)
+        analysis = ps.Analysis(model, net, gr.filters.PartialSharing(gain=0.4, shared=1))
         for k in (None, 3):
             worst = analysis.worst([1, 3], 2.0, k)
             Sigma = cvxpy.Variable((4, 4), PSD=True)

@@ -55,7 +55,7 @@ def test_a_full_disk_leaves_what_was_there(name: str, tmp_path: Path, small_disk
     pytest.importorskip("zarr")
     RUN.save(tmp_path / name)
     large = gr.simulate(MODEL, gr.Network.ring(3), gr.filters.ScalarGain(), steps=30_000, seed=1)
-    with pytest.raises(gr.IoError, match=rf"{name}: got File too large, expected room for it; what was there is unch"):
+    with pytest.raises(gr.IoError, match=rf"{name}: got File too large, expected room for it; free some .what was"):
         large.save(tmp_path / name)
     assert gr.Run.load(tmp_path / name) == RUN
     assert [path.name for path in tmp_path.iterdir()] == [name]

@@ -251,7 +251,7 @@ def test_a_run_with_levels_is_repeated_with_them() -> None:
     model, net, filt = parts()
     asked: dict[str, Any] = {"steps": 5, "noise": "normal", "certificate": "local", "attacked": 1}
     run = gr.simulate(model, net, filt, levels=(8.0, 9.0), **asked)
-    assert run.made["levels"] == (8.0, 9.0) and gr.again(run) == run
+    assert run.made["levels"] == [8.0, 9.0] and gr.again(run) == run
     assert not np.array_equal(run.bound, gr.simulate(model, net, filt, **asked).bound, equal_nan=True)
 
 

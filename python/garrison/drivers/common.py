@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, doubts, refuted
 from garrison.certifying.plant import sources_of
+from garrison.families import family_of
 from garrison.objects import described_attack, plain_data, plain_lists
 from garrison.record import Run
 from garrison.sizes import require_memory
@@ -84,7 +85,8 @@ def recorded(
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
     if "A" in series or "C" in series:
         run.warnings.append("the plant changes in time: no theorem and no condition of a filter covers it")
-    run.warnings += [] if "C" in series else doubts.of_blind(model)
+    driven = "C" in series or family_of(filter).own_plants  # where rows of zeros are meant
+    run.warnings += [] if driven else doubts.of_blind(model)
     run.warnings += refuted.of_sources(model, filter)
     run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
     run.warnings += doubts.of_alarms(filter, run.shape[1] - 1)
