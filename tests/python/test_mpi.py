@@ -344,3 +344,58 @@ def test_more_ranks_than_agents_are_refused(tmp_path: Path) -> None:
     done = _mpi(3, "run", path)
     assert done.returncode == 2
     assert "got 3, expected at most 2, one per agent" in done.stderr
+
+
+def test_a_checkpoint_of_an_earlier_run_is_forgotten(tmp_path: Path) -> None:
+    path = _scenario(tmp_path, "scalar_gain", "")
+    out = tmp_path / "out.nc"
+    assert _mpi(2, "run", path, "-o", out, "--checkpoint", "4").returncode == 0
+    out.unlink()
+    assert _mpi(2, "run", path, "-o", out).returncode == 0  # writes none
+    done = _mpi(2, "run", path, "-o", out, "--resume")
+    assert done.returncode == 2
+    assert "run with --checkpoint first" in done.stderr
+    assert "the job was ended" not in done.stderr
+
+
+def test_results_that_were_cut_are_not_gone_on_with(tmp_path: Path) -> None:
+    path = _scenario(tmp_path, "scalar_gain", "", steps=30)
+    out = tmp_path / "out.nc"
+    assert _mpi(2, "run", path, "-o", out, "--checkpoint", "20").returncode == 0
+    whole = out.read_bytes()
+    out.write_bytes(whole[: len(whole) // 2])
+    done = _mpi(3, "run", path, "-o", out, "--resume")
+    assert done.returncode == 2
+    assert "do not hold all samples up to 20" in done.stderr
+    out.write_bytes(whole)
+    assert _mpi(3, "run", path, "-o", out, "--resume").returncode == 0
+    assert out.read_bytes() == whole
+
+
+def test_results_do_not_take_the_place_of_what_is_read(tmp_path: Path) -> None:
+    path = _scenario(tmp_path, "scalar_gain", "")
+    text = path.read_text()
+    done = _mpi(2, "run", path, "-o", path, "--force")
+    assert done.returncode == 2
+    assert "which this run reads" in done.stderr
+    assert path.read_text() == text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("agents = [4, 9]", "agents = [4.7]", "got 4.7, expected whole numbers of agents"),
+        ("agents = [4, 9]", "agents = []", "expected the agents that are attacked"),
+        ("agents = [4, 9]", "agents = [1e30]", "expected whole numbers of agents"),
+        ("step = 0.1", "step = inf", "lambda_max >= 5"),
+        ("step = 0.1", "step = 0.5", "lambda_max >= 5"),
+    ],
+)
+def test_numbers_that_run_refuses_are_refused(old: str, new: str, words: str, tmp_path: Path) -> None:
+    path = _scenario(tmp_path, "scalar_gain", _TROUBLE)
+    assert old in path.read_text()
+    path.write_text(path.read_text().replace(old, new))
+    done = _mpi(2, "run", path)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert done.stderr.count("garrison-mpi: ") == 1
