@@ -97,8 +97,9 @@ class Rows final : public partition::Column {
       for (; k < static_cast<std::size_t>(end - ids.begin()); ++k)
         for (std::size_t c = 0; c < width; ++c) {
           const double value = read[static_cast<std::size_t>(ids[k] - first) * width + c];
-          if (!std::isfinite(value))
-            refuse(rows->where() + ", agent " + std::to_string(ids[k]), text(value), "a finite number");
+          if (!std::isfinite(value) || (width_ == 0 && value < 0.0))
+            refuse(rows->where() + ", agent " + std::to_string(ids[k]), text(value),
+                   width_ == 0 ? "a finite number >= 0" : "a finite number");
           out.push_back(value);
         }
     }

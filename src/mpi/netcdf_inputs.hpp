@@ -21,7 +21,7 @@ struct NetcdfInput {
 /// `checksum`: of the file. @throws IoError, InvalidInput, here and when agents are asked for
 std::unique_ptr<partition::Ground> netcdf_network(const NetcdfInput& input, int agents,
                                                   std::uint64_t checksum);
-/// A row of `width` numbers of each of `agents` agents; width 0: one number of each. @throws IoError,
+/// A row of `width` numbers of each of `agents` agents; width 0: one number >= 0 of each. @throws IoError,
 /// InvalidInput, also when a number is not finite
 std::shared_ptr<const partition::Column> netcdf_column(const NetcdfInput& input, int agents, int width);
 
