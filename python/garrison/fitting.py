@@ -19,6 +19,8 @@ from garrison.tables import Records
 from garrison.words import hinted_methods, only, refusal, shown
 
 Array = NDArray[np.float64]
+#: rate at which clean records exceed the levels where nothing else is asked for
+FAILURE = 1e-3
 #: p-value below which residuals are called not white
 _LEVEL = 0.01
 #: how much larger than the noise of the records a bound should be that later noise keeps, too
@@ -127,7 +129,7 @@ class Fit(Result):
         by = number("factor", factor)
         return (by * np.asarray(self.model.measurement_bound)).tolist(), by * self.model.process_bound
 
-    def to_json(self, attacked: int | None = None, failure: float = 1e-3) -> str:
+    def to_json(self, attacked: int | None = None, failure: float = FAILURE) -> str:
         """The model as text: everything a scenario or another program needs.
 
         With `attacked`, also what deterministic and distribution-free certificates rest on: `levels` and `inflated`.

@@ -398,6 +398,8 @@ def _restored(data: bytes, name: str) -> Run:
 
 def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: str) -> Run:
     """The run of a document and arrays, signals marked by their prefix."""
+    from garrison.labelled import dimensions
+
     try:
         objects, document = document["objects"], {"proved": []} | document
         made = document.get("made", {})
@@ -408,7 +410,7 @@ def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: s
         content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
         parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
         run = _made_of(*parts, made, content, found)
-        require_arrays(found, run.network.agents)
+        require_arrays(found, dimensions(run), run.network.agents)
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         raise _core.IoError(f"{name}: got {error!r}, expected a run written by Run.save") from None
     return run

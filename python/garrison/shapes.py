@@ -6,33 +6,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-#: arrays with other axes than (trial, time, agent): how many may follow after the common ones
-_AXES = {
-    "truth": (("trial", "time"), (3, 4)),
-    "estimate": (("trial", "time", "agent"), (4,)),
-    "box": (("trial", "time", "agent"), (4,)),
-    "measurements": (("trial",), (3,)),
-    "log": ((), (3,)),
-    "inputs": ((), (2,)),
-}
-_PER_AGENT = (("trial", "time", "agent"), (3,))
-_VARYING = ((), (3,))
+#: axes that arrays have in common, and those of most
+_COMMON = ("trial", "time", "agent")
 #: arrays of small whole numbers
 _WHOLE = ("verdict", "bound_kind")
 #: the only kinds of bytes that are numbers: no texts, no objects
 _KINDS = {True: "iu", False: "f"}
 
 
-def require_arrays(arrays: Mapping[str, NDArray[Any]], agents: int) -> None:
-    """Raise ValueError where an array has other axes than a run's, or no numbers; signals by their prefix."""
+def require_arrays(arrays: Mapping[str, NDArray[Any]], named: Mapping[str, tuple[str, ...]], agents: int) -> None:
+    """Raise ValueError where an array has other axes than a run's, or no numbers; signals by their prefix.
+
+    named: axes of arrays that have others than most.
+    """
     sizes = {"agent": agents}
     for name, values in arrays.items():
-        varying = name.startswith("varying_")
-        axes, dimensions = _AXES.get(name, _VARYING if varying else _PER_AGENT)
-        if values.ndim not in dimensions or values.dtype.kind not in _KINDS[name in _WHOLE]:
+        axes = named.get(name, _COMMON)
+        if values.ndim != len(axes) or values.dtype.kind not in _KINDS[name in _WHOLE]:
             raise ValueError(f"{name} with {values.ndim} dimensions of {values.dtype}")
-        for axis, size in zip(axes, values.shape, strict=False):
-            if sizes.setdefault(axis, size) != size:
+        for axis, size in zip(axes, values.shape, strict=True):
+            if axis in _COMMON and sizes.setdefault(axis, size) != size:
                 raise ValueError(f"{name} of shape {values.shape}, where others have {sizes[axis]} along {axis}")
 
 

@@ -142,19 +142,20 @@ void NetcdfVariable::require(std::span<const std::int64_t> sizes, bool whole,
     refuse(where(), "numbers with fractions", "whole ones", "write it as int32");
 }
 
-void NetcdfVariable::read(std::int64_t first, std::int64_t count, std::vector<int>& out) const {
+template <class Number, class Get>
+void NetcdfVariable::read_rows(std::int64_t first, std::int64_t count, std::vector<Number>& out,
+                               const Get& get) const {
   std::vector<MPI_Offset> start(sizes_.size(), 0);
   std::vector<MPI_Offset> counts(sizes_.begin(), sizes_.end());
   start.front() = first;
   counts.front() = count;
-  check(ncmpi_get_vara_int_all(file_, id_, start.data(), counts.data(), out.data()));
+  check(get(file_, id_, start.data(), counts.data(), out.data()));
+}
+void NetcdfVariable::read(std::int64_t first, std::int64_t count, std::vector<int>& out) const {
+  read_rows(first, count, out, ncmpi_get_vara_int_all);
 }
 void NetcdfVariable::read(std::int64_t first, std::int64_t count, std::vector<double>& out) const {
-  std::vector<MPI_Offset> start(sizes_.size(), 0);
-  std::vector<MPI_Offset> counts(sizes_.begin(), sizes_.end());
-  start.front() = first;
-  counts.front() = count;
-  check(ncmpi_get_vara_double_all(file_, id_, start.data(), counts.data(), out.data()));
+  read_rows(first, count, out, ncmpi_get_vara_double_all);
 }
 
 std::uint64_t checksum_of_file(const std::string& path) {

@@ -36,6 +36,8 @@ class NetcdfVariable {
   void describe();
   void require_all_there() const;
   void check(int code) const;
+  template <class Number, class Get>
+  void read_rows(std::int64_t first, std::int64_t count, std::vector<Number>& out, const Get& get) const;
 
   std::string path_;
   std::string name_;

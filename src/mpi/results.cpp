@@ -136,11 +136,7 @@ void Results::write(std::int64_t t, std::span<const double> truth, const Summary
 /// Rank 0 counts the record in the header, and others may be killed before their part of it is written: the
 /// file is as long as the header says even then, with zeros in place of what is missing, and can be read.
 void Results::make_room(MPI_Offset record) {
-  MPI_Offset begin = 0;
-  MPI_Offset size = 0;
-  check(ncmpi_inq_varoffset(file_, time_, &begin), "find its records");
-  check(ncmpi_inq_recsize(file_, &size), "find its records");
-  const auto needed = static_cast<std::uintmax_t>(begin + (record + 1) * size);
+  const std::uintmax_t needed = length_of(record + 1);
   std::error_code failed;
   if (std::filesystem::file_size(path_, failed) < needed && !failed)
     std::filesystem::resize_file(path_, needed, failed);
@@ -148,21 +144,25 @@ void Results::make_room(MPI_Offset record) {
     failure_ = path_ + ": got " + failed.message() + ", expected to make room in it; free the disk";
 }
 
+std::uintmax_t Results::length_of(MPI_Offset records) {
+  MPI_Offset begin = 0;
+  MPI_Offset size = 0;
+  check(ncmpi_inq_varoffset(file_, time_, &begin), "find its records");
+  check(ncmpi_inq_recsize(file_, &size), "find its records");
+  return static_cast<std::uintmax_t>(begin + records * size);
+}
+
 void Results::require_until(std::int64_t t) {
   const MPI_Offset records = t / every_;
   MPI_Offset written = 0;
-  MPI_Offset begin = 0;
-  MPI_Offset size = 0;
   int time = -1;
   check(ncmpi_inq_dimid(file_, "time", &time), "find its records");
   settle();
   check(ncmpi_inq_dimlen(file_, time, &written), "find its records");
-  check(ncmpi_inq_varoffset(file_, time_, &begin), "find its records");
-  check(ncmpi_inq_recsize(file_, &size), "find its records");
+  const std::uintmax_t needed = length_of(written);
   settle();
   std::error_code failed;
-  const auto length = static_cast<MPI_Offset>(std::filesystem::file_size(path_, failed));
-  bool whole = !failed && written >= records && length >= begin + written * size;
+  bool whole = written >= records && std::filesystem::file_size(path_, failed) >= needed && !failed;
   std::vector<int> times(static_cast<std::size_t>(whole ? records : 0));
   const MPI_Offset first = 0;
   const auto count = static_cast<MPI_Offset>(times.size());

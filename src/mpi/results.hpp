@@ -35,6 +35,8 @@ class Results {
   void create(const Scenario& scenario);
   void open(const Scenario& scenario);
   void make_room(MPI_Offset record);
+  /// Bytes of the file with so many records.
+  std::uintmax_t length_of(MPI_Offset records);
   /// Keeps the first failure of this rank for `agree`.
   void check(int code, const char* what);
   void settle();

@@ -64,8 +64,9 @@ class Share {
 
  private:
   void cut() {
-    together([&] { rounds_ = std::max(1, partition::rounds_of(scenario_.family, scenario_.params)); });
-    Cut mine = cut_of(scenario_, exchange_, std::min(rounds_, static_cast<int>(command_.halo)));
+    int rounds = 1;
+    together([&] { rounds = std::max(1, partition::rounds_of(scenario_.family, scenario_.params)); });
+    Cut mine = cut_of(scenario_, exchange_, std::min(rounds, static_cast<int>(command_.halo)));
     ids_ = std::move(mine.ids);
     region_ = std::move(mine.region);
     if (partition::needs_connected(scenario_.family)) partition::require_connected(region_, exchange_);
@@ -197,7 +198,6 @@ class Share {
   const RunCommand& command_;
   MpiExchange exchange_;
   Scenario scenario_;
-  int rounds_ = 1;
   std::vector<int> ids_;
   partition::Region region_;
   std::unique_ptr<Model> model_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mpi/together.hpp"
+#include "partition/ghost_numbers.hpp"
 #include "partition/laplacian.hpp"
 #endif
 
@@ -58,12 +59,7 @@ class LaplacianMatrix {
     MPI_Scan(&own, &end, 1, MPIU_INT, MPI_SUM, MPI_COMM_WORLD);
     std::vector<PetscInt> number(static_cast<std::size_t>(region.places()));
     for (PetscInt k = 0; k < own; ++k) number[static_cast<std::size_t>(k)] = end - own + k;
-    std::vector<PetscInt> out, in(region.arrival.size());
-    for (const auto place : region.packed) out.push_back(number[static_cast<std::size_t>(place)]);
-    exchange.begin(reinterpret_cast<const std::byte*>(out.data()), reinterpret_cast<std::byte*>(in.data()),
-                   sizeof(PetscInt));
-    exchange.finish();
-    for (std::size_t k = 0; k < in.size(); ++k) number[static_cast<std::size_t>(region.arrival[k])] = in[k];
+    partition::GhostNumbers<PetscInt>(region, exchange).fetch(number);
     std::vector<PetscInt> here, there;  // entries of each row in columns of this rank and of others
     for (int place = 0; place < region.own; ++place) {
       const auto k = static_cast<std::size_t>(place);

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <string>
 
+#include "partition/ghost_numbers.hpp"
+
 namespace garrison::partition {
 namespace {
 
@@ -43,23 +45,18 @@ std::vector<std::int32_t> reached(const Region& r, Exchange& exchange,
     return std::int64_t{1};
   };
   for (int place = 0; place < r.own; ++place) take(place, r.ids[static_cast<std::size_t>(place)]);
-  std::vector<std::int32_t> out(r.packed.size());
-  std::vector<std::int32_t> in(static_cast<std::size_t>(r.ghosts()));
-  std::vector<std::int32_t> of_ghost(in.size());
+  std::vector<std::int32_t> here(static_cast<std::size_t>(r.places()));
+  GhostNumbers<std::int32_t> ghosts(r, exchange);
   for (std::int64_t changes[] = {1}; changes[0] > 0; exchange.sum(changes)) {
-    for (std::size_t k = 0; k < out.size(); ++k)
-      out[k] = least[static_cast<std::size_t>(piece[static_cast<std::size_t>(r.packed[k])])];
-    exchange.begin(reinterpret_cast<const std::byte*>(out.data()), reinterpret_cast<std::byte*>(in.data()),
-                   sizeof(std::int32_t));
-    exchange.finish();
-    for (std::size_t k = 0; k < in.size(); ++k)
-      of_ghost[static_cast<std::size_t>(r.arrival[k] - r.own)] = in[k];
+    for (const std::int32_t place : r.packed)
+      here[static_cast<std::size_t>(place)] =
+          least[static_cast<std::size_t>(piece[static_cast<std::size_t>(place)])];
+    ghosts.fetch(here);
     changes[0] = 0;
     for (int place = r.interior; place < r.own; ++place)
       for (std::size_t e = r.first[static_cast<std::size_t>(place)];
            e < r.first[static_cast<std::size_t>(place) + 1]; ++e)
-        if (r.heard[e] >= r.own)
-          changes[0] += take(place, of_ghost[static_cast<std::size_t>(r.heard[e] - r.own)]);
+        if (r.heard[e] >= r.own) changes[0] += take(place, here[static_cast<std::size_t>(r.heard[e])]);
   }
   return least;
 }
@@ -67,7 +64,6 @@ std::vector<std::int32_t> reached(const Region& r, Exchange& exchange,
 }  // namespace
 
 void require_connected(const Region& region, Exchange& exchange) {
-  exchange.connect(region.routes);
   const auto piece = pieces_of(region);
   const auto least = reached(region, exchange, piece);
   std::int64_t cut[] = {0};

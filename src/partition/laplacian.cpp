@@ -9,19 +9,12 @@ Laplacian::Laplacian(const Region& region, Exchange& exchange)
     : region_(region),
       exchange_(exchange),
       here_(static_cast<std::size_t>(region.places())),
-      out_(region.packed.size()),
-      in_(region.arrival.size()) {
-  exchange_.connect(region_.routes);
-}
+      ghosts_(region, exchange) {}
 
 /// The numbers of own agents, and those of ghosts from their ranks.
 void Laplacian::fetch(std::span<const double> v) {
   std::copy(v.begin(), v.end(), here_.begin());
-  for (std::size_t k = 0; k < out_.size(); ++k) out_[k] = v[static_cast<std::size_t>(region_.packed[k])];
-  exchange_.begin(reinterpret_cast<const std::byte*>(out_.data()), reinterpret_cast<std::byte*>(in_.data()),
-                  sizeof(double));
-  exchange_.finish();
-  for (std::size_t k = 0; k < in_.size(); ++k) here_[static_cast<std::size_t>(region_.arrival[k])] = in_[k];
+  ghosts_.fetch(here_);
 }
 
 void Laplacian::apply(std::span<const double> v, std::span<double> out) {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "partition/region.hpp"
+#include "partition/ghost_numbers.hpp"
 
 namespace garrison::partition {
 
@@ -25,8 +25,7 @@ class Laplacian {
   const Region& region_;
   Exchange& exchange_;
   std::vector<double> here_;  // at every place
-  std::vector<double> out_;
-  std::vector<double> in_;
+  GhostNumbers<double> ghosts_;
 };
 
 }  // namespace garrison::partition

@@ -7,20 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from garrison._commands.output import new_file, write_whole
+from garrison._commands.output import new_file
 from garrison._commands.terminal import OK, Commands, console_for, number, print_table, print_warnings, whole_number
-from garrison.fitting import Fit
+from garrison.fitting import FAILURE, Fit
 from garrison.fitting_full import FullFit
 from garrison.identifying import fit
+from garrison.paths import whole_file
 from garrison.scenario.section import moment
 from garrison.tables import read_records
 from garrison.words import count, refusal, shown
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-#: rate at which clean records exceed the levels where nothing else is asked for
-_FAILURE = 1e-3
 
 
 def add(commands: Commands) -> None:
@@ -86,11 +84,12 @@ def do(args: argparse.Namespace) -> int:
     records = read_records(args.records).between(start, end)
     print_warnings(records.notes, stderr=True)  # first: what is wrong with records may end the fit
     found = fit(records, **_options(args))
-    if args.attacked is not None and found.levels(args.attacked, args.failure or _FAILURE) is None:
+    if args.attacked is not None and found.levels(args.attacked, args.failure or FAILURE) is None:
         print_warnings([f"no levels for certificates: {_without_levels(found, args)}"], stderr=True)
-    text = found.to_json(args.attacked, args.failure or _FAILURE)
+    text = found.to_json(args.attacked, args.failure or FAILURE)
     if args.output:
-        write_whole(new_file(args.output, args.force), lambda path: path.write_text(text + "\n", encoding="utf-8"))
+        with whole_file(new_file(args.output, args.force)) as temporary:
+            temporary.write_text(text + "\n", encoding="utf-8")
     if args.json or not args.output:
         print(text)
         return OK
@@ -113,7 +112,7 @@ def _without_levels(found: Fit, args: argparse.Namespace) -> str:
     if found.model.states > 1:
         return f"the model has {found.model.states} states, and they exist for --factors 1 alone"
     complete = int(np.isfinite(found.measurements(found.records)).all(axis=1).sum())
-    rate = args.failure or _FAILURE
+    rate = args.failure or FAILURE
     return f"{count(complete, 'complete record')}, and a rate of {rate:g} takes {2 / rate - 1:.0f}: raise --failure"
 
 

@@ -2,9 +2,10 @@
 
 import argparse
 
-from garrison._commands.output import new_file, write_whole
+from garrison._commands.output import new_file
 from garrison._commands.template import TEMPLATE
 from garrison._commands.terminal import OK, Commands
+from garrison.paths import whole_file
 
 
 def add(commands: Commands) -> None:
@@ -18,6 +19,7 @@ def add(commands: Commands) -> None:
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
     path = new_file(args.scenario, args.force)
-    write_whole(path, lambda temporary: temporary.write_text(TEMPLATE.replace("FILE", path.name), encoding="utf-8"))
+    with whole_file(path) as temporary:
+        temporary.write_text(TEMPLATE.replace("FILE", path.name), encoding="utf-8")
     print(f"written: {path}; next: garrison run {path} -o out")
     return OK

@@ -5,7 +5,7 @@ import hashlib
 import json
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,12 +28,6 @@ def new_file(name: str, force: bool) -> Path:
     if not path.absolute().parent.is_dir():
         raise _core.IoError(f"{path}: got no folder {path.absolute().parent}, expected one to write to")
     return path
-
-
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` make a temporary file beside `path`, which then takes its place."""
-    with whole_file(path) as temporary:
-        write(temporary)
 
 
 @contextlib.contextmanager
@@ -121,4 +115,5 @@ def write_picture(target: Path, figure: Any) -> None:
     kind = target.suffix.lower().removeprefix(".")
     if kind not in figure.canvas.get_supported_filetypes():
         raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
-    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))
+    with whole_file(target) as temporary:
+        figure.savefig(temporary, dpi=120, format=kind)

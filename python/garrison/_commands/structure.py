@@ -3,9 +3,10 @@
 import argparse
 from pathlib import Path
 
-from garrison._commands.output import new_file, write_whole
+from garrison._commands.output import new_file
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, whole_number
 from garrison.anatomy import Anatomy, read_anatomy, states_text, table_rows
+from garrison.paths import whole_file
 from garrison.words import refusal
 
 
@@ -74,4 +75,5 @@ def _write_picture(target: Path, anatomy: Anatomy) -> None:
     kind = target.suffix.lower().removeprefix(".")
     if kind not in kinds:
         raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
-    write_whole(target, lambda path: figure.savefig(path, dpi=120, format=kind))
+    with whole_file(target) as temporary:
+        figure.savefig(temporary, dpi=120, format=kind)

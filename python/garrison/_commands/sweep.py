@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from garrison._commands.output import write_whole
 from garrison._commands.terminal import (
     INTERRUPTED,
     NO,
@@ -18,6 +17,7 @@ from garrison._commands.terminal import (
     print_table,
     whole_number,
 )
+from garrison.paths import whole_file
 from garrison.scenario import read_document
 from garrison.sweeps import Sweep, parsed, points_of, sweep
 from garrison.sweeps.grid import read_points
@@ -122,7 +122,8 @@ def _pictures(found: Sweep) -> list[str]:
     if len(found.keys) not in (1, 2) or all(row["status"] != "ok" for row in found.trials):
         return []
     figure = found.plot()
-    write_whole(found.folder / "sweep.png", lambda path: figure.savefig(path, dpi=120, format="png"))
+    with whole_file(found.folder / "sweep.png") as temporary:
+        figure.savefig(temporary, dpi=120, format="png")
     return ["sweep.png"]
 
 

@@ -37,7 +37,7 @@ def write_report(path: Path, scenario: Scenario, rows: list[Row]) -> None:
 
 def _main_sections(scenario: Scenario, rows: list[Row]) -> list[str]:
     main = rows[0]
-    out = [_clipped_table(main)]
+    out, first = [_clipped_table(main)], _shown(scenario, "First trial. ")
     run = main.run
     if (
         run is not None
@@ -45,14 +45,20 @@ def _main_sections(scenario: Scenario, rows: list[Row]) -> list[str]:
         and run.truth is not None
         and run.bound is not None
     ):
-        out += ["<h2>The string</h2>", figure(run.plot(), _shown(run) + _STRING_NOTE), _animation(run)]
+        out += ["<h2>The string</h2>", figure(run.plot(), first + _STRING_NOTE), _animation(run)]
     elif run is not None and run.verdict is not None:
-        out += ["<h2>The network at the end</h2>", figure(map_figure(scenario, run), _shown(run) + _map_note(scenario))]
+        out += [
+            "<h2>The network at the end</h2>",
+            figure(map_figure(scenario, run), first + _map_note(scenario)),
+        ]
     if any(row.error is not None for row in rows):
         picture = error_figure(scenario, rows, signal_size(scenario))
         out += ["<h2>Errors over time</h2>", figure(picture, _error_note(scenario))]
     if run is not None and run.statistic is not None and run.threshold is not None:
-        out += ["<h2>Statistics against thresholds</h2>", figure(innovation_figure(scenario, run), _shown(run))]
+        out += [
+            "<h2>Statistics against thresholds</h2>",
+            figure(innovation_figure(scenario, run), first),
+        ]
     if run is not None:
         out += ["<h2>Conditions and bounds, before the run</h2>", _check_table(scenario, run.filter)]
     return out
@@ -110,9 +116,9 @@ def _check_table(scenario: Scenario, filter: _core.Filter) -> str:
     )
 
 
-def _shown(run: Run) -> str:
-    """Which of several trials a picture shows."""
-    return "First trial. " if run.shape[0] > 1 else ""
+def _shown(scenario: Scenario, words: str) -> str:
+    """Which of several trials something shows: the words, or nothing where there is one."""
+    return words if scenario.run.get("trials", 1) > 1 else ""
 
 
 _STRING_NOTE = "The bounds and the least gaps are certified at run time: they hold whatever the attackers send."
@@ -122,13 +128,12 @@ def _table_note(scenario: Scenario, rows: list[Row]) -> str:
     since = "from the start of the attack on" if scenario.attacks else "over all samples"
     parts = [error_note(scenario)] if error_note(scenario) else []
     shown = set(table_rows(scenario, rows)[0])
-    several = " (first trial)" if scenario.run.get("trials", 1) > 1 else ""
     meanings = {
         "mean error": f"Means are over agents, {since}.",
         "samples with a bound": "Samples with a bound: share of agents and samples with a certified error bound.",
         "median bound": "Median bound: of those.",
         "error within bound": "Error within bound: how often the error was below it.",
-        "accused": f"Accused: who was accused, and when first{several}.",
+        "accused": f"Accused: who was accused, and when first{_shown(scenario, ' (first trial)')}.",
     }
     parts += [text for name, text in meanings.items() if name in shown]
     if any("mean_error_robust" in row.summary for row in rows):

@@ -60,7 +60,7 @@ inline Matrix best_gain(const View& v, const Matrix& P) {
   return PH * pseudo_inverse(v.H * PH + v.noise);
 }
 
-/// What to do where no gains are found because the states are in units far apart; empty where they are not.
-std::string far_apart(const Setting& s);
+/// What to do where no gains are found: about the states' units where these are far apart, else `otherwise`.
+std::string advice(const Setting& s, const std::string& otherwise);
 
 }  // namespace garrison::structural::detail

@@ -86,15 +86,15 @@ double error_radius(const Setting& s, const GainMatrices& K) {
   return rho;
 }
 
-std::string detail::far_apart(const Setting& s) {
+std::string detail::advice(const Setting& s, const std::string& otherwise) {
   constexpr double kFar = 1e12;  // of variances
-  if (s.E.size() == 0) return {};
+  if (s.E.size() == 0) return otherwise;
   const Vector variance = s.E.diagonal();
   const double most = variance.maxCoeff();
   double least = most;
   for (const double one : variance)
     if (one > 0.0) least = std::min(least, one);
-  if (!(most > kFar * least)) return {};
+  if (!(most > kFar * least)) return otherwise;
   return "the states have process noise from " + text(std::sqrt(least)) + " to " + text(std::sqrt(most)) +
          ": bring them to comparable units";
 }
@@ -140,8 +140,7 @@ Designed design_gains(const Setting& s, const std::string& method) {
   }
   throw DesignInfeasible("no stabilising gain by the design '" + method +
                          "': spectral radius reached: " + text(reached) + ", needed below 1; " +
-                         (detail::far_apart(s).empty() ? "try the design 'h2', or smaller self-weights W_ii"
-                                                       : detail::far_apart(s)));
+                         detail::advice(s, "try the design 'h2', or smaller self-weights W_ii"));
 }
 
 ScalarGainChoice best_scalar_gain(double a, const MatrixRef& W) {

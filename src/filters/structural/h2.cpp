@@ -241,9 +241,8 @@ GainMatrices h2_gains(const Setting& s, const GainMatrices& start, std::span<con
     gamma += more;
   }
   if (!(rho < 1.0))
-    throw DesignInfeasible(
-        "no stabilising gain was found: spectral radius reached: " + text(rho) + ", needed below 1; " +
-        (detail::far_apart(s).empty() ? "smaller self-weights W_ii may help" : detail::far_apart(s)));
+    throw DesignInfeasible("no stabilising gain was found: spectral radius reached: " + text(rho) +
+                           ", needed below 1; " + detail::advice(s, "smaller self-weights W_ii may help"));
   cost.scale = 1.0;
   minimise(cost, x, 3000, 1e-12);
   if (hubs.empty()) return cost.gains(x);
