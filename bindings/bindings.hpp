@@ -29,6 +29,7 @@ void bind_fit(py::module_& m);
 void bind_autoregression(py::module_& m);
 void bind_known(py::module_& m);
 void bind_rdkf(py::module_& m);
+void bind_saturation(py::module_& m);
 void bind_structure(py::module_& m);
 void bind_structural(py::module_& m);
 void bind_partial_sharing(py::module_& m);

@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, m) {
   bind_autoregression(m);
   bind_known(m);
   bind_rdkf(m);
+  bind_saturation(m);
   bind_structure(m);
   bind_structural(m);
   bind_partial_sharing(m);

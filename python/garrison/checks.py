@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from garrison import _core, arguments
+from garrison import _core, arguments, run_options
 from garrison.arguments import number
 from garrison.expected import expected_certificate
 from garrison.notebook import of_check
@@ -125,6 +125,6 @@ def check(
     require_order("check", model, network, filter)
     tell = arguments.callback("progress", progress, "(what, seconds)")
     conditions, quantities = _core.check(model, network, filter, number("seconds", seconds), tell)
-    if wanted := arguments.certificate(filter, certificate, failure, attacked, levels, memory):
+    if wanted := run_options.certificate(filter, certificate, failure, attacked, levels, memory):
         quantities += expected_certificate(_core.Design(model, network, filter, **wanted, progress=tell))
     return Check(conditions, quantities)

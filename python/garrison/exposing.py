@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core
-from garrison.arguments import flag, pair_of_levels, probability, table, whole
+from garrison.arguments import flag, probability, table, whole
 from garrison.result import Result
+from garrison.run_options import pair_of_levels
 from garrison.words import hinted, hinted_methods, refusal, shown
 
 

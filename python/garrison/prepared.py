@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from garrison import _core, arguments, drivers
+from garrison import _core, arguments, drivers, run_options
 from garrison.arguments import whole
 from garrison.checks import Check, check
 from garrison.paths import read, write
@@ -194,6 +194,6 @@ def prepare(
         No gains exist.
     """
     require_order("prepare", model, network, filter)
-    wanted = arguments.certificate(filter, certificate, failure, attacked, levels, memory)
+    wanted = run_options.certificate(filter, certificate, failure, attacked, levels, memory)
     tell = arguments.callback("progress", progress, "(what, seconds)")
     return Prepared(_core.Design(model, network, filter, **wanted, progress=tell))

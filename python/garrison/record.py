@@ -9,19 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from garrison import _core
+from garrison import _core, run_file
 from garrison.alarms import Alarm, intervals
 from garrison.arguments import alone, entries, whole
 from garrison.bound_kind import BoundKind
 from garrison.drawing import animated, drawn
 from garrison.families import family_of
 from garrison.notebook import of_run
-from garrison.objects import described, filter_of, model_of, network_of
 from garrison.paths import path as path_of
-from garrison.paths import read, write
 from garrison.recipe import code
 from garrison.result import same
-from garrison.shapes import require_arrays, require_lists
 from garrison.verdict import Verdict
 from garrison.words import Hinting, count, hinted_methods, near, refusal
 
@@ -29,48 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-#: arrays of a run, in the order of its text
-ARRAYS = (
-    "truth",
-    "measurements",
-    "log",
-    "inputs",
-    "estimate",
-    "error",
-    "bound",
-    "bound_kind",
-    "box",
-    "published",
-    "statistic",
-    "threshold",
-    "verdict",
-)
-
-#: what a run keeps besides arrays and objects
-_LISTS = ("accusations", "proved", "details", "counters", "warnings", "bytes_per_step")
-#: beginning of a signal's name in a saved run
-_SIGNAL = "signal_"
-#: and of what changed of the plant
-_VARYING = "varying_"
-#: names that a dataset of the run has for other things than signals
-_TAKEN = {*ARRAYS, "trial", "time", "agent", "state", "sample", "output", "input", "step"}
-_TAKEN |= {"state_unit", "output_unit", "input_unit"}
-#: and names that netCDF has for types
-_TAKEN |= {
-    "byte",
-    "char",
-    "short",
-    "ushort",
-    "int",
-    "uint",
-    "int64",
-    "uint64",
-    "float",
-    "real",
-    "double",
-    "bool",
-    "string",
-}
 
 
 @hinted_methods
@@ -229,57 +184,23 @@ class Run(metaclass=Hinting):
         h5netcdf or netCDF4), or a folder of zarr where it ends in .zarr (packages xarray and zarr): the dataset of
         `to_xarray`, which other programs read.
         """
-        to = path_of("path", path)
-        if to.suffix == ".nc":
-            from garrison.labelled import to_netcdf
-
-            to_netcdf(self, to, self._document(), self._labelled())
-        elif to.suffix == ".zarr":
-            from garrison.labelled import to_zarr
-
-            to_zarr(self, to, self._document(), self._labelled())
-        else:
-            write("path", to, self._packed())
+        run_file.save(self, path_of("path", path))
 
     @staticmethod
     def load(path: str | Path) -> Run:
         """The run that `save` wrote. Raises IoError when the file cannot be read or holds no run."""
-        if path_of("path", path).suffix in (".nc", ".zarr"):
-            from garrison.labelled import from_netcdf, from_zarr
-
-            read_file = from_netcdf if path_of("path", path).suffix == ".nc" else from_zarr
-            document, found = read_file(path_of("path", path))
-            return _assembled(document, {_unlabelled(name): value for name, value in found.items()}, str(path))
-        return _restored(read("path", path, "a run written by Run.save"), str(path))
-
-    def _document(self) -> dict[str, Any]:
-        """Everything but the arrays, as plain data."""
-        lists = {name: getattr(self, name) for name in _LISTS}
-        return {"objects": described(self.model, self.network, self.filter), "made": self.made} | lists
-
-    def _arrays(self) -> dict[str, NDArray[Any]]:
-        arrays = {name: getattr(self, name) for name in ARRAYS if getattr(self, name) is not None}
-        arrays |= {f"{_VARYING}{name}": value for name, value in self.varying.items()}
-        return arrays | {f"{_SIGNAL}{name}": value for name, value in self.signals.items()}
-
-    def _labelled(self) -> dict[str, NDArray[Any]]:
-        """Arrays as a dataset holds them: signals by their own names where these are free."""
-        return {_label(name): value for name, value in self._arrays().items()}
-
-    def _packed(self) -> bytes:
-        from garrison.storage import pack
-
-        return pack(self._document(), self._arrays())
+        return run_file.load(path_of("path", path), _made_of)
 
     def __reduce__(self) -> Any:
         parts = self.model, self.network, self.filter, self.made
-        return _made_of, (*parts, {name: getattr(self, name) for name in _LISTS}, self._arrays())
+        return _made_of, (*parts, run_file.lists_of(self), run_file.arrays_of(self))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Run):
             return NotImplemented
-        parts = ("model", "network", "filter", *_LISTS)
-        return all(same(getattr(self, k), getattr(other, k)) for k in parts) and same(self._arrays(), other._arrays())
+        parts = ("model", "network", "filter", *run_file.LISTS)
+        alike = all(same(getattr(self, k), getattr(other, k)) for k in parts)
+        return alike and same(run_file.arrays_of(self), run_file.arrays_of(other))
 
     def __hash__(self) -> int:
         return hash((self.model, self.network, self.filter, self.shape))
@@ -335,7 +256,7 @@ class Run(metaclass=Hinting):
         """
         from garrison.labelled import dataset
 
-        return dataset(self, self._labelled())
+        return dataset(self, run_file.labelled(self))
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame in long form (extra: pandas): one row per trial, time and agent.
@@ -361,18 +282,6 @@ class Run(metaclass=Hinting):
         return f"<Run of {self.filter.name}: {', '.join(sizes)}>"
 
 
-def _label(name: str) -> str:
-    """What a dataset calls an array of a saved run."""
-    own = name.removeprefix(_SIGNAL)
-    first = own[:1]
-    fit = first.isalnum() or first == "_" or first > "\x7f"  # how names of netCDF begin
-    return own if fit and own not in _TAKEN and not own.startswith((_SIGNAL, _VARYING)) else name
-
-
-def _unlabelled(label: str) -> str:
-    return label if label in ARRAYS or label.startswith((_SIGNAL, _VARYING)) else f"{_SIGNAL}{label}"
-
-
 def _made_of(
     model: _core.Model,
     network: _core.Network,
@@ -382,35 +291,12 @@ def _made_of(
     found: dict[str, NDArray[Any]],
 ) -> Run:
     """The run of what it was made of, its lists, and its arrays by the names of a saved run."""
-    changed = {key.removeprefix(_VARYING): value for key, value in found.items() if key.startswith(_VARYING)}
-    arrays = {key: found[key] for key in ARRAYS if key in found}
+    changed = {
+        key.removeprefix(run_file.VARYING): value for key, value in found.items() if key.startswith(run_file.VARYING)
+    }
+    arrays = {key: found[key] for key in run_file.ARRAYS if key in found}
     run = Run(lists | {"made": made} | arrays, model, network, filter, changed)
-    run.signals = {key.removeprefix(_SIGNAL): value for key, value in found.items() if key.startswith(_SIGNAL)}
-    return run
-
-
-def _restored(data: bytes, name: str) -> Run:
-    """The run of an archive that `save` wrote."""
-    from garrison.storage import unpack
-
-    return _assembled(*unpack(data, name), name)
-
-
-def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: str) -> Run:
-    """The run of a document and arrays, signals marked by their prefix."""
-    from garrison.labelled import dimensions
-
-    try:
-        objects, document = document["objects"], {"proved": []} | document
-        made = document.get("made", {})
-        content: dict[str, Any] = {key: document[key] for key in _LISTS}
-        require_lists(content | {"made": made})
-        content["accusations"] = [(k, t, sets) for k, t, sets in content["accusations"]]
-        content["proved"] = [(k, t, sets) for k, t, sets in content["proved"]]
-        content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
-        parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
-        run = _made_of(*parts, made, content, found)
-        require_arrays(found, dimensions(run), run.network.agents)
-    except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
-        raise _core.IoError(f"{name}: got {error!r}, expected a run written by Run.save") from None
+    run.signals = {
+        key.removeprefix(run_file.SIGNAL): value for key, value in found.items() if key.startswith(run_file.SIGNAL)
+    }
     return run

@@ -271,15 +271,15 @@ std::shared_ptr<const MessageAttack> build(Schedule s, const PerturbParams& p) {
 
 template <class P>
 AttackInfo on_measurements(const char* name, const char* doc) {
-  return {name, "measurement", doc, describe<P>(), [](Schedule s, const ParamMap& given) -> AnyAttack {
-            const P p = parse_params<P>("attack", given);
+  return {name, "measurement", doc, describe<P>(), [name](Schedule s, const ParamMap& given) -> AnyAttack {
+            const P p = parse_params<P>(name, given);
             return {"", values(p), build(std::move(s), p), nullptr};
           }};
 }
 template <class P>
 AttackInfo on_messages(const char* name, const char* doc) {
-  return {name, "message", doc, describe<P>(), [](Schedule s, const ParamMap& given) -> AnyAttack {
-            const P p = parse_params<P>("attack", given);
+  return {name, "message", doc, describe<P>(), [name](Schedule s, const ParamMap& given) -> AnyAttack {
+            const P p = parse_params<P>(name, given);
             return {"", values(p), nullptr, build(std::move(s), p)};
           }};
 }
@@ -313,7 +313,7 @@ std::span<const AttackInfo> attack_infos() {
                  "the agent sends nothing",
                  {},
                  [](Schedule s, const ParamMap& given) -> AnyAttack {
-                   parse_params<NoParams>("attack", given);
+                   parse_params<NoParams>("silence", given);
                    return {"", {}, nullptr, silence(std::move(s))};
                  }},
   };

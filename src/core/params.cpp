@@ -82,6 +82,10 @@ void refuse_unknown(const std::string& owner, const std::string& name, std::span
          near.empty() ? "see `garrison list`" : "did you mean \"" + near + "\"?");
 }
 
+void refuse_absent(const std::string& owner, const ParamInfo& info) {
+  refuse(owner + "." + info.name, "no value, or nan", range(info), info.doc);
+}
+
 void check_param(const std::string& owner, const ParamInfo& info, const ParamValue& value) {
   const std::string which = owner + "." + info.name;
   if (const auto* words = std::get_if<std::string>(&value)) {
@@ -103,8 +107,8 @@ void check_param(const std::string& owner, const ParamInfo& info, const ParamVal
                             ? std::get<double>(value)
                             : static_cast<double>(std::get<std::int64_t>(value));
   if (std::isnan(number)) {
-    const bool may_be_absent = std::isnan(std::get<double>(info.initial)) && !info.required;
-    if (!may_be_absent) refuse(which, info.required ? "no value, or nan" : "nan", range(info), info.doc);
+    if (info.required) refuse_absent(owner, info);
+    if (!std::isnan(std::get<double>(info.initial))) refuse(which, "nan", range(info), info.doc);
     return;
   }
   const bool low = info.open ? number <= info.least : number < info.least;

@@ -16,7 +16,7 @@ LAYERS = (
     ("numeric", "sizes", "storage", "paths", "objects", "filters", "notebook", "alarms"),
     ("arguments", "parameters", "clean", "families", "tables", "longform", "labelled"),
     ("attacks", "varying", "varying_network", "certifying"),
-    ("record", "recipe", "expected", "checks", "doubts", "refuted"),
+    ("record", "recipe", "run_file", "run_options", "expected", "checks", "doubts", "refuted"),
     ("drivers", "kalman", "fitting", "fitting_full", "identifying", "calibration", "certificate", "exposing"),
     ("prepared", "designing"),
     ("resilience", "mitigation", "lmi", "scenario", "answers"),

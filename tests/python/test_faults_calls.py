@@ -58,7 +58,7 @@ RUN = PREPARED.simulate(steps=3)
         (lambda: gr.filters.make_filter(gr.filters.Dkf, {}), "make_filter.name: got the class Dkf, not made yet"),
         (lambda: gr.filters.make_filter("saturation", {"attacked": 2**31}), "got 2147483648, expected a whole number"),
         (lambda: gr.filters.make_filter("saturation", {"attacked": 2**40}), f"got {2**40}, expected a whole number"),
-        (lambda: gr.attacks.Bias([0], value=float("nan")), "attack.value: got no value, or nan, expected a number"),
+        (lambda: gr.attacks.Bias([0], value=float("nan")), "bias.value: got no value, or nan, expected a number"),
         (lambda: gr.filters.Saturation(threshold=1e308), "saturation.threshold: got 1e+308, expected a number of size"),
         (lambda: gr.filters.PartialSharing(gain=0.1, start_covariance=[1.0, 1e300]), "start_covariance: got 1e+300"),
         (lambda: gr.Model([[True, 0], [0, 1]], [[1, 0]]), "A[0][0]: got True or False"),

@@ -2,6 +2,7 @@
 // All attacks by name, with their parameters: what scenarios, bindings and `garrison list attacks` use.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ struct GARRISON_EXPORT AttackInfo {
   std::string target;  ///< "measurement" or "message"
   std::string doc;
   std::vector<ParamInfo> params;
-  AnyAttack (*make)(Schedule, const ParamMap&);
+  std::function<AnyAttack(Schedule, const ParamMap&)> make;
 };
 
 GARRISON_EXPORT std::span<const AttackInfo> attack_infos();

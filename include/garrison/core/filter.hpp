@@ -96,18 +96,17 @@ inline void next_measurement(const Local& local, const double* x, double* out) n
 ///
 /// - `init(local, gains, x0, state, message)` sizes every buffer of state and message (may allocate).
 /// - `y` has local.outputs entries; NaN = missing. Infinite and huge entries are allowed.
+/// - `sense` and `fuse` write every field of the message: it holds what it held two rounds ago.
 /// - The inbox holds messages of this sample and round only, finite and of the right size; a missing
-/// neighbour
-///   is simply not in it.
+///   neighbour is simply not in it.
 /// - Message, State and Gains list their fields in `visit` (core/fields.hpp, wire/archive.hpp).
 /// - `rejoin(local, gains, inbox, t, state)` gives an agent whose estimate is of no use (it has just started
-/// in a
-///   running network, or overflowed) one from what its neighbours sent in sample t, whatever one liar says
-///   where that can be had; where nothing was heard the state stays, or starts anew where it is not finite.
-///   Nothing is claimed afterwards that needs the past: `uncover` is part of it.
+///   in a running network, or overflowed) one from what its neighbours sent in sample t, whatever one liar
+///   says where that can be had; where nothing was heard the state stays, or starts anew where it is not
+///   finite. Nothing is claimed afterwards that needs the past: `uncover` is part of it.
 /// - Optional: `uncover(gains, state)`: a gap lies behind this state, so no bound, no test and no accusation
-/// may rest on
-///   it; `shape(local, gains, sender, t, message)`: sizes and derived indices of a message that will be read;
+///   may rest on it;
+///   `shape(local, gains, sender, t, message)`: sizes and derived indices of a message that will be read;
 ///   `most_missing(gains)`: sensors that may lack a measurement at once; where there are more, drivers that
 ///   see all of them uncover everybody before the sample;
 ///   `part(gains, id, neighbours)`: what one agent needs of the gains, the rest left empty;

@@ -47,6 +47,8 @@ Field<P, T> field(T P::* member, ParamInfo info) {
   return {member, std::move(info)};
 }
 
+/// @throws InvalidInput always: a required parameter that was not given
+[[noreturn]] GARRISON_EXPORT void refuse_absent(const std::string& owner, const ParamInfo& info);
 /// Checks one value against its description; `owner` names the filter or attack in the message.
 GARRISON_EXPORT void check_param(const std::string& owner, const ParamInfo& info, const ParamValue& value);
 /// Refuses numbers of a filter that are finite and beyond kHuge: nothing that is made of them is a number.
@@ -107,7 +109,10 @@ P parse_params(const std::string& owner, const ParamMap& given) {
   P params;
   detail::each_field<P>([&](const auto& one) {
     const auto entry = given.find(one.info.name);
-    if (entry == given.end()) return;
+    if (entry == given.end()) {
+      if (one.info.required) refuse_absent(owner, one.info);
+      return;
+    }
     using T = std::decay_t<decltype(params.*(one.member))>;
     params.*(one.member) =
         static_cast<T>(std::get<detail::Stored<T>>(convert_param(owner, one.info, entry->second)));

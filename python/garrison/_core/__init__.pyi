@@ -9,8 +9,8 @@ import numpy.typing
 import typing
 from . import filters
 from . import attacks
-from . import saturation
 from . import rdkf
+from . import saturation
 from . import structure
 from . import structural
 from . import partial_sharing

@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from garrison import _core, arguments, doubts, refuted
+from garrison import _core, arguments, doubts, refuted, run_options
 from garrison.certifying.plant import sources_of
 from garrison.families import family_of
 from garrison.objects import described_attack, plain_data, plain_lists
@@ -51,7 +51,7 @@ def designed(
     memory: bool,
 ) -> _core.Design:
     """The design that is given, or that of the three with what is to be certified."""
-    wanted = arguments.certificate(filter, certificate, failure, attacked, levels, memory)
+    wanted = run_options.certificate(filter, certificate, failure, attacked, levels, memory)
     if design is None:
         return _core.Design(model, network, filter, **wanted)
     if wanted:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from garrison import _core, arguments, doubts
+from garrison import _core, arguments, doubts, run_options
 from garrison.drivers.common import (
     KEEP,
     KEEPABLE,
@@ -131,9 +131,9 @@ def replay(
     y = numbers("measurements", matched("measurements", measurements, names))
     trials = (len(y) if y.ndim == 3 else 1) if trials is None else arguments.whole("trials", trials, 1)
     wanted = arguments.flag("conditions", conditions)
-    attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
+    attacks, kept = run_options.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
     samples = y.shape[-2] if y.ndim >= 2 else 0
-    ground, links = links_of(network, arguments.link(link), samples)
+    ground, links = links_of(network, run_options.link(link), samples)
     known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
     require_room(base, filter, kept, trials, samples)
     design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)

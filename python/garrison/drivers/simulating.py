@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from garrison import _core, arguments
+from garrison import _core, arguments, run_options
 from garrison.drivers.common import (
     KEEP,
     KEEPABLE,
@@ -136,11 +136,11 @@ def simulate(
     """
     steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
     base, series = parted(model)
-    ground, links = links_of(network, arguments.link(link), steps)
+    ground, links = links_of(network, run_options.link(link), steps)
     require_order("simulate", base, ground, filter)
     known: dict[str, Any] = {"inputs": inputs_of(base, inputs, steps), "series": series}
     wanted = arguments.flag("conditions", conditions)
-    attacks, kept = arguments.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
+    attacks, kept = run_options.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
     require_room(base, filter, kept, trials, steps)
     design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
     data = _core.simulate(

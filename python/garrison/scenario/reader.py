@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
-from garrison.arguments import ONE_SPREAD, SPREADS, chance, flag, moderate, pair_of_levels
+from garrison.arguments import chance, flag, moderate
 from garrison.doubts import waits
 from garrison.files import contents
 from garrison.fitting import Fit
 from garrison.numeric import numbers
 from garrison.objects import named
+from garrison.run_options import ONE_SPREAD, SPREADS, pair_of_levels
 from garrison.scenario.attacks import read_attack
 from garrison.scenario.data import Recording, read_data
 from garrison.scenario.filters import CENTRAL_KALMAN, read_filters, read_local, read_screens

@@ -117,7 +117,7 @@ TEST_CASE("attacks by name") {
   CHECK(attack_infos().size() == 18);
   CHECK_THROWS_WITH_AS(make_attack("bais", one(), {}), doctest::Contains("did you mean \"bias\"?"),
                        InvalidInput);
-  CHECK_THROWS_WITH_AS(make_attack("bias", one(), {}), doctest::Contains("attack.value: got no value"),
+  CHECK_THROWS_WITH_AS(make_attack("bias", one(), {}), doctest::Contains("bias.value: got no value"),
                        InvalidInput);
   CHECK_THROWS_WITH_AS(make_attack("scale", one(), {{"fcator", 2.0}}),
                        doctest::Contains("did you mean \"factor\"?"), InvalidInput);

@@ -69,6 +69,18 @@ TEST_CASE("a wrong value is refused with which, got and expected") {
                        InvalidInput);
 }
 
+TEST_CASE("a required parameter is given, whatever stands in its place before") {
+  struct Kettle {
+    int cups = 1;
+    static auto fields() {
+      return std::make_tuple(field(&Kettle::cups, {.name = "cups", .required = true, .least = 1}));
+    }
+  };
+  CHECK(parse_params<Kettle>("kettle", {{"cups", 3.0}}).cups == 3);
+  CHECK_THROWS_WITH_AS(parse_params<Kettle>("kettle", {}), doctest::Contains("kettle.cups: got no value"),
+                       InvalidInput);
+}
+
 TEST_CASE("an unknown name is refused with the nearest one") {
   CHECK_THROWS_WITH_AS(parse({{"haet", 1.0}}), doctest::Contains("did you mean \"heat\"?"), InvalidInput);
   CHECK_THROWS_WITH_AS(parse({{"temperature_of_the_room", 1.0}}),

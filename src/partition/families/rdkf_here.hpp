@@ -3,7 +3,7 @@
 #pragma once
 
 #include "garrison/filters/rdkf/part_design.hpp"
-#include "partition/cut.hpp"
+#include "partition/cast.hpp"
 
 namespace garrison::partition {
 

@@ -1,51 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "partition/cut.hpp"
-
-#include <algorithm>
+// The structural filter's estimator: its gains are designed for the whole network, then cut.
+#include "garrison/filters/structural/filter.hpp"
+#include "partition/families/part_family.hpp"
 
 namespace garrison::partition {
-
-Cast::Cast(const Region& region) : ids(region.ids), own(region.ids.size(), 0) {
-  std::sort(ids.begin(), ids.end());
-  for (int place = 0; place < region.own; ++place)
-    own[static_cast<std::size_t>(name_of(region.ids[static_cast<std::size_t>(place)]))] = 1;
-}
-
-int Cast::name_of(int id) const {
-  return static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-}
-
-Rdkf::Gains cut(const Rdkf::Gains& all, const Cast& cast) {
-  Rdkf::Gains g = all;
-  g.agents.assign(cast.ids.size(), {});
-  for (std::size_t k = 0; k < cast.ids.size(); ++k) {
-    const rdkf::AgentGains& from = all.agents[static_cast<std::size_t>(cast.ids[k])];
-    if (cast.own[k] == 0) {
-      g.agents[k].J = from.J;
-      continue;
-    }
-    g.agents[k] = from;
-    for (int& id : g.agents[k].heard) id = cast.name_of(id);
-  }
-  return g;
-}
-
-PartialSharing::Gains cut(const PartialSharing::Gains& all, const Cast& cast) {
-  PartialSharing::Gains g{all.gamma, {}, {}, {}, all.Q, all.P0, all.given, all.freeze};
-  Matrix start = Matrix::Zero(cast.size(), all.selection.states());
-  g.W.resize(cast.ids.size());
-  g.steady.resize(all.steady.empty() ? 0 : cast.ids.size());
-  for (std::size_t k = 0; k < cast.ids.size(); ++k) {
-    const auto id = static_cast<std::size_t>(cast.ids[k]);
-    for (const int a : all.selection.entries(cast.ids[k])) start(static_cast<Eigen::Index>(k), a) = 1.0;
-    if (cast.own[k] == 0) continue;
-    g.W[k] = all.W[id];
-    if (!g.steady.empty()) g.steady[k] = all.steady[id];
-  }
-  g.selection = {start, all.selection.shift()};
-  return g;
-}
-
 namespace {
 
 /// `count` numbers of each agent.
@@ -59,8 +17,7 @@ std::vector<double> rows_of(const std::vector<double>& all, const Cast& cast, st
   return rows;
 }
 
-}  // namespace
-
+/// What `part` of the family does for one agent, for those of a rank.
 Structural::Gains cut(const Structural::Gains& all, const Cast& cast) {
   const std::size_t N = all.has_sensor.size();
   const std::size_t n = all.rows.size() / N;
@@ -93,5 +50,19 @@ Structural::Gains cut(const Structural::Gains& all, const Cast& cast) {
   }
   return g;
 }
+
+std::unique_ptr<PartRunner> runner(const ParamMap& given, const Whole* whole, const Model& own,
+                                   const Region& region, Exchange& exchange) {
+  require_sets("structural", region, 1.0, region.places());
+  const auto params = params_of<Structural>(given);
+  auto gains = cut(Structural::design(params, whole->model, whole->network), Cast(region));
+  return cast_engine<Structural>(std::move(gains), own, region, exchange);
+}
+
+}  // namespace
+
+const PartFamily structural_parts{
+    Structural::name, false, [](const ParamMap&) { return 1; },
+    [](const ParamMap&, int) -> std::string { return "gains follow from the whole network"; }, runner};
 
 }  // namespace garrison::partition

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "partition/rdkf_here.hpp"
+#include "partition/families/rdkf_here.hpp"
 
 #include <algorithm>
 
