@@ -55,14 +55,14 @@ def of_blind(model: _core.Model) -> list[str]:
     """A line that names sensors whose row of C is zero, which no filter can use; or that there is no sensor at all."""
     if model.outputs == 0:
         return ["no agent has a sensor (every C is empty): estimates are predictions from the start alone"]
+    if np.concatenate(model.C).any(axis=1).all():
+        return []
     blind = [
         f"agent {i}" + (f" (output {k})" if len(rows) > 1 else "")
         for i, rows in enumerate(model.C)
         for k, row in enumerate(rows)
         if not np.any(row)
     ]
-    if not blind:
-        return []
     which = ", ".join(blind[:_NAMES]) + (f" and {len(blind) - _NAMES} more" if len(blind) > _NAMES else "")
     return [f"a sensor of {which} sees nothing of the state (its row of C is zero): what it says is not used"]
 

@@ -163,6 +163,8 @@ def _sources(model: _core.Model) -> list[int]:
 def shared_sources(model: _core.Model) -> list[str]:
     """Names of the sources that stand behind outputs of several agents."""
     behind: dict[str, set[int]] = {}
+    if len(set(model.sources)) == len(model.sources):
+        return []
     names = iter(model.sources)
     for agent, C in enumerate(model.C):
         for _, name in zip(C, names, strict=False):

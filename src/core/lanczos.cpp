@@ -12,7 +12,7 @@ namespace garrison::detail {
 constexpr double kRounding = 1e-15;
 
 Ritz largest_eigenvalue(Eigen::Index size, double accuracy, int most,
-                        const std::function<Vector(const Vector&)>& apply) {
+                        const std::function<Vector(const Vector&)>& apply, double enough) {
   const auto deflate = [](Vector& v) { v.array() -= v.mean(); };
   Vector q(size);
   for (Eigen::Index i = 0; i < size; ++i) q(i) = std::sin(1.0 + 12.9898 * static_cast<double>(i));
@@ -38,6 +38,7 @@ Ritz largest_eigenvalue(Eigen::Index size, double accuracy, int most,
       Eigen::SelfAdjointEigenSolver<Matrix> ritz;
       ritz.computeFromTridiagonal(alpha.head(k + 1), beta.head(k), Eigen::ComputeEigenvectors);
       found.value = ritz.eigenvalues()(k);
+      if (found.value > enough) return found;  // it only grows
       found.settled =
           whole || beta(k) * std::abs(ritz.eigenvectors()(k, k)) <= accuracy * std::abs(found.value);
     }

@@ -15,9 +15,9 @@ struct Ritz {
 
 /// Estimate of the largest eigenvalue on the space orthogonal to the all-ones vector, by Lanczos with full
 /// reorthogonalisation, at most `most` products. Its error is about the square of the residual over the
-/// distance to the next eigenvalue.
+/// distance to the next eigenvalue. Ends unsettled where it is clear that the eigenvalue is above `enough`.
 /// @throws InvalidInput when the budget is over
 Ritz largest_eigenvalue(Eigen::Index size, double accuracy, int most,
-                        const std::function<Vector(const Vector&)>& apply);
+                        const std::function<Vector(const Vector&)>& apply, double enough = kInfinity);
 
 }  // namespace garrison::detail

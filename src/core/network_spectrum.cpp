@@ -23,8 +23,11 @@ constexpr double kLanczosAccuracy = 1e-13;
 constexpr double kShiftAccuracy = 1e-4;
 /// Of both ends at once, from products with the Laplacian itself.
 constexpr double kPlainAccuracy = 1e-9;
-/// lambda_2, in lambda_max, that a difference of such numbers gives without loss.
+/// lambda_2, in lambda_max, that a difference of such numbers gives without loss; and below which, in
+/// networks that are small, factors stay sparse: a small lambda_2 means small separators.
 constexpr double kClear = 1e-3;
+constexpr double kSeparable = 1e-2;
+constexpr int kSmall = 5000;  // agents
 
 /// Factors may have more numbers than an int counts.
 using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
@@ -72,15 +75,18 @@ bool looks_well_connected(const Network& network) {
 
 /// Both ends by products alone; nothing where that takes too many.
 std::optional<LaplacianSpectrum> by_products(const Sparse& lap) {
+  // lambda_max lies between the largest degree plus one and twice the largest degree.
+  const double degree = lap.diagonal().maxCoeff();
+  const double shift = 2.0 * degree;
+  const double least = (lap.rows() <= kSmall ? kSeparable : kClear) * (degree + 1.0);
+  const auto low = detail::largest_eigenvalue(
+      lap.rows(), kPlainAccuracy, kLanczosSteps, [&](const Vector& v) { return Vector(shift * v - lap * v); },
+      shift - least);
+  if (!low.settled) return {};
   const auto top = detail::largest_eigenvalue(lap.rows(), kPlainAccuracy, kLanczosSteps,
                                               [&](const Vector& v) { return Vector(lap * v); });
   if (!top.settled) return {};
-  const double shift = 2.0 * top.value;  // the accuracy is a part of what is left
-  const auto low = detail::largest_eigenvalue(lap.rows(), kPlainAccuracy, kLanczosSteps,
-                                              [&](const Vector& v) { return Vector(shift * v - lap * v); });
-  const double lambda2 = shift - low.value;
-  if (!low.settled || lambda2 < kClear * top.value) return {};
-  return LaplacianSpectrum{lambda2, top.value};
+  return LaplacianSpectrum{shift - low.value, top.value};
 }
 
 }  // namespace
