@@ -109,6 +109,26 @@ def test_cars_without_data_are_left_out_and_gaps_in_time_are_cut(tmp_path: Path)
     assert dict(part.facts)["samples"] == "101, every 0.1 s"
 
 
+def test_gaps_of_places_in_a_straight_line_are_said(tmp_path: Path) -> None:
+    c = columns()
+    at = {1: 500.0 + np.cumsum(c["Speed1"]) * 0.1}
+    for k in range(2, 6):
+        at[k] = at[k - 1] - c[f"IVS{k - 1}"] - 4.4
+    c |= {f"E{k}": x * np.cos(0.3) for k, x in at.items()} | {f"N{k}": x * np.sin(0.3) for k, x in at.items()}
+    assert [n for n in import_openacc([write(tmp_path / "x.csv", c)]).notes if "a straight line" in n]
+    bends = np.cumsum(c["Speed1"]) * 0.001
+    c |= {f"N{k}": x * np.sin(0.3) + 3.0 * np.cos(bends * k) for k, x in at.items()}
+    assert not [n for n in import_openacc([write(tmp_path / "y.csv", c)]).notes if "a straight line" in n]
+
+
+def test_late_times_keep_their_parts_of_seconds(tmp_path: Path) -> None:
+    c = columns()
+    c["Time"] = c["Time"] + 123456.0
+    found = import_openacc([write(tmp_path / "late.csv", c)]).measurements
+    assert found is not None
+    assert found.times[:2] == ["123456", "123456.1"]
+
+
 def test_more_drift_than_assumed_is_said() -> None:
     bundle = import_openacc([SAMPLE], Noise(measurement=0.05))
     assert any("--measurement-noise" in note and "may contradict" in note for note in bundle.notes)

@@ -141,6 +141,9 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
     clouds = write_mcap(tmp_path / "c.mcap", "json", "foxglove.PointCloud", [{}])
     with pytest.raises(_core.InvalidInput, match=r"/fix \(foxglove.PointCloud\), expected topics of the kinds"):
         import_mcap(clouds)
+    frames = write_mcap(tmp_path / "tf.mcap", "json", "tf2_msgs/msg/TFMessage", [{"transforms": []}])
+    with pytest.raises(_core.InvalidInput, match=r"/fix \(tf2_msgs/msg/TFMessage\).*/fix: trees of frames are not"):
+        import_mcap(frames)
 
 
 @pytest.mark.parametrize(("kind", "file", "module"), [("rosbag", BAG, "rosbags"), ("mcap", MCAP, "mcap")])

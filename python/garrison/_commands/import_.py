@@ -83,11 +83,13 @@ def _adsb(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     )
     own.add_argument("file", type=Path, help="JSON or CSV file, also as .gz")
     own.add_argument("--aircraft", metavar="ADDRESS", help="ICAO address, where the file has several aircraft")
+    own.add_argument("--from", dest="start", metavar="TIME", help="first time that is used, UTC")
+    own.add_argument("--to", dest="end", metavar="TIME", help="last time that is used, UTC")
     own.add_argument("--period", type=number, default=1.0, help="of the samples, s (1)")
     own.add_argument("--oldest", type=number, default=2.0, help="age of a position above which it is missing, s (2)")
-    own.add_argument("--position-noise", type=number, default=50.0, help="standard deviation, m (50)")
+    own.add_argument("--position-noise", type=number, default=200.0, help="standard deviation, m (200)")
     own.add_argument("--velocity-noise", type=number, default=3.0, help="standard deviation, m/s (3)")
-    own.add_argument("--manoeuvre", type=number, default=3.0, help="standard deviation of accelerations, m/s^2 (3)")
+    own.add_argument("--manoeuvre", type=number, default=10.0, help="standard deviation of accelerations, m/s^2 (10)")
     own.add_argument("--false-alarm", type=number, default=1e-6, help="of a test, per sample (1e-6)")
     own.set_defaults(make=_make_adsb)
     return own
@@ -95,9 +97,14 @@ def _adsb(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
 
 def _make_adsb(args: argparse.Namespace) -> Bundle:
     from garrison.importers.adsb import Assumptions, import_adsb
+    from garrison.importers.adsb_choice import Choice
+    from garrison.scenario.section import moment
 
+    start = moment("--from", args.start) if args.start is not None else None
+    end = moment("--to", args.end, last=True) if args.end is not None else None
     noise = args.position_noise, args.velocity_noise, args.manoeuvre
-    return import_adsb(args.file, args.aircraft, Assumptions(args.period, args.oldest, *noise, args.false_alarm))
+    assumed = Assumptions(args.period, args.oldest, *noise, args.false_alarm)
+    return import_adsb(args.file, Choice(args.aircraft, start, end), assumed)
 
 
 def _rosbag(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:

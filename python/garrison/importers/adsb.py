@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.importers.adsb_choice import Choice
+from garrison.importers.adsb_doubts import doubts
 from garrison.importers.adsb_files import Track, read_track
 from garrison.importers.bundle import Bundle, Measurements, gate, model_file
 from garrison.importers.earth import Plane
@@ -34,14 +36,15 @@ _UNITS = {"east": "m", "north": "m", "east velocity": "m/s", "north velocity": "
 class Assumptions:
     """period: s. oldest: s, above which a position is missing. position, velocity: deviations of reports, m and m/s.
 
-    manoeuvre: deviation of the acceleration over a second, m/s^2. false_alarm: of a test, per sample.
+    manoeuvre: deviation of the acceleration over a second, m/s^2. false_alarm: of a test, per sample. The defaults are
+    those at which recorded flights do not alarm where their reports agree (docs/how-to/import-aircraft.md).
     """
 
     period: float = 1.0
     oldest: float = 2.0
-    position: float = 50.0
+    position: float = 200.0
     velocity: float = 3.0
-    manoeuvre: float = 3.0
+    manoeuvre: float = 10.0
     false_alarm: float = 1e-6
 
     def __post_init__(self) -> None:
@@ -50,13 +53,13 @@ class Assumptions:
         require_probability("false-alarm", self.false_alarm)
 
 
-def import_adsb(path: Path, aircraft: str | None = None, assumed: Assumptions | None = None) -> Bundle:
-    """The track of one aircraft. aircraft: its ICAO address, where the file has several.
+def import_adsb(path: Path, choice: Choice | None = None, assumed: Assumptions | None = None) -> Bundle:
+    """The track of one aircraft. choice: which one and which flight, where the file has several.
 
     Raises IoError or InvalidInput where the file is no track.
     """
     assumed = assumed or Assumptions()
-    track = read_track(path, aircraft)
+    track = read_track(path, choice)
     times, values, fresh = _on_grid(track, assumed)
     first = int(np.argmax(np.isfinite(values).all(axis=1)))
     if not np.isfinite(values[first]).all():
@@ -73,9 +76,11 @@ def import_adsb(path: Path, aircraft: str | None = None, assumed: Assumptions | 
         "run": {"start": [float(v) for v in start]},
     }
     values, times = values[first:], times[first:]
+    usual = round(float(np.median(np.diff(track.t))), 3)
     facts = [
         ("aircraft", track.aircraft),
         ("time", f"{times[0]} to {times[-1]} UTC, every {assumed.period:g} s"),
+        ("reports", f"{len(track.t)}, usually {usual:g} s apart"),
         ("samples", str(len(values))),
         ("fresh positions", f"{fresh[first:].mean():.0%}; older than {assumed.oldest:g} s: missing"),
         ("velocities", f"{np.isfinite(values[:, 2]).mean():.0%}"),
@@ -83,21 +88,9 @@ def import_adsb(path: Path, aircraft: str | None = None, assumed: Assumptions | 
     notes = [
         "positions and velocities come from one receiver in the aircraft: an attacker of its satellite navigation "
         "moves both. An alarm says that they do not fit what was reported before, not where the aircraft is",
-        *_gap_note(fresh[first:], assumed.period),
+        *doubts(values, fresh[first:], assumed.period),
     ]
     return Bundle(tables, SOURCE, Measurements(times, OUTPUTS, values), model, facts, notes)
-
-
-def _gap_note(fresh: NDArray[np.bool_], period: float) -> list[str]:
-    """What the filter does after the longest gap, where it is long."""
-    longest = float(np.diff(np.flatnonzero(np.concatenate([[True], fresh, [True]]))).max() - 1) * period
-    if longest < _LONG:
-        return []
-    return [
-        f"the longest gap without a position takes {longest:g} s; after gaps that make the estimate ten times as "
-        "unsure as usual, reports within what the gap allows are taken up untested, and a turn in the gap may be an "
-        "alarm; --position-noise 2000 --manoeuvre 1 lets the filter test velocities at once"
-    ]
 
 
 def _model(assumed: Assumptions) -> dict[str, object]:
@@ -149,8 +142,6 @@ def _on_grid(track: Track, assumed: Assumptions) -> tuple[list[str], Array, NDAr
     return times, values, np.isfinite(values[:, 0])
 
 
-#: s, of a gap that is worth a note
-_LONG = 60.0
 #: grid points per report, above which the file is not a track but scattered reports
 _MOST_FILLED = 200
 
@@ -159,7 +150,7 @@ def _fresh(track: Track, oldest: float) -> tuple[NDArray[np.bool_], NDArray[np.b
     """Which positions and which velocities were received, and are not what was repeated from before."""
     position = np.isfinite(track.latitude) & np.isfinite(track.longitude)
     if np.isfinite(track.position_time).any():
-        position &= track.t - track.position_time <= oldest  # nan: not known, not fresh
+        position &= np.abs(track.t - track.position_time) <= oldest  # nan: not known, not fresh
     else:
         position &= _changed(track.latitude) | _changed(track.longitude)
     velocity = np.isfinite(track.speed) & np.isfinite(track.track)

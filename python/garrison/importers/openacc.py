@@ -137,5 +137,5 @@ def _measurements(convoy: Convoy, odometer: Array) -> Measurements:
             parts += [-convoy.gap[:, k - 1], convoy.speed[:, k] - convoy.speed[:, k - 1]]
         columns.append(f"{name} acceleration [m/s^2]")
         parts.append(convoy.acceleration[:, k])
-    times = [f"{convoy.start + k * convoy.period:.6g}" for k in range(len(odometer))]
+    times = [f"{round(convoy.start + k * convoy.period, 6):.12g}" for k in range(len(odometer))]
     return Measurements(times, columns, np.column_stack(parts))

@@ -16,6 +16,8 @@ from garrison.words import refusal
 
 Array = NDArray[np.float64]
 _NUMBERED = re.compile(r"(Speed|IVS)_?(\d+)", re.IGNORECASE)
+#: m, by which a length may vary that is taken off all gaps
+_SAME_LENGTH = 0.01
 #: a car of which less is known is left out
 _LEAST_KNOWN = 0.5
 
@@ -72,15 +74,31 @@ def _of_wide(grid: Grid) -> Convoy:
     gap = {k: grid.column(columns["ivs", k]) for kind, k in columns if kind == "ivs"}
     known = [k for k in cars if np.isfinite(speed[k]).mean() >= _LEAST_KNOWN]
     row = _longest_row(known, {k for k, g in gap.items() if np.isfinite(g).mean() >= _LEAST_KNOWN})
-    names = [grid.vehicles[k - 1] if k <= len(grid.vehicles) else f"car {k}" for k in row]
+    name = {k: grid.vehicles[k - 1] if k <= len(grid.vehicles) else f"car {k}" for k in cars}
+    names = [name[k] for k in row]
     notes = []
     if len(row) < len(cars):
-        left = ", ".join(f"Speed{k}" for k in cars if k not in row)
-        notes.append(f"left out, for want of speeds or gaps to the car ahead: {left}")
+        left = ", ".join(f"{name[k]} (Speed{k})" for k in cars if k not in row)
+        notes.append(f"left out, for want of speeds, or of gaps that join them to the others: {left}")
+    if any(_straight(grid, k, gap[k]) for k in row[:-1]):
+        notes.append(
+            "the gaps are distances in a straight line (those of the places E, N, less a length): in bends they are "
+            "shorter than the road, and odometers seem to drift by as much"
+        )
     if not row:
         raise refusal(str(grid.path), f"no car with more than {_LEAST_KNOWN:.0%} of its speeds", "speeds and gaps")
     gaps = [gap[k] for k in row[:-1]]
     return _whole(str(grid.path), names, t, [speed[k] for k in row], gaps, None, notes)
+
+
+def _straight(grid: Grid, k: int, gap: Array) -> bool:
+    """The gap behind car k is the distance of the two places in the file, less a constant."""
+    names = [f"{axis}{car}" for axis in "EN" for car in (k, k + 1)]
+    if not set(names) <= set(grid.names):
+        return False
+    east, east_behind, north, north_behind = (grid.column(name) for name in names)
+    rest = np.hypot(east - east_behind, north - north_behind) - gap
+    return bool(np.isfinite(rest).any()) and float(np.nanstd(rest)) < _SAME_LENGTH
 
 
 def _longest_row(cars: list[int], gaps: set[int]) -> list[int]:

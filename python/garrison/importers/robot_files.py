@@ -128,4 +128,9 @@ def _require_files(paths: Sequence[Path]) -> None:
 
 def _nothing(where: str, topics: dict[str, str], kinds: set[str]) -> _core.InvalidInput:
     found = ", ".join(f"{topic} ({kind})" for topic, kind in list(topics.items())[:12]) or "no messages"
-    return refusal(where, found, f"topics of the kinds {', '.join(sorted(kinds))}")
+    trees = [topic for topic, kind in topics.items() if _kind(kind) in ("TFMessage", "FrameTransform", "tfMessage")]
+    advice = (
+        f"{', '.join(trees)}: trees of frames are not read, as one place that is passed through frames has nothing to "
+        "test it; record the odometry, the IMU or the GPS themselves"
+    )
+    return refusal(where, found, f"topics of the kinds {', '.join(sorted(kinds))}", advice if trees else "")
