@@ -135,6 +135,25 @@ def test_more_drift_than_assumed_is_said() -> None:
     assert not import_openacc([SAMPLE]).notes
 
 
+def test_odometers_that_all_drift_widen_the_noise_and_contradict_nothing(tmp_path: Path) -> None:
+    """Speeds that are wrong by up to 0.7 percent each, as those of recorded cars: one more than all others."""
+    c = columns()
+    for k, scale in enumerate((0.993, 1.006, 0.995, 1.02, 0.997), start=1):
+        c[f"Speed{k}"] = scale * c[f"Speed{k}"]
+    path = write(tmp_path / "x.csv", c)
+    bundle = import_openacc([path])
+    assert bundle.tables["filter"]["measurement_noise"] > 2.5
+    assert dict(bundle.facts)["measurement noise"].endswith("explains all cars but car 4")
+    assert not bundle.notes
+    bundle.write(tmp_path / "cars")
+    row = run_scenario(read_scenario(tmp_path / "cars" / "scenario.toml"))[0]
+    assert row.run is not None and not row.run.warnings
+    assert set(row.summary["detected"]) <= {"car 4"} and row.summary["share_with_bound"] == 1.0
+    import_openacc([path], Noise(measurement=2.0, initial=20.0)).write(tmp_path / "narrow")
+    narrow = run_scenario(read_scenario(tmp_path / "narrow" / "scenario.toml"))[0]
+    assert narrow.run is not None and any("contradict" in warning for warning in narrow.run.warnings)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -320,6 +320,18 @@ def test_suspicious_constants_are_named(tmp_path: Path, value: float, words: str
     assert read_records(write(tmp_path, f"t,A\n{plain}")).notes == []
 
 
+def test_a_signal_that_passes_through_all_values_on_its_way_is_none(tmp_path: Path) -> None:
+    """A car at a steady speed that brakes and goes on: the slow part is hundreds of robust deviations off."""
+    speed = [20.0 + 0.01 * np.sin(7.3 * k) for k in range(300)]
+    speed[200:240] = [20.0 - 0.8 * min(k, 40 - k) for k in range(40)]
+    rows = "".join(f"{k},{v:.4f}\n" for k, v in enumerate(speed))
+    assert read_records(write(tmp_path, f"t,A\n{rows}")).notes == []
+    speed[100] = -9999.0
+    rows = "".join(f"{k},{v:.4f}\n" for k, v in enumerate(speed))
+    (note,) = read_records(write(tmp_path, f"t,A\n{rows}")).notes
+    assert "such as -9999" in note
+
+
 def test_a_constant_within_the_spread_of_a_column_is_named(tmp_path: Path) -> None:
     cells = [f"{-999 if k % 9 == 5 else 700 * np.sin(7.3 * k):g}" for k in range(60)]
     (note,) = read_records(write(tmp_path, "t,A\n" + "".join(f"{k},{c}\n" for k, c in enumerate(cells)))).notes

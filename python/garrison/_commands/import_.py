@@ -59,9 +59,11 @@ def _openacc(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentPars
     )
     own.add_argument("files", nargs="+", type=Path, help="CSV files of one recording")
     own.add_argument("--attacked", type=whole_number, default=1, help="most odometers that may be wrong (1)")
-    own.add_argument("--measurement-noise", type=number, default=2.0, help="of odometers and gaps, m (2)")
+    own.add_argument(
+        "--measurement-noise", type=number, help="of odometers and gaps, m (2, or what admits all but --attacked)"
+    )
     own.add_argument("--process-noise", type=number, default=0.06, help="per sample, m and m/s (0.06)")
-    own.add_argument("--initial-error", type=number, default=20.0, help="of the first estimate, m (20)")
+    own.add_argument("--initial-error", type=number, help="of the first estimate, m (10 times the measurement noise)")
     own.add_argument("--from", dest="start", type=number, metavar="SECONDS", help="first time that is used")
     own.add_argument("--to", dest="end", type=number, metavar="SECONDS", help="last time that is used")
     own.set_defaults(make=_make_openacc)

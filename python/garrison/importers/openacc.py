@@ -6,6 +6,7 @@ gaps to the car ahead are the relative ones; the input is the recorded accelerat
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -23,21 +24,27 @@ SOURCE = (
     "results. Nothing of them is part of garrison."
 )
 _LEAST_CARS = 3
-#: sensor noise of both sides of a comparison, and of the gap between them
-_FAR = 3.0
+#: m, less than which no odometer is trusted to
+_LEAST = 2.0
+#: times the measurement noise: an error of the first estimate, from which the bounds still contract
+_WIDE = 10.0
 
 
 @dataclass(frozen=True)
 class Noise:
-    """What the filter is told: lengths of noise vectors (m, m/s) and of the first error; attacked sensors."""
+    """What the filter is told: lengths of noise vectors (m, m/s) and of the first error; attacked sensors.
+
+    measurement None: 2 m, or what admits all odometers but `attacked`, as far as the gaps tell.
+    """
 
     process: float = 0.06
-    measurement: float = 2.0
-    initial: float = 20.0
+    measurement: float | None = None
+    initial: float | None = None
     attacked: int = 1
 
     def __post_init__(self) -> None:
-        require_positive(process_noise=self.process, measurement_noise=self.measurement, initial_error=self.initial)
+        given = {"measurement_noise": self.measurement, "initial_error": self.initial}
+        require_positive(process_noise=self.process, **{k: v for k, v in given.items() if v is not None})
 
 
 def import_openacc(
@@ -60,26 +67,31 @@ def import_openacc(
     if not 1 <= noise.attacked <= reach:
         raise refusal("--attacked", str(noise.attacked), f"1..{reach}, half of the {cars} cars without the car itself")
     odometer = _odometers(convoy)
+    drift = _drifts(convoy, odometer)
+    needed = _needed(drift)
+    admitting, wrong = _admitting(needed, noise.attacked)
+    assumed = max(_LEAST, admitting) if noise.measurement is None else noise.measurement
     tables = {
         "title": f"{cars} recorded cars: {', '.join(convoy.names)}",
         "model": {"vehicles": cars, "period": convoy.period, "inputs": True, "names": convoy.names},
         "network": {"kind": "band", "range": reach},
         "data": {"file": "measurements.csv"},
-        "filter": _filter(noise),
+        "filter": _filter(noise, assumed),
         "run": {"start": [[float(odometer[0, k]), float(convoy.speed[0, k])] for k in range(cars)]},
     }
-    facts, notes = _facts(convoy, odometer, noise)
-    return Bundle(tables, SOURCE, _measurements(convoy, odometer), facts=facts, notes=[*convoy.notes, *notes])
+    facts = _facts(convoy, drift, assumed, wrong if needed.max() > assumed else ())
+    notes = [*convoy.notes, *_doubt(assumed, admitting, noise.attacked)]
+    return Bundle(tables, SOURCE, _measurements(convoy, odometer), facts=facts, notes=notes)
 
 
-def _filter(noise: Noise) -> dict[str, object]:
+def _filter(noise: Noise, measurement: float) -> dict[str, object]:
     return {
         "name": "platoon",
         "label": "platoon",
         "attacked": noise.attacked,
         "process_noise": noise.process,
-        "measurement_noise": noise.measurement,
-        "initial_error": noise.initial,
+        "measurement_noise": measurement,
+        "initial_error": noise.initial or _WIDE * measurement,
         "bound": "tight",
         "count": "cover",
         "pairs": True,
@@ -102,26 +114,49 @@ def _drifts(convoy: Convoy, odometer: Array) -> Array:
     return apart - np.median(apart, axis=1, keepdims=True)
 
 
-def _facts(convoy: Convoy, odometer: Array, noise: Noise) -> tuple[list[tuple[str, str]], list[str]]:
-    """Facts for people, and a note where more odometers drift than may be wrong."""
-    drift = _drifts(convoy, odometer)
+def _needed(drift: Array) -> Array:
+    """Measurement noise (m) that explains each pair of cars: of two odometers, and of the gaps between them."""
+    cars = drift.shape[1]
+    out = np.zeros((cars, cars))
+    for i, k in combinations(range(cars), 2):
+        out[i, k] = out[k, i] = np.abs(drift[:, i] - drift[:, k]).max() / (2 + k - i)
+    return out
+
+
+def _admitting(needed: Array, attacked: int) -> tuple[float, tuple[int, ...]]:
+    """The least measurement noise (m, rounded up to 0.1) by which all cars but `attacked` are right, and these."""
+
+    def rest(wrong: tuple[int, ...]) -> float:
+        kept = [k for k in range(len(needed)) if k not in wrong]
+        return float(needed[np.ix_(kept, kept)].max())
+
+    wrong = min(combinations(range(len(needed)), attacked), key=rest)
+    return float(np.ceil(10.0 * rest(wrong)) / 10.0), wrong
+
+
+def _facts(convoy: Convoy, drift: Array, assumed: float, wrong: tuple[int, ...]) -> list[tuple[str, str]]:
+    """For people: who drives, and how far the odometers are from where the gaps put their cars."""
     most = np.abs(drift).max(axis=0)
-    facts = [
+    but = f" but {', '.join(convoy.names[k] for k in wrong)}" if wrong else ""
+    return [
         ("cars", f"{len(convoy.names)}, first to last: {', '.join(convoy.names)}"),
-        ("samples", f"{len(odometer)}, every {convoy.period:g} s"),
+        ("samples", f"{len(drift)}, every {convoy.period:g} s"),
         *(
             (f"odometer of {name}", f"{drift[-1, k]:+.1f} m off at the end, {most[k]:.1f} m at most, by the gaps")
             for k, name in enumerate(convoy.names)
         ),
+        ("measurement noise", f"{assumed:g} m, of odometers and gaps; explains all cars{but}"),
     ]
-    wrong = int((most > _FAR * noise.measurement).sum())
-    if wrong <= noise.attacked:
-        return facts, []
-    bound = float(np.sort(most)[-1 - noise.attacked]) / _FAR
-    return facts, [
-        f"{wrong} odometers drift by more than {_FAR:g} times --measurement-noise ({noise.measurement:g} m), and "
-        f"--attacked says {noise.attacked}: the data may contradict what the filter assumes; --measurement-noise "
-        f"{np.ceil(10 * bound) / 10:g} admits all but {noise.attacked}, --from and --to take a shorter stretch"
+
+
+def _doubt(assumed: float, admitting: float, attacked: int) -> list[str]:
+    """A note where more odometers drift than may be wrong."""
+    if admitting <= assumed:
+        return []
+    return [
+        f"more than {attacked} odometers drift by more than --measurement-noise {assumed:g} and the gaps explain: the "
+        f"data may contradict what the filter assumes; {admitting:g} m explain all but {attacked} (--attacked), --from "
+        "and --to take a shorter stretch"
     ]
 
 

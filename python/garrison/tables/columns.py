@@ -44,6 +44,7 @@ TIME_NAMES = {
 #: constants that many instruments write for "no value"
 _SENTINELS = (-999.0, -9999.0, -99999.0, -999.9, -999.99, -99.9, -99.99, -99.0, 9999.0, 99999.0, 999.9)
 _FAR = 100.0  # robust deviations from which on a value is suspicious
+_EMPTY = 0.5  # part of the range on its side of the middle that is empty before it
 _OFTEN = 3  # times as often as any other value, from which on such a constant is suspicious
 _ALONE = 5.0  # robust deviations between it and the next value, from which on it is
 
@@ -227,7 +228,8 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
             continue
         middle = np.median(known)
         spread = 1.4826 * np.median(np.abs(known - middle))
-        far = known[np.abs(known - middle) > _FAR * spread] if spread > 0 else known[np.isin(known, _SENTINELS)]
+        away = (np.abs(known - middle) > _FAR * spread) & _apart(known, float(middle))
+        far = known[away] if spread > 0 else known[np.isin(known, _SENTINELS)]
         if not len(far) and (constant := _constant(known, spread)) is not None:
             often = count(int(np.sum(known == constant)), "value")
             notes.append(
@@ -245,6 +247,17 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
                 "if they mean that there is none, make the cells empty"
             )
     return notes
+
+
+def _apart(known: Array, middle: float) -> NDArray[np.bool_]:
+    """Which values lie behind a wide empty part of the range: what a signal passes through is no constant."""
+    out = np.zeros(len(known), dtype=bool)
+    for side in (known >= middle, known < middle):
+        away = np.abs(known[side] - middle)
+        order = np.argsort(away)
+        widest = np.maximum.accumulate(np.diff(away[order], prepend=0.0))
+        out[np.flatnonzero(side)[order]] = widest >= _EMPTY * away.max(initial=0.0)
+    return out
 
 
 def _constant(known: Array, spread: float) -> float | None:
