@@ -8,6 +8,7 @@ from pathlib import Path
 import garrison as gr
 import numpy as np
 import pytest
+from conftest import ROOT
 from garrison.cli import main
 from garrison.figures import error_figure
 from garrison.figures.style import dot_alone
@@ -294,3 +295,29 @@ def test_values_that_have_none_beside_them_are_dots() -> None:
     dot_alone(line)
     assert line.get_markevery() == [0, 5]
     assert line.get_marker() == "."
+
+
+def test_a_replay_without_truth_shows_its_verdicts_over_time(tmp_path: Path) -> None:
+    from garrison.figures import overview_figure, verdict_figure
+    from garrison.importers.adsb import import_adsb
+
+    import_adsb(ROOT / "examples" / "import" / "adsb_sample.json.gz").write(tmp_path)
+    scenario = read_scenario(tmp_path / "scenario.toml")
+    rows = run_scenario(scenario)
+    run = rows[0].run
+    assert run is not None and run.verdict is not None
+    figure = verdict_figure(scenario, run)
+    (ax,) = figure.axes
+    assert [text.get_text() for text in ax.get_yticklabels()] == scenario.names
+    words = {text.get_text() for text in ax.get_legend().get_texts()}
+    assert words == {"cleared", "not tested", "accused"}
+    drawn = sum(len(bars.get_paths()) for bars in ax.collections)
+    kinds = np.asarray(run.verdict)[0, 1:]
+    spells = sum(int((np.diff(kinds[:, k] == v, prepend=False) & (kinds[:, k] == v)).sum())
+                 for k in range(4) for v in (0, 2, 4))  # fmt: skip
+    assert drawn == spells
+    assert len(overview_figure(scenario, rows, None).axes) == 2  # and not half of it empty
+    write_report(tmp_path / "report.html", scenario, rows)
+    page = (tmp_path / "report.html").read_text()
+    assert "Verdicts over time" in page and "The samples around the first accusation." in page
+    assert any("sensor position east was accused" in line for line in warnings_of(scenario, rows))

@@ -21,6 +21,7 @@ from garrison.figures.resilience import resilience_figure
 from garrison.figures.run import run_figure
 from garrison.figures.string import animate, string_figure
 from garrison.figures.sweep import sweep_figure
+from garrison.figures.verdicts import verdict_figure
 
 __all__ = [
     "analysis_figure",
@@ -36,4 +37,5 @@ __all__ = [
     "run_figure",
     "string_figure",
     "sweep_figure",
+    "verdict_figure",
 ]

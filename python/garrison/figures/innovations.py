@@ -55,7 +55,7 @@ def innovation_figure(scenario: Scenario, run: Run, before: int = 30, after: int
         log_scale(ax, run.statistic[0, at, k])
         ax.tick_params(labelsize=7)
         if scenario.dates and isinstance(scenario.dates[0], dt.date):
-            locator = _DATES.AutoDateLocator(maxticks=4)
+            locator = _DATES.AutoDateLocator(maxticks=5)
             ax.xaxis.set_major_locator(locator)
             ax.xaxis.set_major_formatter(_DATES.ConciseDateFormatter(locator))
     figure.supylabel("test statistic", fontsize=9)

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from garrison.families import family_of
 from garrison.figures.errors import error_figure
 from garrison.figures.style import LOOKS, plain
+from garrison.figures.verdicts import verdict_figure
 from garrison.jobs import Row
 from garrison.record import Run
 from garrison.scenario import Scenario
@@ -22,7 +23,7 @@ def final_verdicts(run: Run) -> list[Verdict]:
 
 
 def overview_figure(scenario: Scenario, rows: list[Row], signal: float | None) -> Figure:
-    """Map and errors side by side."""
+    """Map and errors side by side; where the true state is not known, the verdicts over time in place of errors."""
     figure = Figure(figsize=(13, 5.6), layout="constrained")
     parts: Any = figure.subfigures(1, 2, width_ratios=[1, 1.45])
     left, right = parts
@@ -30,6 +31,8 @@ def overview_figure(scenario: Scenario, rows: list[Row], signal: float | None) -
         map_figure(scenario, rows[0].run, left)
     if any(row.error is not None for row in rows):
         error_figure(scenario, rows, signal, right)
+    elif rows[0].run is not None and rows[0].run.verdict is not None:
+        verdict_figure(scenario, rows[0].run, right)
     figure.suptitle(plain(scenario.title), fontsize=13)
     return figure
 

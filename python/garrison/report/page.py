@@ -7,7 +7,7 @@ from pathlib import Path
 from garrison import _core
 from garrison.checks import check, verdict
 from garrison.families import family_of
-from garrison.figures import error_figure, innovation_figure, map_figure
+from garrison.figures import error_figure, innovation_figure, map_figure, verdict_figure
 from garrison.figures.errors import smoothing_width
 from garrison.jobs import Row, certificate_of, signal_size
 from garrison.longform import common_unit
@@ -54,10 +54,12 @@ def _main_sections(scenario: Scenario, rows: list[Row]) -> list[str]:
     if any(row.error is not None for row in rows):
         picture = error_figure(scenario, rows, signal_size(scenario))
         out += ["<h2>Errors over time</h2>", figure(picture, _error_note(scenario))]
+    elif run is not None and run.verdict is not None:
+        out += ["<h2>Verdicts over time</h2>", figure(verdict_figure(scenario, run), first + _VERDICT_NOTE)]
     if run is not None and run.statistic is not None and run.threshold is not None:
         out += [
             "<h2>Statistics against thresholds</h2>",
-            figure(innovation_figure(scenario, run), first),
+            figure(innovation_figure(scenario, run), first + _statistics_note(scenario, run)),
         ]
     if run is not None:
         out += ["<h2>Conditions and bounds, before the run</h2>", _check_table(scenario, run.filter)]
@@ -121,6 +123,7 @@ def _shown(scenario: Scenario, words: str) -> str:
     return words if scenario.run.get("trials", 1) > 1 else ""
 
 
+_VERDICT_NOTE = "The higher the bar, the worse the verdict; no bar: no measurement."
 _STRING_NOTE = "The bounds and the least gaps are certified at run time: they hold whatever the attackers send."
 
 
@@ -149,6 +152,13 @@ def _table_note(scenario: Scenario, rows: list[Row]) -> str:
 def _map_note(scenario: Scenario) -> str:
     ring = " The ring marks who was actually attacked." if scenario.hit else ""
     return f"Lines join agents that exchange messages. The marker is the verdict at the end.{ring}"
+
+
+def _statistics_note(scenario: Scenario, run: Run) -> str:
+    """Which samples the picture shows."""
+    if scenario.attacks:
+        return "The samples around the start of the first attack."
+    return "The samples around the first accusation." if run.first_accused() else "The whole run."
 
 
 def _error_note(scenario: Scenario) -> str:

@@ -1,12 +1,15 @@
 """The table of a run as text."""
 
 import datetime as dt
+import re
 
 from garrison.families import family_of
 from garrison.jobs import Row
 from garrison.scenario import Scenario
 from garrison.words import count
 
+#: how the core names a sensor in its warnings
+_SENSOR = re.compile(r"\bsensor (\d+)\b")
 HEAD = [
     "filter",
     "sensors",
@@ -90,11 +93,17 @@ def accusation_note(rows: list[Row]) -> str:
     return "; ".join(f"{', '.join(dict.fromkeys(labels))}: {how}" for how, labels in words.items())
 
 
+def _with_names(warning: str, scenario: Scenario) -> str:
+    """With the names of sensors in place of their numbers."""
+    names = scenario.names
+    return _SENSOR.sub(lambda m: f"sensor {names[int(m[1])]}" if int(m[1]) < len(names) else m[0], warning)
+
+
 def warnings_of(scenario: Scenario, rows: list[Row]) -> list[str]:
     """All doubts, each once, with the filters that they are about."""
     found: dict[str, list[str]] = {}
     for row in rows:
         for warning in row.run.warnings if row.run is not None else []:
-            found.setdefault(warning, []).append(row.label)
+            found.setdefault(_with_names(warning, scenario), []).append(row.label)
     lines = [f"{', '.join(dict.fromkeys(labels))}: {warning}" for warning, labels in found.items()]
     return [*scenario.notes, *lines]
