@@ -321,3 +321,16 @@ def test_a_replay_without_truth_shows_its_verdicts_over_time(tmp_path: Path) -> 
     page = (tmp_path / "report.html").read_text()
     assert "Verdicts over time" in page and "The samples around the first accusation." in page
     assert any("sensor position east was accused" in line for line in warnings_of(scenario, rows))
+
+
+def test_the_caption_speaks_of_bounds_only_where_some_are_drawn(tmp_path: Path) -> None:
+    drawn = LOG.replace('[data]\nfile = "y.csv"', "[run]\nsteps = 40")
+    for text, bounds in ((drawn, True), (re.sub(r'name = "saturation"[^[]*', 'name = "scalar_gain"\n', drawn), False)):
+        (tmp_path / "x.toml").write_text(text)
+        scenario = read_scenario(tmp_path / "x.toml")
+        rows = run_scenario(scenario)
+        write_report(tmp_path / "report.html", scenario, rows)
+        page = (tmp_path / "report.html").read_text()
+        assert ("The certified bound" in page) == bounds
+        run = rows[0].run
+        assert run is not None and bool(np.isfinite(np.asarray(run.bound)).any()) == bounds

@@ -20,7 +20,7 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figu
     """Mean error of every filter over time (moving mean), with the bounds of the main one."""
     figure = figure or Figure(figsize=(9.2, 4.6), layout="constrained")
     ax = axes(figure)
-    shown = [row for row in rows if row.error is not None and (row.attacked or not scenario.attacks)]
+    shown = _shown(scenario, rows)
     for row, (colour, style) in zip(shown, LINES, strict=False):
         error = np.nanmean(row.error, axis=(0, 2))[1:]  # type: ignore[arg-type]
         width = smoothing_width(len(error))
@@ -43,10 +43,24 @@ def error_figure(scenario: Scenario, rows: list[Row], signal: float | None, figu
     return figure
 
 
+def bounded(scenario: Scenario, rows: list[Row]) -> Row | None:
+    """The row whose bounds the picture shows: the first filter that has one."""
+    return next((r for r in _shown(scenario, rows) if r.run is not None and _drawn(r.run.bound)), None)
+
+
+def _shown(scenario: Scenario, rows: list[Row]) -> list[Row]:
+    return [row for row in rows if row.error is not None and (row.attacked or not scenario.attacks)]
+
+
+def _drawn(bounds: Any) -> bool:
+    """Some sample has a bound of every agent, which is what is drawn."""
+    return bounds is not None and bool(np.isfinite(bounds[0, 1:]).all(axis=1).any())
+
+
 def _draw_bounds(ax: Any, scenario: Scenario, shown: list[Row]) -> None:
     """Bounds of the first filter that has one: what is certified, and beside it what its paper alone promises."""
     for row, (colour, _) in zip(shown, LINES, strict=False):
-        if row.run is None or row.run.bound is None or not np.isfinite(row.run.bound[0, 1:]).any():
+        if row.run is None or row.run.bound is None or not _drawn(row.run.bound):
             continue
         _draw_bound(ax, scenario, row.run.bound, "certified bound", color=colour, linewidth=3, alpha=0.35)
         if row.run.published is not None:

@@ -39,6 +39,8 @@ def overview_figure(scenario: Scenario, rows: list[Row], signal: float | None) -
 
 #: most agents whose names can be read
 _READABLE = 40
+#: agents on a circle that a small picture has room for
+_FEW = 12
 #: where the name of an agent stands
 _BELOW = {"xytext": (0, -19), "textcoords": "offset points", "ha": "center", "va": "top"}
 
@@ -52,9 +54,10 @@ def _outside(place: Any) -> dict[str, Any]:
 
 def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
     """Who is attacked (ring, where that is declared), and what the network says of everybody (marker)."""
-    figure = figure or Figure(figsize=(6.4, 6.2), layout="constrained")
-    ax = figure.add_subplot()
     place = scenario.positions
+    small = place is None and len(scenario.names) <= _FEW
+    figure = figure or Figure(figsize=(5.6, 4.4) if small else (6.4, 6.2), layout="constrained")
+    ax = figure.add_subplot()
     if place is None:
         angle = 2 * np.pi * np.arange(len(scenario.names)) / len(scenario.names)
         place = np.column_stack([np.sin(angle), np.cos(angle)])

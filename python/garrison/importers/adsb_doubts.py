@@ -8,6 +8,8 @@ Array = NDArray[np.float64]
 _LONG = 60.0
 #: s, between two positions whose distance tells a speed; m/s, below which it does not
 _APART, _SLOW = 30.0, 10.0
+#: part by which a velocity may change from one report to the next: in a turn the way is no straight line
+_STEADY = 0.1
 #: ratio of speeds and degrees between directions from which on a column is doubted, and pairs that it takes
 _OFF, _TURNED, _PAIRS = 1.25, 20.0, 20
 
@@ -34,7 +36,8 @@ def _other_motion(values: Array, period: float) -> list[str]:
     apart = np.diff(known) * period
     moved = np.diff(values[known, :2], axis=0) / np.maximum(apart, period)[:, None]
     told = 0.5 * (values[known[1:], 2:] + values[known[:-1], 2:])
-    used = (apart <= _APART) & (np.hypot(*moved.T) > _SLOW) & (np.hypot(*told.T) > _SLOW)
+    straight = np.hypot(*np.diff(values[known, 2:], axis=0).T) < _STEADY * np.hypot(*told.T)
+    used = (apart <= _APART) & straight & (np.hypot(*moved.T) > _SLOW) & (np.hypot(*told.T) > _SLOW)
     if used.sum() < _PAIRS:
         return []
     ways, speeds = (z[used, 0] + 1j * z[used, 1] for z in (moved, told))

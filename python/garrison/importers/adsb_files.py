@@ -70,7 +70,7 @@ def read_track(path: Path, choice: Choice | None = None) -> Track:
     if needed:
         expected = "; ".join(f"{w}: {_known(w)}" for w in needed)
         got = f"no column of {', '.join(needed)} among {', '.join(filter(None, rows[0]))[:200]}"
-        raise refusal(str(path), got, expected, "rename the column that holds it in this unit")
+        raise refusal(str(path), got, expected, "rename the column that holds it")
     body, who = of_one(path, rows[1:], None if found["aircraft"] is None else found["aircraft"][0], choice.aircraft)
     return _track(path, who, body, found, choice)
 

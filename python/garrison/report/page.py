@@ -8,7 +8,7 @@ from garrison import _core
 from garrison.checks import check, verdict
 from garrison.families import family_of
 from garrison.figures import error_figure, innovation_figure, map_figure, verdict_figure
-from garrison.figures.errors import smoothing_width
+from garrison.figures.errors import bounded, smoothing_width
 from garrison.jobs import Row, certificate_of, signal_size
 from garrison.longform import common_unit
 from garrison.record import Run
@@ -53,7 +53,7 @@ def _main_sections(scenario: Scenario, rows: list[Row]) -> list[str]:
         ]
     if any(row.error is not None for row in rows):
         picture = error_figure(scenario, rows, signal_size(scenario))
-        out += ["<h2>Errors over time</h2>", figure(picture, _error_note(scenario))]
+        out += ["<h2>Errors over time</h2>", figure(picture, _error_note(scenario, rows))]
     elif run is not None and run.verdict is not None:
         out += ["<h2>Verdicts over time</h2>", figure(verdict_figure(scenario, run), first + _VERDICT_NOTE)]
     if run is not None and run.statistic is not None and run.threshold is not None:
@@ -161,9 +161,12 @@ def _statistics_note(scenario: Scenario, run: Run) -> str:
     return "The samples around the first accusation." if run.first_accused() else "The whole run."
 
 
-def _error_note(scenario: Scenario) -> str:
+def _error_note(scenario: Scenario, rows: list[Row]) -> str:
     width = smoothing_width(scenario.steps)
     means = f"Means over {count(width, 'sample')}. " if width > 1 else ""
+    row = bounded(scenario, rows)
+    if row is None or row.run is None:
+        return means
     wanted = scenario.certificate
     if not wanted or wanted["certificate"] == "none":
         return (
@@ -179,9 +182,12 @@ def _error_note(scenario: Scenario) -> str:
         law = f"except with probability {failure:g} per agent and sample, for the model's noise"
     if wanted.get("memory"):
         law += ", as long as always the same lie"
+    published = (
+        " The published bound is what the filter's paper alone promises." if row.run.published is not None else ""
+    )
     return (
         f"{means}The certified bound is the largest of any agent: it holds {law}, whatever the attackers send "
-        "and whatever messages are lost, for any filter. The published bound is what the filter's paper alone promises."
+        f"and whatever messages are lost, for any filter.{published}"
     )
 
 
