@@ -1,7 +1,7 @@
 """An aircraft whose satellite navigation is spoofed
 
-Reported positions and velocities test each other. The alarm comes with the first spoofed report. After two
-minutes the filter takes the position up again, right or not, because no other sensor says where the aircraft is
+Reported positions and velocities test each other. The alarm comes with the first spoofed report. After a
+minute the filter takes the position up again, right or not, because no other sensor says where the aircraft is
 (the run warns of it); the way back to the truth is an alarm again, and then all is quiet.
 """
 
