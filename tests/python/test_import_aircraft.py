@@ -252,6 +252,8 @@ def test_velocities_that_positions_contradict_are_said(tmp_path: Path) -> None:
     as_csv(tmp_path / "radians.csv", eastward(range(60), heading=1.5708))
     assert not [n for n in import_adsb(tmp_path / "right.csv").notes if "reported" in n and "pairs" in n]
     assert [n for n in import_adsb(tmp_path / "radians.csv").notes if "reported tracks are 88 degrees off" in n]
+    assert "contradict" not in import_adsb(tmp_path / "right.csv").tables["title"]
+    assert "which contradict each other" in import_adsb(tmp_path / "knots.csv").tables["title"]
     assert [n for n in import_adsb(tmp_path / "knots.csv").notes if "reported speeds are 1.9 times" in n]
 
 

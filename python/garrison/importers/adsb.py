@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.importers.adsb_choice import Choice
-from garrison.importers.adsb_doubts import doubts
+from garrison.importers.adsb_doubts import contradictions, long_gap
 from garrison.importers.adsb_files import Track, read_track
 from garrison.importers.bundle import Bundle, Measurements, gate, model_file
 from garrison.importers.earth import Plane
@@ -66,8 +66,10 @@ def import_adsb(path: Path, choice: Choice | None = None, assumed: Assumptions |
         raise refusal(str(path), "no report with a fresh position and a velocity", "at least one")
     model = _model(assumed)
     start = values[first, [0, 2, 1, 3]]
+    wrong = contradictions(values, assumed.period)
+    contradict = ", which contradict each other" if wrong else ""
     tables = {
-        "title": f"Aircraft {track.aircraft}, positions and velocities as reported",
+        "title": f"Aircraft {track.aircraft}, positions and velocities as reported{contradict}",
         "model": {"file": "model.json"},
         "network": {"kind": "complete"},
         "data": {"file": "measurements.csv"},
@@ -88,7 +90,8 @@ def import_adsb(path: Path, choice: Choice | None = None, assumed: Assumptions |
     notes = [
         "positions and velocities come from one receiver in the aircraft: an attacker of its satellite navigation "
         "moves both. An alarm says that they do not fit what was reported before, not where the aircraft is",
-        *doubts(values, fresh[first:], assumed.period),
+        *long_gap(fresh[first:], assumed.period),
+        *wrong,
     ]
     return Bundle(tables, SOURCE, Measurements(times, OUTPUTS, values), model, facts, notes)
 

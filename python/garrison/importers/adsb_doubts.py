@@ -14,13 +14,8 @@ _STEADY = 0.1
 _OFF, _TURNED, _PAIRS = 1.25, 20.0, 20
 
 
-def doubts(values: Array, fresh: NDArray[np.bool_], period: float) -> list[str]:
-    """Notes for people. values: (rows, 4) of positions and velocities, m and m/s, nan = missing; period: s."""
-    return [*_gap(fresh, period), *_other_motion(values, period)]
-
-
-def _gap(fresh: NDArray[np.bool_], period: float) -> list[str]:
-    """What the filter does after the longest gap, where it is long."""
+def long_gap(fresh: NDArray[np.bool_], period: float) -> list[str]:
+    """What the filter does after the longest gap, where it is long. fresh: which samples have a position; period: s."""
     longest = float(np.diff(np.flatnonzero(np.concatenate([[True], fresh, [True]]))).max() - 1) * period
     if longest < _LONG:
         return []
@@ -30,8 +25,11 @@ def _gap(fresh: NDArray[np.bool_], period: float) -> list[str]:
     ]
 
 
-def _other_motion(values: Array, period: float) -> list[str]:
-    """Reported velocities that are not those of the positions, in the middle of all pairs of neighbouring reports."""
+def contradictions(values: Array, period: float) -> list[str]:
+    """Reported velocities that are not those of the positions, in the middle of all pairs of neighbouring reports.
+
+    values: (rows, 4), positions and velocities, m and m/s, nan = missing.
+    """
     known = np.flatnonzero(np.isfinite(values).all(axis=1))
     apart = np.diff(known) * period
     moved = np.diff(values[known, :2], axis=0) / np.maximum(apart, period)[:, None]
