@@ -184,6 +184,11 @@ def test_old_positions_and_repeated_velocities_are_missing(tmp_path: Path) -> No
             "time,lat,lon,speed,heading\n1,47,8,200,90\n2,47,8,200,90\n",
             r"\(knots\) or one of velocity \(m/s\); rename",
         ),
+        (
+            "time,lat,lon,velocity,heading\n1e21,47,8,200,90\n2,47,8,200,90\n",
+            "the time 1e\\+12 s, expected seconds",
+        ),
+        ('time,lat,lon,velocity,heading\n1,"47"x\ry,8,200,90\n', "cells, expected 5|no table"),
         ("Timestamp,Position,Speed,Direction\n1,47 8,200,90\n2,47,200,90\n", "the position '47 8'"),
     ],
 )

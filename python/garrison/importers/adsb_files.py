@@ -38,6 +38,7 @@ _COLUMNS: dict[str, list[tuple[str, float]]] = {
     "seen_position": [("seen_pos", 1.0)],
 }
 _UNITS: dict[str, dict[float, str]] = {"speed": {_KNOT: " (knots)", 1.0: " (m/s)"}}
+_LATEST = 2.5e11  # s since 1970: the year 9892
 _MILLISECONDS = 1e11  # epochs above this are not in seconds
 
 
@@ -103,6 +104,9 @@ def _track(
     if "seen_position" in column:
         position_time = t - column["seen_position"]
     known = np.isfinite(t)
+    if (np.abs(t[known]) > _LATEST).any():
+        late = float(t[known][np.argmax(np.abs(t[known]))])
+        raise refusal(str(path), f"the time {late:g} s", "seconds since 1970, or milli-, micro- or nanoseconds")
     order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
     if len(order) < 2:
         raise refusal(str(path), f"{len(order)} reports with a time", "at least two")

@@ -50,7 +50,10 @@ def rows_of(path: Path, text: str) -> list[list[Any]]:
 def _rows_of_csv(path: Path, text: str) -> list[list[Any]]:
     lines = text.splitlines()
     separator = max(",;\t|", key=lines[0].count)
-    rows: list[list[Any]] = [row for row in csv.reader(io.StringIO(text), delimiter=separator) if row]
+    try:
+        rows: list[list[Any]] = [row for row in csv.reader(io.StringIO(text, newline=""), delimiter=separator) if row]
+    except csv.Error as error:
+        raise refusal(str(path), f"no table ({error})", EXPECTED) from None
     for k, row in enumerate(rows[1:], start=2):
         if len(row) != len(rows[0]):
             raise refusal(f"{path}, row {k}", f"{len(row)} cells", f"{len(rows[0])}, as the header has")
