@@ -91,7 +91,7 @@ Network Network::random_geometric(int agents, double radius, std::uint64_t seed,
       points(i, k) = random.uniform(0, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
 
   // Cells no smaller than the radius: neighbours are in the 3 x 3 cells around a point.
-  const int side = std::clamp(static_cast<int>(1.0 / radius), 1, 1 + static_cast<int>(std::sqrt(agents)));
+  const int side = static_cast<int>(std::clamp(1.0 / radius, 1.0, 1.0 + std::sqrt(agents)));
   const auto cell = [side](double coordinate) {
     return std::min(static_cast<int>(coordinate * side), side - 1);
   };

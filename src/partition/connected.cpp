@@ -78,8 +78,8 @@ void require_connected(const Region& region, Exchange& exchange) {
   exchange.largest(first);
   if (cut[0] == 0) return;
   refuse("network", "a graph that is not connected (lambda_2 = 0)", "a connected one",
-         "no path joins agent 0 and agent " + std::to_string(static_cast<int>(-first[0])) + ", nor " +
-             std::to_string(cut[0] - 1) + " others");
+         "no path joins agent 0 and agent " + std::to_string(static_cast<int>(-first[0])) +
+             (cut[0] > 1 ? ", nor " + std::to_string(cut[0] - 1) + " more" : ""));
 }
 
 }  // namespace garrison::partition

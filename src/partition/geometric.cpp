@@ -20,7 +20,7 @@ class Geometric final : public Ground {
         radius_(radius),
         seed_(seed),
         random_(seed, 0, Purpose::position),
-        side_(std::clamp(static_cast<int>(1.0 / radius), 1, 1 + static_cast<int>(std::sqrt(agents)))) {}
+        side_(static_cast<int>(std::clamp(1.0 / radius, 1.0, 1.0 + std::sqrt(agents)))) {}
   int agents() const override { return agents_; }
   std::string description() const override {
     return "random_geometric " + std::to_string(agents_) + " " + text(radius_) + " " + std::to_string(seed_);

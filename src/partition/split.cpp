@@ -27,6 +27,11 @@ struct Cached {
   }
 };
 
+/// On one rank of a balanced partition.
+std::int64_t most_agents(std::size_t agents, int ranks) {
+  return static_cast<std::int64_t>(kMostImbalance * static_cast<double>(agents) / ranks + 1.0);
+}
+
 }  // namespace
 
 std::string unbalanced(std::span<const std::int32_t> owner, int ranks) {
@@ -37,8 +42,7 @@ std::string unbalanced(std::span<const std::int32_t> owner, int ranks) {
   }
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   if (*least == 0) return "no agent on rank " + std::to_string(least - size.begin());
-  const double mean = static_cast<double>(owner.size()) / ranks;
-  if (static_cast<double>(*most) > kMostImbalance * mean + 1.0)
+  if (*most > most_agents(owner.size(), ranks))
     return std::to_string(*most) + " agents on rank " + std::to_string(most - size.begin()) + " of " +
            std::to_string(ranks);
   return "";
@@ -48,8 +52,7 @@ void require_balanced(const std::string& source, std::span<const std::int32_t> o
   const std::string why = unbalanced(owner, ranks);
   if (!why.empty())
     refuse("partition (" + source + ")", why,
-           "at most " + text(kMostImbalance) + " times the mean of " +
-               std::to_string(owner.size() / static_cast<std::size_t>(ranks)) + " agents on every rank",
+           "1 to " + std::to_string(most_agents(owner.size(), ranks)) + " agents on every rank",
            "use fewer ranks, or [partition].method = \"blocks\"");
 }
 

@@ -20,7 +20,7 @@ TEST_CASE("networks generated agent by agent are those of Network") {
   for (const int agents : {1, 2, 3, 8}) CHECK(network_of(*ring(agents)) == Network::ring(agents));
   CHECK(network_of(*grid(4, 7)) == Network::grid(4, 7));
   CHECK(network_of(*grid(1, 3)) == Network::grid(1, 3));
-  for (const double radius : {0.01, 0.08, 0.3, 2.0}) {
+  for (const double radius : {1e-300, 0.01, 0.08, 0.3, 2.0}) {
     CAPTURE(radius);
     CHECK(network_of(*random_geometric(300, radius, 4)) == Network::random_geometric(300, radius, 4));
   }
@@ -104,6 +104,9 @@ TEST_CASE("a partition that leaves a rank without work is refused") {
                        InvalidInput);
   CHECK_THROWS_WITH_AS(require_balanced("METIS", std::vector<std::int32_t>{0, 1}, 3),
                        doctest::Contains("fewer ranks"), InvalidInput);
+  // 3 * 1.2 + 1, where the mean is no whole number either: 7 / 2.
+  CHECK_THROWS_WITH_AS(require_balanced("METIS", std::vector<std::int32_t>{0, 0, 0, 0, 0, 0, 1}, 2),
+                       doctest::Contains("expected 1 to 5 agents on every rank"), InvalidInput);
 }
 
 TEST_CASE("a cached partition is taken for its own ground, ranks and bytes only") {
@@ -178,6 +181,8 @@ TEST_CASE("a network that is not connected is found by all ranks, a chain throug
     }
     return words;
   };
+  std::vector<Edge> last_alone;
+  for (int i = 0; i + 2 < 40; ++i) last_alone.emplace_back(i, i + 1);
   std::vector<Edge> cut;
   for (int i = 0; i + 1 < 40; ++i)
     if (i != 16) cut.emplace_back(i, i + 1);
@@ -185,6 +190,9 @@ TEST_CASE("a network that is not connected is found by all ranks, a chain throug
     CAPTURE(ranks);
     CHECK(refusal(Network::path(40), ranks) == "connected");
     const std::string words = refusal(Network(40, cut), ranks);
-    CHECK(words.find("no path joins agent 0 and agent 17, nor 22 others") != std::string::npos);
+    CHECK(words.find("no path joins agent 0 and agent 17, nor 22 more") != std::string::npos);
+    const std::string alone = refusal(Network(40, last_alone), ranks);
+    CHECK(alone.find("no path joins agent 0 and agent 39") != std::string::npos);
+    CHECK(alone.find("nor") == std::string::npos);
   }
 }
