@@ -29,8 +29,10 @@ void append(std::vector<std::byte>& out, std::uint32_t value) {
 
 }  // namespace
 
-Checkpoint::Checkpoint(std::string results, std::uint64_t scenario)
-    : folder_(std::move(results) + ".checkpoint"), scenario_(scenario) {}
+std::string checkpoint_folder(const std::string& results) { return results + ".checkpoint"; }
+
+Checkpoint::Checkpoint(const std::string& results, std::uint64_t scenario)
+    : folder_(checkpoint_folder(results)), scenario_(scenario) {}
 
 std::string Checkpoint::file_of(std::int64_t t, int rank, int ranks) const {
   return folder_ + "/sample-" + std::to_string(t) + "." + std::to_string(rank) + "-of-" +
@@ -49,12 +51,13 @@ void Checkpoint::clear() const {
                   ", expected to remove the checkpoint of an earlier run");
 }
 
+void Checkpoint::make() const { node::make_folder(folder_); }
+
 void Checkpoint::write(std::int64_t t, const std::vector<int>& ids,
                        const partition::PartRunner& runner) const {
   const int rank = this_rank();
   const int ranks = all_ranks();
   together([&] {
-    std::filesystem::create_directories(folder_);
     std::vector<std::byte> out;
     for (std::size_t k = 0; k < ids.size(); ++k) {
       const std::size_t head = out.size();

@@ -11,15 +11,19 @@
 
 namespace garrison::mpi {
 
-/// A folder `<results>.checkpoint` with one complete set of files. `latest` says which one counts; it is
+/// `<results>.checkpoint`
+std::string checkpoint_folder(const std::string& results);
+
+/// This folder with one complete set of files. `latest` says which one counts; it is
 /// replaced once all files of the next set are on the disk.
 class Checkpoint {
  public:
-  Checkpoint(std::string results, std::uint64_t scenario);
-  const std::string& folder() const { return folder_; }
+  Checkpoint(const std::string& results, std::uint64_t scenario);
 
   /// Forgets what an earlier run left; no communication. @throws IoError
   void clear() const;
+  /// Makes the folder; no communication. @throws IoError
+  void make() const;
   /// All ranks: writes the own agents `ids` after sample `t`. @throws IoError on all ranks
   void write(std::int64_t t, const std::vector<int>& ids, const partition::PartRunner& runner) const;
   /// The sample that can be gone on from; no communication. @throws IoError when there is none, InvalidInput

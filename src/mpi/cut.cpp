@@ -18,7 +18,7 @@ Cut cut_of(const Scenario& scenario, MpiExchange& exchange, int depth) {
   owners.of.resize(static_cast<std::size_t>(scenario.agents()));
   MPI_Bcast(owners.of.data(), scenario.agents(), MPI_INT32_T, 0, MPI_COMM_WORLD);
   Cut cut;
-  cut.made = owners.made;
+  cut.made = owners.made + (owners.not_kept.empty() ? "" : ", not kept: " + owners.not_kept);
   together([&] {
     cut.ids = partition::agents_of(owners.of, exchange.rank());
     cut.region = partition::region_of(

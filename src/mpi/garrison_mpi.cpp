@@ -2,15 +2,18 @@
 // garrison-mpi: one network on many ranks. docs/how-to/one-huge-network.md.
 #include <mpi.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
 
 #include "garrison/version.hpp"
 #include "mpi/here.hpp"
+#include "mpi/memory.hpp"
 #include "mpi/owners.hpp"
 #include "mpi/run.hpp"
 #include "mpi/spectrum.hpp"
+#include "mpi/whole.hpp"
 #include "partition/split.hpp"
 
 using namespace garrison;
@@ -56,13 +59,14 @@ std::int64_t number(const std::string& option, const char* word) {
   const char* const end = word + std::strlen(word);
   const auto [stop, code] = std::from_chars(word, end, value);
   if (code != std::errc() || stop != end || value < 1 || value > 1'000'000'000)
-    refuse(option, std::string("\"") + word + "\"", "a whole number >= 1");
+    refuse(option, std::string("\"") + word + "\"", "a whole number in 1..1000000000");
   return value;
 }
 
 Words read_words(int count, char** words) {
   Words out;
   out.command = count > 1 ? words[1] : "";
+  out.run.program = words[0];
   const bool known = out.command == "run" || out.command == "partition" || out.command == "spectrum" ||
                      out.command == "whole";
   if (!known)
@@ -70,8 +74,10 @@ Words read_words(int count, char** words) {
   for (int k = 2; k < count; ++k) {
     const std::string word = words[k];
     const auto value = [&] {
-      if (k + 1 == count) refuse(word, "nothing behind it", "a value", "see --help");
-      return words[++k];
+      const char* const next = k + 1 < count ? words[++k] : "";
+      if (*next == '\0' || std::string_view(next).starts_with("--"))
+        refuse(word, "nothing behind it", "a value", "see --help");
+      return next;
     };
     const bool runs = out.command == "run";
     if (runs && word == "-o")
@@ -110,8 +116,10 @@ Words read_words(int count, char** words) {
 
 void make_partition(const Words& words) {
   const auto ranks = static_cast<int>(words.ranks);
-  const Scenario scenario = read_scenario(words.run.scenario);
+  if (ranks < 2) refuse("--ranks", "1", "at least 2", "one rank has all agents");
+  const Scenario scenario = read_scenario(words.run.scenario, kPartition);
   const Owners owners = owners_of(scenario, ranks);
+  if (!owners.not_kept.empty()) throw IoError(owners.not_kept);
   std::printf("%d agents on %d ranks (%s): %s\n", scenario.agents(), ranks, owners.made.c_str(),
               cache_of(scenario, ranks).c_str());
 }
@@ -138,8 +146,10 @@ int obey(int count, char** words, int rank) {
 
 int main(int count, char** words) {
   const std::string_view first = count > 1 ? words[1] : "";
+  const bool help = std::any_of(words + std::min(count, 1), words + count,
+                                [](const std::string_view word) { return word == "--help" || word == "-h"; });
   if (first == "--version") return std::printf("garrison-mpi " GARRISON_VERSION "\n"), 0;
-  if (first == "--help" || first == "-h") return std::fputs(kUsage, stdout), 0;
+  if (help) return std::fputs(kUsage, stdout), 0;
   MPI_Init(&count, &words);
   const int code = obey(count, words, this_rank());
   MPI_Finalize();

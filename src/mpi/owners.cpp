@@ -58,7 +58,11 @@ Owners owners_of(const Scenario& scenario, int ranks) {
   if (auto found = cached(path, scenario, ranks, description); !found.empty())
     return {std::move(found), path};
   Owners out = made(scenario, ranks);
-  node::replace_file(path, partition::partition_bytes(out.of, ranks, description), 0644);
+  try {
+    node::replace_file(path, partition::partition_bytes(out.of, ranks, description), 0644);
+  } catch (const IoError& error) {
+    out.not_kept = error.what();
+  }
   return out;
 }
 

@@ -16,7 +16,8 @@ inline constexpr int kMostForMetis = 10'000'000;
 /// A rank per agent.
 struct Owners {
   std::vector<std::int32_t> of;
-  std::string made;  ///< how, for people
+  std::string made;           ///< how, for people
+  std::string not_kept = {};  ///< why the cache could not be written; empty: it was
 };
 
 /// From the cache, or made and cached; no communication. @throws InvalidInput when ranks > agents, or the

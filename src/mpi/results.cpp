@@ -80,7 +80,10 @@ void Results::create(const Scenario& s) {
 }
 
 void Results::open(const Scenario& s) {
-  check(ncmpi_open(MPI_COMM_WORLD, path_.c_str(), NC_WRITE, MPI_INFO_NULL, &file_), "open it again");
+  const int code = ncmpi_open(MPI_COMM_WORLD, path_.c_str(), NC_WRITE, MPI_INFO_NULL, &file_);
+  if (code != NC_NOERR)
+    failure_ = path_ + ": got " + ncmpi_strerror(code) +
+               ", expected the results that are gone on with; start without --resume, with another -o";
   settle();
   std::string checksum(16, ' ');
   MPI_Offset length = 0;

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mpi/run.hpp"
 
-#include <sys/resource.h>
-
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
 #include <numeric>
 #include <optional>
 
-#include "garrison/engine/any_filter.hpp"
 #include "mpi/checkpoint.hpp"
 #include "mpi/cut.hpp"
 #include "mpi/ending.hpp"
 #include "mpi/hash.hpp"
+#include "mpi/memory.hpp"
 #include "mpi/mpi_exchange.hpp"
+#include "mpi/outputs.hpp"
 #include "mpi/progress.hpp"
 #include "mpi/results.hpp"
 #include "mpi/together.hpp"
@@ -26,20 +25,18 @@
 namespace garrison::mpi {
 namespace {
 
-double megabytes() {
-  rusage use{};
-  getrusage(RUSAGE_SELF, &use);
-  return static_cast<double>(use.ru_maxrss) / 1024.0;
-}
-
-/// Of a whole network that a rank must hold for the design of some families.
-constexpr double kBytesPerAgent = 1500.0;
+/// An agent of a rank takes at least so much, whatever the family.
+constexpr double kOwnBytes = 300.0;
 
 /// Everything that one rank has.
 class Share {
  public:
   explicit Share(const RunCommand& command) : command_(command) {
-    together([&] { scenario_ = read_scenario(command.scenario); });
+    const Bytes bytes = shared_bytes(kOwnBytes);
+    together([&] {
+      scenario_ = read_scenario(command.scenario, bytes);
+      if (exchange_.rank() == 0) require_outputs(command, scenario_);
+    });
     cut();
     build();
     if (!command_.results.empty()) open_results();
@@ -78,12 +75,15 @@ class Share {
 
   void build() {
     std::optional<partition::Whole> whole;
+    const int others = ranks_here();
     together([&] {
       model_ = std::make_unique<Model>(scenario_.sensors.model(ids_));
       const std::string why = partition::needs_whole(scenario_.family, scenario_.params, scenario_.agents());
       if (why.empty()) return;
-      require_memory("filter (" + why + ")", std::to_string(scenario_.agents()) + " agents on every rank",
-                     kBytesPerAgent * scenario_.agents());
+      require_memory("filter (" + why + ")",
+                     std::to_string(scenario_.agents()) + " agents on each of " + std::to_string(others) +
+                         " ranks of a machine",
+                     kWhole.agent * others * scenario_.agents());
       std::vector<int> all(static_cast<std::size_t>(scenario_.agents()));
       std::iota(all.begin(), all.end(), 0);
       whole.emplace(scenario_.sensors.model(all), partition::network_of(*scenario_.ground));
@@ -102,35 +102,19 @@ class Share {
     flag_ = command_.results + ".ended";
     together([&] {
       if (exchange_.rank() != 0) return;
-      std::filesystem::remove(flag_);
-      require_other_file();
-      if (!command_.resume && !command_.force && std::filesystem::exists(command_.results))
-        refuse("-o", command_.results + ", which exists", "a new file",
-               "use --force to replace it, or --resume to go on");
-    });
-    together([&] {
-      if (exchange_.rank() == 0 && !command_.resume) checkpoint_->clear();
+      std::filesystem::remove(flag_);  // of a machine that went down
+      if (!command_.resume) checkpoint_->clear();
+      if (command_.checkpoint > 0) checkpoint_->make();
     });
     results_ = std::make_unique<Results>(command_.results, scenario_, command_.resume);
     order_ = std::make_unique<PublicOrder>(ids_, scenario_.agents(), scenario_.states());
     if (!command_.resume)
       say("garrison-mpi: the job was ended; no checkpoint was written yet: start again\n");
   }
-  /// Results may not take the place of what the run reads.
-  void require_other_file() const {
-    std::vector<std::string> inputs{command_.scenario};
-    inputs.insert(inputs.end(), scenario_.inputs.begin(), scenario_.inputs.end());
-    for (const std::string& input : inputs) {
-      std::error_code none;
-      if (std::filesystem::equivalent(command_.results, input, none) && !none)
-        refuse("-o", command_.results + ", which this run reads", "another file");
-    }
-  }
 
   void resume() {
     std::int64_t t = 0;
     together([&] {
-      if (!checkpoint_) refuse("--resume", "no -o", "the results that are gone on with");
       t = checkpoint_->sample();
       checkpoint_->read(ids_, *runner_);
       trial_->skip_to(t);
@@ -161,10 +145,7 @@ class Share {
   }
   void resumable(std::int64_t t) {
     say("garrison-mpi: the job was ended; the checkpoint of sample " + std::to_string(t) +
-        " is whole. Go on, on any number of ranks: mpirun -n R garrison-mpi run " + command_.scenario +
-        " -o " + command_.results +
-        (command_.checkpoint > 0 ? " --checkpoint " + std::to_string(command_.checkpoint) : "") +
-        " --resume\n");
+        " is whole. Go on, on any number of ranks:\n  " + resume_command(command_, exchange_.ranks()) + "\n");
   }
   void say(const std::string& line) { say_when_ended(line, flag_); }
 
@@ -192,6 +173,7 @@ class Share {
       std::printf("estimates overflowed in %" PRId64 " samples, %" PRId64
                   " agents rejoined: the filter diverged\n",
                   runner_->overflows(), sums[5]);
+    if (command_.hash && from > 0) std::printf("of the samples after %" PRId64 " alone: ", from);
     if (command_.hash) std::printf("hash %016" PRIx64 "\n", static_cast<std::uint64_t>(sums[6]));
   }
 
@@ -215,35 +197,5 @@ class Share {
 }  // namespace
 
 void run(const RunCommand& command) { Share(command).samples(); }
-
-void run_whole(const std::string& path, int threads) {
-  const Scenario s = read_scenario(path);
-  std::vector<int> all(static_cast<std::size_t>(s.agents()));
-  std::iota(all.begin(), all.end(), 0);
-  RunOptions options = s.run;
-  options.threads = threads;
-  options.keep = {.estimate = true,
-                  .report = false,
-                  .signals = false,
-                  .measurements = false,
-                  .details = false,
-                  .box = false};
-  const double start = MPI_Wtime();
-  const auto prepared =
-      make_filter(s.family, s.params)->prepare(s.sensors.model(all), partition::network_of(*s.ground));
-  const double designed = MPI_Wtime();
-  const Record record = simulate(*prepared, s.plant, options);
-  const double seconds = MPI_Wtime() - designed;
-  const auto n = static_cast<std::size_t>(s.states());
-  const auto N = all.size();
-  std::uint64_t hash = 0;
-  for (std::size_t t = 1; t <= static_cast<std::size_t>(s.plant.steps); ++t)
-    for (std::size_t i = 0; i < N; ++i)
-      hash += hash_of({record.estimate.data() + (t * N + i) * n, n}, static_cast<std::int64_t>(t),
-                      static_cast<int>(i));
-  std::printf("%zu agents, one engine, design %.3f s; %d samples in %.3f s, %.3f ms each; %.0f MB\n", N,
-              designed - start, s.plant.steps, seconds, 1e3 * seconds / s.plant.steps, megabytes());
-  std::printf("hash %016" PRIx64 "\n", hash);
-}
 
 }  // namespace garrison::mpi

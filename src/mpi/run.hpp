@@ -5,11 +5,10 @@
 #include <cstdint>
 #include <string>
 
-#include "mpi/scenario.hpp"
-
 namespace garrison::mpi {
 
 struct RunCommand {
+  std::string program = "garrison-mpi";  ///< as it was called
   std::string scenario;
   std::string results;          ///< empty: none are written
   std::int64_t halo = 1;        ///< rounds per exchange, where a sample has as many
@@ -21,8 +20,5 @@ struct RunCommand {
 
 /// All ranks call it. @throws Error on all ranks with the same message
 void run(const RunCommand& command);
-
-/// The same scenario with the engine of one process, whose hash has to be that of `run`; no MPI.
-void run_whole(const std::string& scenario, int threads);
 
 }  // namespace garrison::mpi

@@ -1,135 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mpi/scenario.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "garrison/attacks/registry.hpp"
 #include "garrison/engine/any_filter.hpp"
 #include "garrison/wire/blake2b.hpp"
-#include "mpi/named_files.hpp"
+#include "mpi/network_and_model.hpp"
+#include "mpi/values.hpp"
 #include "node/daemon/files.hpp"
-#include "node/daemon/toml_file.hpp"
 #include "partition/families.hpp"
 
 namespace garrison::mpi {
 namespace {
 
-using node::Section;
-
-constexpr int kMost = std::numeric_limits<int>::max();
 /// Agent-samples of estimates above which summaries are kept unless estimates are asked for.
 constexpr double kManyEstimates = 1e7;
-
-int whole(const Section& s, const char* key, int least, std::optional<std::int64_t> otherwise = {}) {
-  return static_cast<int>(s.whole(key, least, kMost, otherwise));
-}
-
-/// The number of an agent.
-int agent_of(const Section& s, const char* key, double value) {
-  if (!(value >= 0.0 && value <= kMost && value == std::floor(value)))
-    refuse(s.where(key), text(value), "whole numbers of agents, from 0");
-  return static_cast<int>(value);
-}
-
-/// Values of a filter or an attack; every key that is no parameter has to be in `others`.
-ParamMap params_of(const Section& s, std::span<const ParamInfo> infos, std::vector<std::string> others) {
-  ParamMap params;
-  for (const ParamInfo& info : infos) {
-    const std::string& key = info.name;
-    others.push_back(key);
-    if (!s.has(key)) continue;
-    if (std::holds_alternative<bool>(info.initial)) params[key] = s.flag(key, false);
-    if (std::holds_alternative<std::int64_t>(info.initial)) params[key] = s.whole(key, -kMost, kMost);
-    if (std::holds_alternative<double>(info.initial)) params[key] = s.number(key, -kInfinity, kInfinity);
-    if (std::holds_alternative<std::string>(info.initial)) params[key] = s.text(key);
-    if (std::holds_alternative<std::vector<double>>(info.initial)) params[key] = s.numbers(key);
-  }
-  s.only(others);
-  return params;
-}
-
-Matrix matrix(const Section& s, const char* key, std::size_t columns) {
-  const auto rows = s.rows(key);
-  Matrix M(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns));
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (rows[r].size() != columns)
-      refuse(s.where(key), "a row of " + std::to_string(rows[r].size()) + " numbers",
-             std::to_string(columns) + " numbers in every row");
-    for (std::size_t c = 0; c < columns; ++c)
-      M(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];
-  }
-  return M;
-}
-
-partition::Sensors read_sensors(const Section& s, int agents, Inputs& inputs) {
-  s.only({"A", "C", "rows", "rows_seed", "process_bound", "measurement_bound", "process_covariance",
-          "measurement_covariance"});
-  partition::Sensors out;
-  out.A = matrix(s, "A", s.rows("A").size());
-  if (out.A.rows() == 0) refuse(s.where("A"), "no matrix", "A, n x n, row by row");
-  if (s.has("C") == s.has("rows"))
-    refuse(s.where("C"), s.has("C") ? "C and rows" : "neither C nor rows",
-           "one of C (a row per agent, or { file = .. }) and rows = \"unit\" (drawn)");
-  if (s.has_section("C")) {
-    out.rows_read = netcdf_column(inputs.of(s, "C"), agents, static_cast<int>(out.A.rows()));
-  } else if (s.has("C")) {
-    const Matrix C = matrix(s, "C", static_cast<std::size_t>(out.A.rows()));
-    for (Eigen::Index i = 0; i < C.rows(); ++i) out.C.push_back(C.row(i));
-  } else if (s.text("rows") != "unit") {
-    refuse(s.where("rows"), "\"" + s.text("rows") + "\"", "\"unit\": random rows of length 1");
-  }
-  out.seed = static_cast<std::uint64_t>(s.whole("rows_seed", 0, kMost, 0));
-  const auto known = [&](const char* key) {
-    return s.has(key) ? s.number(key, 0.0, std::numeric_limits<double>::max()) : kNaN;
-  };
-  const auto each = [&](const char* key, double& same, std::shared_ptr<const partition::Column>& read) {
-    if (s.has_section(key))
-      read = netcdf_column(inputs.of(s, key), agents, 0);
-    else
-      same = known(key);
-  };
-  out.process_bound = known("process_bound");
-  each("measurement_bound", out.measurement_bound, out.bounds_read);
-  each("measurement_covariance", out.measurement_variance, out.variances_read);
-  if (const double variance = known("process_covariance"); !std::isnan(variance))
-    out.process_covariance = variance * Matrix::Identity(out.A.rows(), out.A.rows());
-  return out;
-}
-
-std::unique_ptr<partition::Ground> read_ground(const Section& s, Inputs& inputs) {
-  if (!s.has("kind")) {
-    s.only({"agents", "edges"});
-    if (s.has_section("edges")) {
-      const NetcdfInput input = inputs.of(s, "edges");
-      return netcdf_network(input, whole(s, "agents", 1), inputs.checksum(input));
-    }
-    std::vector<Edge> edges;
-    const Matrix pairs = matrix(s, "edges", 2);
-    for (Eigen::Index k = 0; k < pairs.rows(); ++k)
-      edges.emplace_back(agent_of(s, "edges", pairs(k, 0)), agent_of(s, "edges", pairs(k, 1)));
-    return partition::listed(Network(whole(s, "agents", 1), edges));
-  }
-  const std::string kind = s.text("kind");
-  if (kind == "grid") {
-    s.only({"kind", "rows", "columns"});
-    return partition::grid(whole(s, "rows", 1), whole(s, "columns", 1));
-  }
-  if (kind == "random_geometric") {
-    s.only({"kind", "agents", "radius", "seed"});
-    return partition::random_geometric(whole(s, "agents", 1), s.number("radius", 0.0, 2.0),
-                                       static_cast<std::uint64_t>(s.whole("seed", 0, INT64_MAX, 0)));
-  }
-  if (kind == "band") {
-    s.only({"kind", "agents", "range"});
-    return partition::band(whole(s, "agents", 1), whole(s, "range", 1));
-  }
-  s.only({"kind", "agents"});
-  if (kind == "path") return partition::band(whole(s, "agents", 1), 1);
-  if (kind == "ring") return partition::ring(whole(s, "agents", 1));
-  refuse(s.where("kind"), "\"" + kind + "\"", "one of grid, random_geometric, band, path, ring",
-         "other networks are given by agents and edges");
-}
 
 void read_filter(const Section& s, Scenario& out) {
   out.family = s.text("name");
@@ -159,14 +45,6 @@ void read_attack(const Section& s, RunOptions& run) {
   refuse(s.where("kind"), "\"" + kind + "\"", "an attack of `garrison list attacks`");
 }
 
-Vector vector(const Section& s, const char* key, int states) {
-  const auto numbers = s.numbers(key);
-  if (!numbers.empty() && static_cast<int>(numbers.size()) != states)
-    refuse(s.where(key), std::to_string(numbers.size()) + " numbers",
-           std::to_string(states) + ", one per state");
-  return Eigen::Map<const Vector>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
-}
-
 void read_run(const Section& s, Scenario& out) {
   s.only({"steps", "seed", "x0", "start", "start_error", "trial"});
   out.plant.steps = whole(s, "steps", 1);
@@ -187,6 +65,9 @@ void read_link(const Section& s, LinkFaults& link) {
 void read_output(const Section& s, Scenario& out) {
   s.only({"keep", "every"});
   out.every = whole(s, "every", 1, 1);
+  if (out.every > out.plant.steps)
+    refuse(s.where("every"), std::to_string(out.every),
+           "at most " + std::to_string(out.plant.steps) + ", [run].steps", "no sample would be kept");
   const double kept = static_cast<double>(out.agents()) * (out.plant.steps / out.every);
   const std::string word = s.text("keep", kept <= kManyEstimates ? "estimates" : "summary");
   if (word != "estimates" && word != "summary")
@@ -196,7 +77,7 @@ void read_output(const Section& s, Scenario& out) {
 
 }  // namespace
 
-Scenario read_scenario(const std::string& path) {
+Scenario read_scenario(const std::string& path, const Bytes& bytes) {
   const std::string text = node::read_text(path, "a scenario (TOML)");
   const Section file = node::parse_toml(text, path);
   file.only({"title", "model", "network", "filter", "attack", "link", "noise", "run", "partition", "output"});
@@ -204,7 +85,7 @@ Scenario read_scenario(const std::string& path) {
   out.path = path;
   out.fingerprint = wire::checksum(std::as_bytes(std::span(text)));
   Inputs inputs(path);
-  out.ground = read_ground(file.section("network"), inputs);
+  out.ground = read_ground(file.section("network"), inputs, bytes);
   out.sensors = read_sensors(file.section("model"), out.agents(), inputs);
   out.fingerprint += inputs.checksum();
   out.inputs = inputs.paths();

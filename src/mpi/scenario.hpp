@@ -8,6 +8,7 @@
 
 #include "garrison/core/params.hpp"
 #include "garrison/drivers/simulate.hpp"
+#include "mpi/memory.hpp"
 #include "partition/ground.hpp"
 #include "partition/sensors.hpp"
 
@@ -34,7 +35,8 @@ struct Scenario {
   int states() const { return static_cast<int>(sensors.A.rows()); }
 };
 
-/// @throws IoError, InvalidInput with file, line and key
-Scenario read_scenario(const std::string& path);
+/// `bytes`: what the network is going to take. @throws IoError, InvalidInput with file, line and key; where
+/// that is too much memory, too
+Scenario read_scenario(const std::string& path, const Bytes& bytes);
 
 }  // namespace garrison::mpi

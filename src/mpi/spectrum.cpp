@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "mpi/cut.hpp"
+#include "mpi/memory.hpp"
 #include "mpi/progress.hpp"
 #include "mpi/slepc_spectrum.hpp"
 #include "mpi/together.hpp"
@@ -11,12 +12,20 @@
 
 namespace garrison::mpi {
 
+namespace {
+
+/// An agent of a rank takes at least so much: its neighbours, and three numbers of its own.
+constexpr double kOwnBytes = 100.0;
+
+}  // namespace
+
 void print_spectrum(const SpectrumCommand& command) {
   MpiExchange exchange;
   Scenario scenario;
+  const Bytes bytes = shared_bytes(kOwnBytes);
   together([&] {
     if (command.slepc) require_slepc();
-    scenario = read_scenario(command.scenario);
+    scenario = read_scenario(command.scenario, bytes);
     if (scenario.agents() < 2) refuse("network", "one agent", "at least two");
   });
   const Cut cut = cut_of(scenario, exchange, 1);

@@ -8,6 +8,7 @@ import subprocess
 import time
 from pathlib import Path
 
+import documents
 import garrison
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ _ENVIRONMENT = {
     "OMPI_MCA_btl": "self,vader",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_mpi_yield_when_idle": "1",
+    "GARRISON_MEMORY_GB": "8",
 }
 _FILTERS = {
     "saturation": "threshold = 0.3\nrounds = 4\nstep = 0.1",
@@ -263,8 +265,10 @@ def test_a_run_is_not_gone_on_with_after_its_inputs_changed(tmp_path: Path) -> N
 
 
 def test_a_killed_rank_ends_the_job_and_three_ranks_go_on(tmp_path: Path) -> None:
-    path = _scenario(tmp_path, "saturation", _TROUBLE, steps=3000)
-    whole, out = tmp_path / "whole.nc", tmp_path / "out.nc"
+    folder = tmp_path / "it's here"  # the command to go on can be pasted whatever the paths
+    folder.mkdir()
+    path = _scenario(folder, "saturation", _TROUBLE, steps=3000)
+    whole, out = folder / "whole.nc", folder / "out.nc"
     assert _mpi(2, "run", path, "-o", whole).returncode == 0
     latest = Path(f"{out}.checkpoint/latest")
     command = [str(_MPIRUN), "-n", "2", str(_PROGRAM), "run", str(path), "-o", str(out), "--checkpoint", "50"]
@@ -277,9 +281,12 @@ def test_a_killed_rank_ends_the_job_and_three_ranks_go_on(tmp_path: Path) -> Non
     assert job.returncode != 0
     assert re.search(r"the checkpoint of sample \d+ is whole", words)
     assert words.count("--resume") == 1
+    assert not Path(f"{out}.ended").exists()
     with netcdf_file(str(out), mmap=False) as results:  # what was written can be read
         assert results.variables["time"][:].tolist() == list(range(1, len(results.variables["time"][:]) + 1))
-    resumed = _mpi(3, "run", path, "-o", out, "--checkpoint", "50", "--resume", "--halo", "3")
+    [line] = re.findall(r"^  (mpirun .*--resume)$", words, flags=re.M)
+    pasted = line.replace("-n 2", "-n 3") + " --halo 3"
+    resumed = subprocess.run(pasted, shell=True, env=_ENVIRONMENT, capture_output=True, text=True, timeout=120)
     assert resumed.returncode == 0, resumed.stderr
     assert out.read_bytes() == whole.read_bytes()
 
@@ -311,10 +318,38 @@ def test_states_with_sets_of_agents_go_on_on_another_number_of_ranks(tmp_path: P
             "does not depend on the filter",
         ),
         (("steps = 9", "steps = 0"), [], "a whole number in 1.."),
+        (("[run]", "[output]\nevery = 10\n[run]"), [], "got 10, expected at most 9, [run].steps"),
+        (('"grid"', '"complete"'), [], 'got "complete", expected one of grid'),
+        (
+            ('kind = "grid"\nrows = 4\ncolumns = 4', 'kind = "ring"\nagents = 2000000000'),
+            [],
+            "[network].agents: got 2000000000, which takes",
+        ),
+        (
+            ('kind = "grid"\nrows = 4\ncolumns = 4', 'kind = "random_geometric"\nagents = 1000000\nradius = 0.1'),
+            [],
+            "[network].radius: got 0.1, some 28799 neighbours each, which takes",
+        ),
+        (
+            ('kind = "grid"\nrows = 4\ncolumns = 4', 'kind = "band"\nagents = 1000000\nrange = 100000'),
+            [],
+            "[network].range: got 100000, some 200000 neighbours each, which takes",
+        ),
+        (
+            ("rows = 4\ncolumns = 4", "rows = 1000000\ncolumns = 1000000"),
+            [],
+            "1000000 x 1000000 agents, which takes",
+        ),
         (("agents = [2, 7]", "agents = [2, 99]"), [], "ids in 0..15"),
-        (("", ""), ["-o", "{folder}/no/such/folder/out.nc"], "no/such/folder/out.nc"),
+        (("", ""), ["-o", "{folder}/no/such/folder/out.nc"], "make the folder {folder}/no/such/folder"),
+        (("", ""), ["-o", "{folder}", "--force"], "a folder, expected a file"),
+        (("", ""), ["-o", ""], "-o: got nothing behind it"),
+        (("", ""), ["-o", "--hash"], "-o: got nothing behind it"),
+        (("", ""), ["-o", "{folder}/new.nc", "--resume"], "new.nc, which is not there"),
+        (("", ""), ["-o", "{folder}/new.nc", "--checkpoint", "10"], "got 10, expected at most 9, the steps"),
+        (("", ""), ["-o", "{folder}/barred.nc", "--checkpoint", "3"], "barred.nc.checkpoint: got a file"),
         (("", ""), ["-o", "{folder}/there.nc"], "which exists"),
-        (("", ""), ["-o", "{folder}/there.nc", "--resume"], "there.nc"),
+        (("", ""), ["-o", "{folder}/there.nc", "--resume"], "expected the results that are gone on with"),
         (("", ""), ["--resume"], "-o"),
         (("", ""), ["--ranks", "2"], "one SCENARIO"),
         (("", ""), ["--halo", "0"], "--halo"),
@@ -327,11 +362,19 @@ def test_bad_input_is_told_once_and_ends_every_rank_with_2(
     path = _scenario(tmp_path, "saturation", "")
     path.write_text(path.read_text().replace(*change, 1))
     (tmp_path / "there.nc").write_text("no netCDF")
+    (tmp_path / "barred.nc.checkpoint").write_text("no folder")
     done = _mpi(2, "run", path, *(word.format(folder=tmp_path) for word in words))
     assert done.returncode == 2
     told = [line for line in done.stderr.splitlines() if line.startswith("garrison-mpi:")]
     assert len(told) == 1
-    assert message in told[0]
+    assert message.format(folder=tmp_path) in told[0]
+
+
+def test_help_is_there_behind_a_command_too() -> None:
+    done = _mpi(1, "run", "--help")
+    assert done.returncode == 0
+    assert done.stdout == _mpi(1, "--help").stdout
+    assert "--checkpoint" in done.stdout
 
 
 def test_more_ranks_than_agents_are_refused(tmp_path: Path) -> None:
@@ -399,3 +442,65 @@ def test_numbers_that_run_refuses_are_refused(old: str, new: str, words: str, tm
     assert done.returncode == 2
     assert words in done.stderr
     assert done.stderr.count("garrison-mpi: ") == 1
+
+
+_PAGE = ROOT / "docs/how-to/one-huge-network.md"
+
+
+def test_the_scenarios_of_the_page_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("xarray")
+    monkeypatch.chdir(tmp_path)
+    documents.run(_PAGE, tmp_path)
+    assert "1000 agents, 4.0 neighbours each" in _mpi(2, "run", "read.toml", "-o", "read.nc").stdout
+    big = Path("big.toml")
+    text = big.read_text()
+    for many, few in (("agents = 1000000", "agents = 10000"), ("0.00245", "0.0245"), ("steps = 1000", "steps = 20")):
+        assert many in text
+        text = text.replace(many, few)
+    big.write_text(text)
+    done = _mpi(2, "run", "big.toml", "-o", "big-run.nc", "--checkpoint", "10")
+    assert done.returncode == 0, done.stderr
+    with netcdf_file("big-run.nc", mmap=False) as results:
+        assert results.variables["time"][:].tolist() == [10, 20]
+
+
+def test_a_list_of_links_in_parquet_becomes_netcdf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("xarray")
+    pytest.importorskip("pyarrow")
+    pd = pytest.importorskip("pandas")
+    monkeypatch.chdir(tmp_path)
+    pd.DataFrame({"weight": [1.0, 1.0], "to": [1, 2], "from": [0, 1]}).to_parquet("links.parquet")
+    [block] = [b.text for b in documents.blocks(_PAGE) if "read_parquet" in b.text]
+    exec(block, {})
+    with netcdf_file("links.nc", mmap=False) as links:
+        assert links.variables["edges"][:].tolist() == [[0, 1], [1, 2]]
+
+
+def test_a_partition_that_leaves_a_rank_without_agents_is_refused_or_replaced(tmp_path: Path) -> None:
+    path = tmp_path / "four.toml"
+    text = (
+        '[model]\nA = [[1.0]]\nrows = "unit"\n[network]\nkind = "path"\nagents = 4\n'
+        '[filter]\nname = "scalar_gain"\nrounds = 1\nstep = 0.3\n[run]\nsteps = 1\n[partition]\nmethod = '
+    )
+    path.write_text(text + '"metis"\n')
+    done = _mpi(3, "run", path)
+    if "without METIS" in done.stderr:
+        pytest.skip("METIS is not built in")
+    assert done.returncode == 2
+    assert done.stderr.count("garrison-mpi: partition (METIS): got no agent on rank") == 1
+    assert "expected 1 to 2 agents on every rank" in done.stderr
+    path.write_text(text + '"auto"\n')
+    done = _mpi(3, "run", path)
+    assert done.returncode == 0, done.stderr
+    assert "(coordinates, because METIS left no agent on rank" in done.stdout
+
+
+def test_a_partition_that_cannot_be_kept_does_not_end_the_run(tmp_path: Path) -> None:
+    path = _scenario(tmp_path, "scalar_gain", "")
+    Path(f"{path}.2.partition.new").mkdir()
+    done = _mpi(2, "run", path)
+    assert done.returncode == 0, done.stderr
+    assert "not kept: " in done.stdout
+    alone = _mpi(1, "partition", path, "--ranks", "2")
+    assert alone.returncode == 2
+    assert alone.stderr.count("garrison-mpi: ") == 1

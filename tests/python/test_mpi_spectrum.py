@@ -66,3 +66,11 @@ def test_what_has_no_spectrum_of_use_is_refused(tmp_path):
     done = _mpi(2, "spectrum", _network(tmp_path, 500, 0.1), "--products", "none")
     assert done.returncode == 2
     assert done.stderr.count("--products") == 1
+
+
+def test_slepc_that_is_not_built_in_is_refused_once(tmp_path):
+    done = _mpi(3, "spectrum", _network(tmp_path, 500, 0.1), "--slepc")
+    if done.returncode == 0:
+        pytest.skip("SLEPc is built in")
+    assert done.returncode == 2
+    assert done.stderr.count("garrison-mpi: --slepc") == 1
