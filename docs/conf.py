@@ -13,12 +13,13 @@ project = "garrison"
 author = copyright = "The garrison contributors"
 release = version = garrison.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_design"]
-myst_enable_extensions = ["colon_fence", "deflist", "attrs_block", "attrs_inline"]
+myst_enable_extensions = ["colon_fence", "deflist"]
 myst_heading_anchors = 3
 exclude_patterns = ["generate", "generated/parameters_*.md", "generated/python_rest.md"]
 autodoc_default_options = {"members": True, "undoc-members": True}
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
+smartquotes = False  # primes are no quotes, and -- begins options
 html_theme = "furo"
 html_title = "garrison"
 html_static_path = ["_static"]

@@ -10,17 +10,28 @@ from generate.markdown import cell, code, table
 def page() -> str:
     """The page of the command `garrison`."""
     parser = cli._parser()
-    groups = [a for a in parser._actions if isinstance(a, argparse._SubParsersAction)]
-    helps = {a.dest: a.help for a in groups[0]._choices_actions}
     parts = ["# Command line\n", "`garrison COMMAND`, or `python -m garrison COMMAND`.\n", cell(parser.epilog) + "\n"]
-    for name, command in groups[0].choices.items():
-        text = helps.get(name) or ""
-        parts.append(f"## garrison {name}\n\n{cell(text[:1].upper() + text[1:])}.\n")
-        parts.append("```text\n" + command.format_usage().removeprefix("usage: ") + "```\n")
-        actions = [a for a in command._actions if a.help != argparse.SUPPRESS and a.dest != "help"]
-        rows = [[_name(a), cell(_help(command, a))] for a in actions]
-        parts.append(table(["argument", "meaning"], rows) if rows else "")
-    return "\n".join(parts)
+    return "\n".join([*parts, *_commands(parser, 2)])
+
+
+def _commands(parser: argparse.ArgumentParser, depth: int) -> list[str]:
+    """The commands of a parser under headings of this depth, and those below them under deeper ones."""
+    parts = []
+    for group in (a for a in parser._actions if isinstance(a, argparse._SubParsersAction)):
+        helps = {a.dest: a.help or "" for a in group._choices_actions}
+        for name, command in group.choices.items():
+            text = helps[name]
+            parts.append(f"{'#' * depth} {command.prog}\n\n{cell(text[:1].upper() + text[1:])}.\n")
+            parts.append("```text\n" + command.format_usage().removeprefix("usage: ") + "```\n")
+            rows = [[_name(a), cell(_help(command, a))] for a in command._actions if _is_shown(a)]
+            parts.append(table(["argument", "meaning"], rows) if rows else "")
+            parts += _commands(command, depth + 1)
+    return parts
+
+
+def _is_shown(action: argparse.Action) -> bool:
+    inner = isinstance(action, argparse._SubParsersAction)
+    return action.help != argparse.SUPPRESS and action.dest != "help" and not inner
 
 
 def _name(action: argparse.Action) -> str:

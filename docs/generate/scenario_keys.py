@@ -5,8 +5,9 @@ TABLES = {
     "network": "Who hears whom: `edges`, a generator (`kind`), or `stations` on a map.",
     "filter": "The filter: `name`, `label`, and its parameters; [the pages of the filters](../filters/index.md) list "
     "them, and so does `garrison list NAME`.",
-    "compare": "Other filters on the same data, as often as wanted, with the same keys as `[filter]`; the name "
-    "`central_kalman` stands for a Kalman filter that sees every measurement.",
+    "compare": "Other filters on the same data, as often as wanted, with the same keys as `[filter]`; "
+    "`central_kalman` is a Kalman filter that sees every measurement, `local_kalman` one per agent that sees those of "
+    "its neighbours and its own.",
     "attack": "Who is attacked, when and how, as often as wanted; the other keys are the parameters of the "
     "[attack](attacks.md).",
     "link": "Messages that are lost or late, by chance. Without this table every message arrives in its round.",
@@ -68,8 +69,8 @@ MEANINGS = {
     "filter": {
         "name": "which filter",
         "label": "its name in tables and pictures",
-        "gate": "of `central_kalman`: probability at which a chi-square test leaves out an honest output",
-        "huber": "of `central_kalman`: deviations from which on a residual pulls no harder",
+        "gate": "of the Kalman filters: probability at which a chi-square test leaves out an honest output",
+        "huber": "of the Kalman filters: deviations from which on a residual pulls no harder",
     },
     "attack": {
         "kind": "which attack",

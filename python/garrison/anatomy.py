@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison._core import structure
+from garrison.families import require_common_state
 from garrison.scenario import read_scenario
 from garrison.tables import read_matrix
 from garrison.words import refusal
@@ -88,6 +89,7 @@ def read_anatomy(path: str | Path, measured: list[int | None] | None = None) -> 
         if measured:
             raise refusal("measured", "states together with a scenario", "a CSV file with A")
         scenario = read_scenario(file)
+        require_common_state(scenario.filters[0][1])
         model = scenario.model
         rows = [np.asarray(c) for c in model.C]
         states = [[int(k) for k in np.flatnonzero(np.abs(c).sum(axis=0))] for c in rows]

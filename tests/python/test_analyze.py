@@ -209,6 +209,15 @@ def test_bad_input_is_refused_by_name():
         gr.analyze(model, network, second=1)
 
 
+@pytest.mark.parametrize("command", ["analyze", "structure"])
+def test_vehicles_with_states_of_their_own_are_refused(command, capsys):
+    """Taken for one common state, all 16 absolute sensors could lie and be found out; a common shift is not."""
+    from garrison.cli import main
+
+    assert main([command, str(ROOT / "examples/platoon/spoofed.toml")]) == 2
+    assert "expected a filter of one common state; garrison check" in " ".join(capsys.readouterr().err.split())
+
+
 def test_the_command_prints_words_tables_json_and_a_picture(tmp_path, capsys):
     from garrison.cli import main
 

@@ -43,6 +43,8 @@ def test_every_command_is_shown() -> None:
     from generate import commands
 
     page = commands.page()
+    kinds = ("openacc", "adsb", "pandapower", "rosbag", "mcap", "csv")
+    assert all(f"### garrison import {kind}\n" in page for kind in kinds) and "`--manoeuvre MANOEUVRE`" in page
     for command in cli.COMMANDS:
         name = command.__name__.rpartition(".")[2].rstrip("_").replace("_", "-")
         assert f"## garrison {name}\n" in page

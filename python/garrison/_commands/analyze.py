@@ -16,8 +16,8 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     command = commands.add_parser(
         "analyze",
-        help="tell how many sensors may lie, which must not fail, who can lie unseen and what to add; exit 1 if the "
-        "sensors do not show the whole state",
+        help="tell how many sensors may lie, which must not fail, who could drift without limit, unseen, and what to "
+        "add; exit 1 if the sensors do not show the whole state",
         allow_abbrev=False,
     )
     command.add_argument("scenario", help="scenario file (TOML)")

@@ -34,7 +34,7 @@ def add(commands: Commands) -> None:
     command.add_argument("--start", type=whole_number, default=20, help="first sample under attack (default 20)")
     command.add_argument("--trials", type=whole_number, default=20, help="trials (default 20)")
     command.add_argument(
-        "--size", type=number, help="of the lies, unit of the measurement (default ten times the noise)"
+        "--size", type=number, help="size of the lies, in the measurement's unit (default ten times the noise)"
     )
     command.add_argument("-o", "--output", help="picture to write (.png, .svg, .pdf)")
     command.add_argument("--full", action="store_true", help="print a row per filter and attack, not one per filter")

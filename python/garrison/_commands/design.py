@@ -24,7 +24,7 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("--initial-error", type=number, help="bound on the start's error (default: the scenario's)")
     command.add_argument("--error-at-most", type=number, help="with --goal bytes: the error to certify")
-    command.add_argument("--most-rounds", type=whole_number, default=200, help="per sample (default 200)")
+    command.add_argument("--most-rounds", type=whole_number, default=200, help="most rounds per sample (default 200)")
     command.add_argument("--plain", action="store_true", help="plain rounds, not Chebyshev-filtered ones")
     command.add_argument("-o", "--output", help="picture of the trade-off to write (.png, .svg, .pdf)")
     command.add_argument("--force", action="store_true", help="replace an existing picture")

@@ -40,13 +40,20 @@ def add(commands: Commands) -> None:
     )
     command.add_argument("scenario", help="scenario file (TOML)")
     command.add_argument(
-        "--set", action="append", default=[], metavar="KEY=VALUES", help="key=a:b:n, key=log:a:b:n or key=1,5,25"
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUES",
+        help="values of a key: 1,5,25, or a:b:n (n values from a to b, evenly), or log:a:b:n (by equal factors); may "
+        "be repeated for other keys",
     )
     command.add_argument("--points", metavar="FILE", help="CSV file with a row per point, in place of --set")
     command.add_argument("--trials", type=whole_number, default=1, help="trials of every point (default 1)")
     command.add_argument("-o", "--output", required=True, help="folder to write to; a part of the same sweep is kept")
     command.add_argument("--workers", type=whole_number, default=1, help="processes on this machine (default 1)")
-    command.add_argument("--scheduler", metavar="ADDRESS", help="of a running Dask scheduler, e.g. tcp://host:8786")
+    command.add_argument(
+        "--scheduler", metavar="ADDRESS", help="address of a running Dask scheduler, e.g. tcp://host:8786"
+    )
     command.add_argument("--scheduler-file", metavar="FILE", help="file that a running Dask scheduler wrote")
     command.add_argument(
         "--block", type=whole_number, help="trials of a task (default: so many that one lasts some seconds)"

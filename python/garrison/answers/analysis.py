@@ -1,4 +1,4 @@
-"""gr.analyze: how many may lie, who must not fail, who can lie unseen, what to add."""
+"""gr.analyze: how many may lie, who must not fail, who could drift without limit, unseen, what to add."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from garrison.answers.removals import Removal
 from garrison.answers.sensors import sensors_of
 from garrison.answers.watch import Progress, Watch
 from garrison.drawing import drawn
+from garrison.families import require_common_state
 from garrison.result import Result
 from garrison.words import count, hinted, hinted_methods, refusal, require_plant, shown
 
@@ -159,6 +160,7 @@ def analyze(
     require_plant("analyze", model, network)
     if filter is not None and not isinstance(filter, _core.Filter):
         raise refusal("filter", shown(filter), "a filter of garrison.filters, or None")
+    require_common_state(filter)
     title, progress = (
         arguments.text("title", title),
         arguments.callback("progress", progress, "(question, done, total)"),

@@ -6,6 +6,7 @@ from typing import Any
 from garrison import _core
 from garrison.families.family import Family
 from garrison.families.platoon import PLATOON, PLATOON_BASELINE
+from garrison.words import refusal
 
 
 def _never(params: dict[str, Any]) -> bool:
@@ -28,7 +29,7 @@ _FAMILIES = {
 }
 _PLAIN = Family()
 
-__all__ = ["Family", "accuses", "family_called", "family_of"]
+__all__ = ["Family", "accuses", "family_called", "family_of", "require_common_state"]
 
 
 def accuses(filter: _core.Filter, accusations: Collection[Any]) -> bool:
@@ -47,3 +48,10 @@ def family_of(filter: _core.Filter) -> Family:
 def family_called(name: str) -> Family:
     """The same by the family's name."""
     return _FAMILIES.get(name, _PLAIN)
+
+
+def require_common_state(filter: _core.Filter | None) -> None:
+    """Refuse a filter whose agents have states of their own, where sensors are asked about one common state."""
+    if filter is not None and family_of(filter).own_plants:
+        got = f"{filter.name}, whose agents have states of their own"
+        raise refusal("filter", got, "a filter of one common state", "garrison check has the conditions of this one")
