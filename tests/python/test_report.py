@@ -334,3 +334,15 @@ def test_the_caption_speaks_of_bounds_only_where_some_are_drawn(tmp_path: Path) 
         assert ("The certified bound" in page) == bounds
         run = rows[0].run
         assert run is not None and bool(np.isfinite(np.asarray(run.bound)).any()) == bounds
+
+
+def test_the_report_of_a_string_says_what_accuses_and_its_pictures_have_words(tmp_path: Path) -> None:
+    scenario = read_scenario(ROOT / "examples" / "platoon" / "spoofed.toml", set={"run.steps": 100, "run.trials": 1})
+    rows = run_scenario(scenario)
+    write_report(tmp_path / "report.html", scenario, rows)
+    page = (tmp_path / "report.html").read_text()
+    # trimmed means and plain steering accuse nobody, whatever happens
+    assert "platoon, stronger tests, platoon, as published: a proof as long as" in page and "an alarm" not in page
+    assert "&quot;not attacked&quot;: the same data without the attack." in page
+    assert "2 of 8 sensors are attacked, first at t = 40: sensors 2, 5." in page
+    assert all('role="img" aria-label="' in tag for tag in re.findall(r"<svg[^>]*>", page)) and "<svg" in page

@@ -43,4 +43,4 @@ PLATOON = Family(
     picture="string",
     least_attacked=1,
 )
-PLATOON_BASELINE = Family(own_plants=True, picture="string")
+PLATOON_BASELINE = Family(accuses=lambda params: False, own_plants=True, picture="string")

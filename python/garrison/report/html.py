@@ -57,8 +57,9 @@ def figure(picture: Any, note: str = "") -> str:
     buffer = io.StringIO()
     picture.savefig(buffer, format="svg")
     text = buffer.getvalue()
+    label = f' role="img" aria-label="{html.escape(note)}"' if note else ""
     caption = f"<figcaption>{html.escape(note)}</figcaption>" if note else ""
-    return f'<figure><div class="wide">{text[text.index("<svg") :]}</div>{caption}</figure>'
+    return f'<figure><div class="wide"><svg{label}{text[text.index("<svg") + 4 :]}</div>{caption}</figure>'
 
 
 def image(data: bytes, kind: str, description: str) -> str:

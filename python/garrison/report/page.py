@@ -13,7 +13,7 @@ from garrison.jobs import Row, certificate_of, signal_size
 from garrison.longform import common_unit
 from garrison.record import Run
 from garrison.report.html import figure, image, page, table
-from garrison.report.table import accusation_note, at_time, error_note, table_rows, warnings_of
+from garrison.report.table import accusation_note, at_time, error_note, table_rows, untouched, warnings_of
 from garrison.scenario import Scenario
 from garrison.words import count
 
@@ -74,8 +74,9 @@ def _lead(scenario: Scenario, rows: list[Row]) -> str:
     when = at_time(scenario, scenario.first_attack)
     if scenario.hit:
         hit = [scenario.names[a] for a in scenario.hit]
-        verb = "are" if len(hit) > 1 else "is"
-        parts.append(f"{len(hit)} of {scenario.model.agents} sensors ({', '.join(hit)}) {verb} attacked, first {when}.")
+        verb, noun = ("are", "sensors") if len(hit) > 1 else ("is", "sensor")
+        names = ", ".join(hit)
+        parts.append(f"{len(hit)} of {scenario.model.agents} sensors {verb} attacked, first {when}: {noun} {names}.")
     if "mean_error" in main:
         since = " from then on" if scenario.hit else ""
         text = f"The mean error of {rows[0].label}{since} is {main['mean_error']:.3f}"
@@ -130,11 +131,13 @@ _STRING_NOTE = "The bounds and the least gaps are certified at run time: they ho
 def _table_note(scenario: Scenario, rows: list[Row]) -> str:
     since = "from the start of the attack on" if scenario.attacks else "over all samples"
     parts = [error_note(scenario)] if error_note(scenario) else []
+    if scenario.attacks:
+        parts.append(f'"{untouched(scenario)}": the same data without the attack.')
     shown = set(table_rows(scenario, rows)[0])
     meanings = {
         "mean error": f"Means are over agents, {since}.",
-        "samples with a bound": "Samples with a bound: share of agents and samples with a certified error bound.",
-        "median bound": "Median bound: of those.",
+        "samples with a bound": "Samples with a bound: share of all agents and samples with a certified error bound.",
+        "median bound": f"Median bound: {since}.",
         "error within bound": "Error within bound: how often the error was below it.",
         "accused": f"Accused: who was accused, and when first{_shown(scenario, ' (first trial)')}.",
     }
@@ -197,7 +200,7 @@ def _clipped_table(main: Row) -> str:
     if not limited:
         return ""
     cells = [[name, f"{share:.1%}"] for name, share in sorted(limited.items(), key=lambda x: -x[1])]
-    return "<h2>Sensors whose measurements were clipped</h2>" + table(["sensor", "share of samples"], cells)
+    return "<h2>Sensors whose measurements were clipped or suspected</h2>" + table(["sensor", "share of samples"], cells)
 
 
 def _animation(run: Run) -> str:

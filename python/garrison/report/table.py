@@ -36,7 +36,7 @@ def _cells(scenario: Scenario, row: Row) -> list[str]:
     inside, detected = s.get("inside_bound"), s.get("detected")
     return [
         row.label,
-        "attacked" if row.attacked else "as recorded" if scenario.measurements is not None else "not attacked",
+        "attacked" if row.attacked else untouched(scenario),
         f"{s['mean_error']:.3f}" if "mean_error" in s else "-",
         f"{s['worst_error']:.3f}" if "worst_error" in s else "-",
         f"{s['mean_error_robust']:.3f}" if "mean_error_robust" in s else "-",
@@ -46,6 +46,11 @@ def _cells(scenario: Scenario, row: Row) -> list[str]:
         "-" if detected is None else detections(scenario, detected) or "nobody",
         "-" if "false_alarms" not in s else str(s["false_alarms"]),
     ]
+
+
+def untouched(scenario: Scenario) -> str:
+    """The word for sensors on which no attack is put."""
+    return "as recorded" if scenario.measurements is not None else "not attacked"
 
 
 def detections(scenario: Scenario, detected: dict[str, int], most: int = 12) -> str:

@@ -102,17 +102,17 @@ void add_error_bounds(Check& c, const TheoremBounds& bounds, const InformedBound
   }
   const bool known = !std::isnan(informed->uniform);
   const std::string why =
-      known ? "also of sensors that have proved all s attackers and no longer saturate"
-            : "none is known for sensors that have proved all s attackers: they no longer saturate "
+      known ? "also of agents that have proved all s attackers and no longer clip"
+            : "none is known for agents that have proved all s attackers: they no longer clip "
               "and may overshoot (radius " +
                   text(informed->spectral_radius) + ", needed below 1)";
   c.quantities.push_back({"uniform bound", informed->uniform, "||error|| for all t >= 1, " + why});
   c.quantities.push_back(
       {"asymptotic bound", informed->asymptotic, "limsup ||error||, in exact arithmetic, " + why});
   c.quantities.push_back({"uniform bound, testing sensors", bounds.thm1_item2,
-                          "theorem 1 item 2, of sensors that have not proved all s attackers yet"});
+                          "theorem 1 item 2, of agents that have not proved all s attackers yet"});
   c.quantities.push_back({"asymptotic bound, testing sensors", bounds.thm1_item3,
-                          "theorem 1 item 3, of sensors that have not proved all s attackers yet"});
+                          "theorem 1 item 3, of agents that have not proved all s attackers yet"});
 }
 
 void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_value, const Interval& thresholds,
@@ -127,7 +127,7 @@ void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_valu
                : "the error would stay bounded by theorem 1; " + remedy9(s, points, thresholds)});
   c.conditions.push_back({"(beta - b_w - b_v)/a > rho_1 + p0 (12)", bounds.cond12_margin, "> 0",
                           bounds.cond12,
-                          std::string("honest measurements are never saturated from t = 2 on (theorem 3)") +
+                          std::string("honest measurements are never clipped from t = 2 on (theorem 3)") +
                               (bounds.cond12 ? "" : "; " + remedy12(s, varpi_value)),
                           false});
   const bool vanishes = g.spectral_radius < 1.0;
@@ -142,7 +142,8 @@ void add_bounds(Check& c, const Setting& s, double varpi_value, double tau0_valu
   c.quantities.push_back({"rho_lo", points.lo, "limit of the mean error bound (7)"});
   c.quantities.push_back({"rho_hi", points.hi, "largest initial error from which (7) does not grow"});
   add_error_bounds(c, bounds, informed);
-  c.quantities.push_back({"unsaturated bound", bounds.thm3_item3, "limsup ||error||, theorem 3 item 3"});
+  c.quantities.push_back({"unsaturated bound", bounds.thm3_item3,
+                          "limsup ||error|| once no honest measurement is clipped, theorem 3 item 3"});
 }
 
 /// The adaptive threshold follows bounds that obey a linear recursion: they settle, or grow without end.
@@ -216,11 +217,12 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   c.quantities.push_back({"lambda_max", rates.lambda_max, "largest eigenvalue of its Laplacian"});
   c.quantities.push_back({"alpha", rates.alpha, "consensus step"});
   c.quantities.push_back({"gamma", rates.gamma, "contraction of one plain round (8)"});
-  c.quantities.push_back({"contraction", rates.contraction, "of the disagreement by all rounds of a sample"});
+  c.quantities.push_back(
+      {"contraction", rates.contraction, "what all rounds of a sample leave of a disagreement"});
   const bool bound_asked = !std::isnan(p.initial_error);
   const bool unit = scalar_unit_rows(model);
-  c.conditions.push_back(
-      {"one output of unit length per agent", unit ? 1.0 : 0.0, "= 1", unit, row_advice(model), bound_asked});
+  c.conditions.push_back({"one measurement row of norm 1 per agent", unit ? 1.0 : 0.0, "= 1", unit,
+                          row_advice(model), bound_asked});
   const Noise& noise = model.noise();
   const bool gaussian = p.failure > 0.0;
   const bool noise_known = gaussian
@@ -246,7 +248,8 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
                                     text(facts.lambda0.upper) + "; the exact search was stopped after " +
                                     std::to_string(facts.lambda0.nodes) + " sets"});
   c.quantities.push_back(
-      {"varpi", facts.varpi, "largest mean error growth, all honest unsaturated (theorem 3)"});
+      {"varpi", facts.varpi,
+       "largest growth of the mean error while no honest measurement is clipped (theorem 3)"});
   Setting setting = saturation::detail::setting(p, model, facts, rates);
   const double growth = facts.a * rates.contraction;
   const bool enough = condition11(setting);
@@ -278,7 +281,7 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   }
   const auto interval = beta_interval(setting);
   c.quantities.push_back({"threshold from", interval.lo, "least threshold with (9) for this initial error"});
-  c.quantities.push_back({"threshold to", interval.hi, "largest one"});
+  c.quantities.push_back({"threshold to", interval.hi, "largest threshold with (9) for this initial error"});
   if (p.table && (p.adaptive || std::isfinite(p.threshold))) add_table(c, p, model, network, rates);
   if (p.adaptive) add_adaptive(c, setting, facts.varpi);
   if (!(growth < 1.0)) return c;
