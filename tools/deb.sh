@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/deb.sh: Debian packages of this checkout in dist/, built with Debian 12's own packages, which it installs first.
+# tools/deb.sh: Debian packages of this checkout in dist/ (with the site, if `make docs` was called before), built with Debian 12's own packages, which it installs first.
 # DEB_BUILD_OPTIONS=fewdimensions compiles few dimensions only, to try the packaging in minutes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,6 +17,8 @@ fi
 copy=build/deb/garrison
 rm -rf build/deb && mkdir -p dist
 tools/copy.sh "$copy"
+# The site, where `make docs` has built it here: garrison-doc takes it along.
+[[ ! -f build/docs/index.html ]] || cp -r build/docs "$copy/debian/site"
 tools/stage.sh "build packages" env -C "$copy" dpkg-buildpackage --unsigned-source --unsigned-changes --build=binary
 rm -f dist/*.deb dist/*.changes dist/*.buildinfo
 mv build/deb/*.deb build/deb/*.changes build/deb/*.buildinfo dist/
