@@ -168,7 +168,8 @@ def prepare(
         never, for noise within its bounds.
     attacked : int, optional
         Most sources that lie, >= 0; default the filter's parameter of that name. A source is an agent, or what
-        the model names as source. More than the filter was told of: its own bound does not count.
+        the model names as source. Where it is more than the filter's parameter, the
+        filter's own bound does not count.
     levels : tuple of two floats, optional
         (z1, z2) instead of the covariances' own: what clean records exceed at the rate `failure`, whatever their law
         (`Fitted.levels`, `calibrate`). A bound is then wrong with at most five times that and a quarter.

@@ -100,3 +100,11 @@ def test_every_class_of_the_headers_says_how_threads_may_use_it() -> None:
     assert len(found) > 60
     silent = [(file, name) for file, name, before in found if not before.startswith("/// Threads: ")]
     assert not silent, f'got {silent}, expected "/// Threads: ..." as the last line above the class'
+
+
+def test_every_extra_for_users_is_on_the_page_of_the_installation() -> None:
+    import tomllib
+
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    page = (ROOT / "docs" / "install.md").read_text(encoding="utf-8")
+    assert [name for name in extras if name not in ("dev", "bench") and f"`{name}`" not in page] == []

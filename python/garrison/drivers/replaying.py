@@ -89,8 +89,9 @@ def replay(
         a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
         (sample, round, sender, receiver).
     keep : iterable of str
-        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets), "box" (the bound
-        of each coordinate, with "report").
+        Which arrays of the run are filled: "estimate" (with the error), "report" (bounds, test statistics, thresholds
+        and verdicts), "measurements", "signals" (what the family says of itself, by name), "details" (lists such as
+        sets), "box" (the bound of each coordinate, with "report").
     threads : int
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
         (garrison.Filter, garrison.attacks.custom) always run in one.

@@ -73,7 +73,7 @@ def simulate(
     inputs : (steps, p) array, table or function of t, optional
         Known inputs of a model with B: row t is u(t), which leads from time t to t + 1. A pandas table with columns
         named as the model's inputs is matched by name. Estimates, errors and bounds are those of the state
-        (docs/adr/0016); what lies in messages say is said of the state without the inputs' response.
+        (docs/adr/0016); lies in messages are about the state without the inputs' response.
     attack : Attack or sequence of them
         Applied in order.
     trials : int
@@ -99,8 +99,9 @@ def simulate(
         a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
         (sample, round, sender, receiver).
     keep : iterable of str
-        Of "estimate", "report", "signals", "measurements", "details" (lists such as sets), "box" (the bound
-        of each coordinate, with "report").
+        Which arrays of the run are filled: "estimate" (with the error), "report" (bounds, test statistics, thresholds
+        and verdicts), "measurements", "signals" (what the family says of itself, by name), "details" (lists such as
+        sets), "box" (the bound of each coordinate, with "report").
     threads : int
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
         (garrison.Filter, garrison.attacks.custom) always run in one.

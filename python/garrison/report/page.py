@@ -200,7 +200,9 @@ def _clipped_table(main: Row) -> str:
     if not limited:
         return ""
     cells = [[name, f"{share:.1%}"] for name, share in sorted(limited.items(), key=lambda x: -x[1])]
-    return "<h2>Sensors whose measurements were clipped or suspected</h2>" + table(["sensor", "share of samples"], cells)
+    return "<h2>Sensors whose measurements were clipped or suspected</h2>" + table(
+        ["sensor", "share of samples"], cells
+    )
 
 
 def _animation(run: Run) -> str:
