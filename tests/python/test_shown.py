@@ -107,6 +107,8 @@ def test_plot_of_some_agents_and_other_runs(run: gr.Run) -> None:
     lines = {line.get_label(): line for line in figure.axes[0].get_lines()}
     assert np.array_equal(lines["largest error of an agent"].get_ydata(), run.error[1][:, [1, 2]].max(axis=1))  # type: ignore[index]
     assert np.array_equal(lines["mean error of scalar_gain"].get_ydata(), plain.error[1][:, [1, 2]].mean(axis=1))  # type: ignore[index]
+    looks = [(line.get_color(), line.get_linestyle()) for line in lines.values()]
+    assert len(set(looks)) == len(looks)
     assert "agents B, C" in title_of(figure)
     whole = run.plot()
     assert np.array_equal(whole.axes[0].get_lines()[0].get_ydata(), run.error[0].max(axis=1))  # type: ignore[index]

@@ -49,8 +49,8 @@ def _name_lines(run: Run, ax: Any, agents: list[int]) -> None:
 
 
 def _others(runs: Sequence[Run], trial: int, ax: Any, agents: Any) -> None:
-    """Mean errors of other runs."""
-    for run, (colour, style) in zip(runs, LINES[1:], strict=False):
+    """Mean errors of other runs, in looks that none of this run's lines has."""
+    for run, (colour, style) in zip(runs, LINES[4:], strict=False):
         if run.error is not None:
             mean = run.error[trial][:, agents].mean(axis=1)
             ax.plot(mean, color=colour, linestyle=style, label=f"mean error of {plain(run.filter.name)}")
