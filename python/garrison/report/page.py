@@ -79,7 +79,8 @@ def _lead(scenario: Scenario, rows: list[Row]) -> str:
         parts.append(f"{len(hit)} of {scenario.model.agents} sensors {verb} attacked, first {when}: {noun} {names}.")
     if "mean_error" in main:
         since = " from then on" if scenario.hit else ""
-        text = f"The mean error of {rows[0].label}{since} is {main['mean_error']:.3f}"
+        unit = common_unit(scenario.model)
+        text = f"The mean error of {rows[0].label}{since} is {main['mean_error']:.3f}{f' {unit}' if unit else ''}"
         others = [r.summary for r in rows if r.attacked == rows[0].attacked and r.label != rows[0].label]
         worse = [f"{o['mean_error']:.3f} for {o['filter']}" for o in others if "mean_error" in o]
         text += f", against {', '.join(worse)}" if worse else ""
@@ -199,7 +200,10 @@ def _clipped_table(main: Row) -> str:
     limited = main.summary.get("limited", {})
     if not limited:
         return ""
-    cells = [[name, f"{share:.1%}"] for name, share in sorted(limited.items(), key=lambda x: -x[1])]
+    cells = [
+        [name, "< 0.1%" if share < 0.0005 else f"{share:.1%}"]
+        for name, share in sorted(limited.items(), key=lambda x: -x[1])
+    ]
     return "<h2>Sensors whose measurements were clipped or suspected</h2>" + table(
         ["sensor", "share of samples"], cells
     )
