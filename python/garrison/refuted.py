@@ -1,4 +1,4 @@
-"""Noise that is larger than a filter was told: what the data of a run themselves say against the assumptions."""
+"""Noise that is larger than the model says: what the data of a run themselves say against the assumptions."""
 
 import math
 from itertools import pairwise

@@ -209,6 +209,12 @@ def test_bad_input_is_refused_by_name():
         gr.analyze(model, network, second=1)
 
 
+def test_a_norm_of_one_is_not_taken_for_a_plant_that_contracts():
+    model = gr.Model([[0.98, 0.02], [0.02, 0.98]], [[1, 0], [0, 1]] * 4)  # numerically 1 - 1e-16
+    limit = gr.analyze(model, gr.Network.ring(8), seconds=5).limits[4]
+    assert (limit.holds, limit.fails) == (1, 2) and "condition 11" in limit.why
+
+
 @pytest.mark.parametrize("command", ["analyze", "structure"])
 def test_vehicles_with_states_of_their_own_are_refused(command, capsys):
     """Taken for one common state, all 16 absolute sensors could lie and be found out; a common shift is not."""

@@ -35,6 +35,10 @@ BANNED = {
     "row(s)": "words.count: 1 row, 2 rows",
     "column(s)": "words.count",
     "trial(s)": "words.count",
+    "output of unit length": "one measurement row of norm 1 per agent",
+    "believes all of them": "uses every measurement as it comes",
+    "are used up to this size": "innovations above this are clipped",
+    "filter was told": "what the model or a parameter says",
     "same arguments, same bits": "equal arguments give bit-identical results",
 }
 _FOLDERS = ("README.md", "CONTRIBUTING.md", "docs", "python", "include", "src", "bindings", "examples", "tests/cpp")

@@ -23,14 +23,14 @@ kind = "complete"                                    # or ring, path, star, band
 
 [filter]
 name = "saturation"
-threshold = 0.5                                      # innovations are used up to this size
+threshold = 0.5                                      # innovations above this are clipped
 rounds = 3                                           # messages per sample
 attacked = 1                                         # sensors that may lie at a time
 initial_error = 5.0                                  # length of the error at the start at most
-detector = true                                      # finds out who lies
+detector = true                                      # identifies sensors that lie
 
 [[compare]]  # other filters on the same data, as many as wanted
-name = "central_kalman"                              # sees every measurement and believes all of them
+name = "central_kalman"                              # uses every measurement as it comes
 
 [[attack]]  # as many as wanted; none: everybody is honest
 kind = "bias"

@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 MOST_ROUNDS = 10_000
 #: why nothing is known
 LATE = "the time was up"
+#: how far rounding moves a norm of 1 at most
+_ROUNDING = 1e-9
 #: our name -> name in the filter's check
 _NAMES = {"a": "||A||", "gamma": "gamma", "lambda0": "lambda_0"}
 
@@ -96,6 +98,8 @@ def saturation_facts(sensors: Sensors, added: Array, attacked: int, gamma: float
     filter = make_filter("saturation", params)
     of_plant = check(_core.Model(sensors.model.A, C), _core.Network.star(len(C)), filter, seconds=seconds)
     a, lambda0 = of_plant[_NAMES["a"]], of_plant[_NAMES["lambda0"]]
+    if abs(a - 1.0) < _ROUNDING:  # a norm of 1 that rounding has put below contracts nothing
+        a = 1.0
     setting = saturation.Setting(agents=len(C), a=a, lambda0=lambda0, contraction=0.0, attacked=attacked)
     rounds = saturation.minimal_rounds(setting, gamma) if gamma < 1 else None
     few = rounds if rounds and rounds <= MOST_ROUNDS else None

@@ -32,7 +32,7 @@ _WIDE = 10.0
 
 @dataclass(frozen=True)
 class Noise:
-    """What the filter is told: lengths of noise vectors (m, m/s) and of the first error; attacked sensors.
+    """What the filter assumes: lengths of noise vectors (m, m/s) and of the first error; attacked sensors.
 
     measurement None: 2 m, or what admits all odometers but `attacked`, as far as the gaps tell.
     """

@@ -200,10 +200,8 @@ def _clipped_table(main: Row) -> str:
     limited = main.summary.get("limited", {})
     if not limited:
         return ""
-    cells = [
-        [name, "< 0.1%" if share < 0.0005 else f"{share:.1%}"]
-        for name, share in sorted(limited.items(), key=lambda x: -x[1])
-    ]
+    ordered = sorted(limited.items(), key=lambda item: -item[1])
+    cells = [[name, f"{share:.1%}" if share >= 0.0005 else "< 0.1%"] for name, share in ordered]
     return "<h2>Sensors whose measurements were clipped or suspected</h2>" + table(
         ["sensor", "share of samples"], cells
     )

@@ -22,7 +22,7 @@ namespace {
 
 using namespace saturation;
 
-/// A radius of 1 up to rounding does not settle.
+/// A radius or norm of 1 up to rounding does not settle.
 constexpr double kRadiusMargin = 1e-9;
 
 std::string above(double value) { return "> " + text(value); }
@@ -260,7 +260,7 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   // With lambda_0 < s a plant that contracts (a < 1) always has some small threshold with (9).
   const double a_max = std::max(1.0, normA_max_exact(setting));
   c.conditions.push_back(
-      {"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max), facts.a < a_max,
+      {"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max), facts.a < a_max - kRadiusMargin,
        "some threshold, initial error and rounds satisfy (9) (exact, unlike theorem 2)", false});
   const auto least = minimal_rounds(
       setting, p.chebyshev
