@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from generate import benchmarks, commands, gallery, parameters, python_api, scenario
+from generate import benchmarks, commands, gallery, papers, parameters, python_api, scenario
 
 
 def write(folder: Path) -> None:
@@ -14,6 +14,7 @@ def write(folder: Path) -> None:
         "scenario.md": scenario.page(),
         "commands.md": commands.page(),
         "gallery.md": gallery.page(folder),
+        "papers.md": papers.page(),
         "attacks.md": parameters.attacks_page(),
         "benchmarks.md": benchmarks.page(),
         "python_rest.md": python_api.rest(),

@@ -1,4 +1,4 @@
-"""The simulation section of Doostmohammadian et al. (IEEE TNSE 2022), claim by claim.
+"""The simulation section of Doostmohammadian et al. (IEEE TNSE 2021), claim by claim.
 
     python examples/papers/structural.py -o out/papers/structural [--runs 100]
 

@@ -31,7 +31,7 @@ def lmi_gains(setting: structural.Setting, *, iterations: int = 20, margin: floa
     (8) is bilinear in X and K. With Y for the inverse of X the iteration minimises tr(Y_k X + X_k Y) subject to
     [X, Ahat'; Ahat, Y] >= margin I and [X, I; I, Y] >= 0, from X_0 = Y_0 = I, and stops as soon as rho(Ahat) < 1: any
     stable gain, not a good one. Only K_i on the span of the rows that agent i hears matters, the rest is zero.
-    Source: Doostmohammadian et al., IEEE TNSE 2022, (8).
+    Source: Doostmohammadian et al., IEEE TNSE 2021, (8).
 
     Parameters
     ----------

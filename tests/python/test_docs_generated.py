@@ -39,6 +39,15 @@ def test_every_parameter_is_in_its_table() -> None:
         assert all(f"`{p['name']}`" in attacks for p in info["params"]), info["name"]
 
 
+def test_a_paper_is_shown_with_its_claims() -> None:
+    from generate import papers
+
+    assert {path.stem for path in papers.SCRIPTS.glob("*.py")} >= {*papers.PAPERS}
+    text = papers.section(papers.SCRIPTS / "rdkf.py")
+    assert text.startswith("## rdkf") and "python examples/papers/rdkf.py -o out/papers/rdkf" in text
+    assert text.count("| confirmed |") >= 10 and "| not confirmed |" in text
+
+
 def test_every_command_is_shown() -> None:
     from generate import commands
 
