@@ -20,6 +20,7 @@ namespace garrison::mpi {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 40;
+constexpr const char* kOtherwise = "start without --resume, with --force or another -o";
 constexpr std::size_t kHead = 8;  // of a record: public id, bytes of its state
 
 void append(std::vector<std::byte>& out, std::uint32_t value) {
@@ -92,7 +93,7 @@ Checkpoint::Latest Checkpoint::latest() const {
   std::uint64_t scenario = 0;
   words >> program >> version >> a >> out.sample >> b >> out.ranks >> c >> scenario;
   if (!words || program != "garrison-mpi" || version != "1" || out.sample < 1 || out.ranks < 1)
-    refuse(path, "something else", "the line that garrison-mpi writes beside its checkpoints");
+    refuse(path, "something else", "the line that garrison-mpi writes beside its checkpoints", kOtherwise);
   if (scenario != scenario_)
     refuse(path, "a checkpoint of another scenario", "one of the scenario as it is now",
            "put the file back as it was, or start without --resume");
@@ -106,11 +107,13 @@ void Checkpoint::read(const std::vector<int>& ids, partition::PartRunner& runner
   std::size_t found = 0;
   for (int rank = 0; rank < from.ranks; ++rank) {
     const std::string path = file_of(from.sample, rank, from.ranks);
-    const auto bytes = node::read_bytes(path, kMostBytes, "a part of the checkpoint");
+    const auto bytes =
+        node::read_bytes(path, kMostBytes, std::string("a part of the checkpoint; ") + kOtherwise);
     const std::size_t end = bytes.size() < 8 ? 0 : bytes.size() - 8;
     const std::span<const std::byte> content(bytes.data(), end);
     if (bytes.size() < 8 || wire::load<std::uint64_t>(bytes.data() + end) != wire::checksum(content))
-      throw IoError(path + ": got a file that was cut or changed, expected what garrison-mpi wrote");
+      throw IoError(path + ": got a file that was cut or changed, expected what garrison-mpi wrote; " +
+                    kOtherwise);
     for (std::size_t at = 0; at < end;) {
       const auto id = static_cast<int>(wire::load<std::uint32_t>(bytes.data() + at));
       const std::size_t size = wire::load<std::uint32_t>(bytes.data() + at + 4);
@@ -123,7 +126,9 @@ void Checkpoint::read(const std::vector<int>& ids, partition::PartRunner& runner
     }
   }
   if (found != ids.size())
-    refuse(folder_, "states of " + std::to_string(found) + " agents", std::to_string(ids.size()));
+    refuse(folder_,
+           "states of " + std::to_string(found) + " of " + std::to_string(ids.size()) + " agents of a rank",
+           "the state of every agent once", kOtherwise);
 }
 
 }  // namespace garrison::mpi

@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "garrison/core/error.hpp"
+#include "garrison/core/types.hpp"
 #include "mpi/hash.hpp"
 
 namespace garrison::mpi {
@@ -113,6 +114,10 @@ void NetcdfVariable::describe() {
     if (id == unlimited) refuse(where(), "an unlimited dimension", "fixed ones");
   }
   if (bytes_of(type_) == 0) refuse(where(), "text", "numbers");
+  double given = 0.0;
+  for (const char* name : {"_FillValue", "missing_value"})
+    if (ncmpi_get_att_double(file_, id_, name, &given) == NC_NOERR) missing_.push_back(given);
+  if (type_ == NC_DOUBLE || type_ == NC_FLOAT) missing_.push_back(NC_FILL_DOUBLE);  // never written
   for (const char* packed : {"scale_factor", "add_offset"}) {
     MPI_Offset length = 0;
     if (ncmpi_inq_attlen(file_, id_, packed, &length) == NC_NOERR)
@@ -156,6 +161,8 @@ void NetcdfVariable::read(std::int64_t first, std::int64_t count, std::vector<in
 }
 void NetcdfVariable::read(std::int64_t first, std::int64_t count, std::vector<double>& out) const {
   read_rows(first, count, out, ncmpi_get_vara_double_all);
+  for (double& value : out)
+    if (std::find(missing_.begin(), missing_.end(), value) != missing_.end()) value = kNaN;
 }
 
 std::uint64_t checksum_of_file(const std::string& path) {

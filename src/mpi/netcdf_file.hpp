@@ -29,6 +29,7 @@ class NetcdfVariable {
 
   /// Rows first..first+count-1 into `out`, which has room for them. @throws InvalidInput
   void read(std::int64_t first, std::int64_t count, std::vector<int>& out) const;
+  /// Values that say "missing" (_FillValue, missing_value) are NaN.
   void read(std::int64_t first, std::int64_t count, std::vector<double>& out) const;
 
  private:
@@ -45,6 +46,7 @@ class NetcdfVariable {
   int id_ = -1;
   int type_ = 0;
   std::vector<std::int64_t> sizes_;
+  std::vector<double> missing_;
 };
 
 /// Of the bytes of a file; the same on all ranks. @throws IoError

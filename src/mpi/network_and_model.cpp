@@ -69,6 +69,9 @@ std::unique_ptr<partition::Ground> read_ground(const Section& s, Inputs& inputs,
     return count;
   };
   if (!s.has("kind")) {
+    if (!s.has("edges"))
+      refuse(s.where("kind"), "neither kind nor edges",
+             "kind = grid, random_geometric, band, path or ring, or agents and edges");
     s.only({"agents", "edges"});
     if (s.has_section("edges")) {
       const NetcdfInput input = inputs.of(s, "edges");

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mpi/results.hpp"
 
+#include <fcntl.h>
 #include <pnetcdf.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -12,6 +17,7 @@
 #include "garrison/version.hpp"
 #include "mpi/here.hpp"
 #include "mpi/together.hpp"
+#include "node/daemon/files.hpp"
 
 namespace garrison::mpi {
 namespace {
@@ -20,6 +26,20 @@ std::string hex(std::uint64_t value) {
   std::array<char, 17> out{};
   std::snprintf(out.data(), out.size(), "%016llx", static_cast<unsigned long long>(value));
   return out.data();
+}
+
+/// Takes the bytes from..to of a file from the disk; the error's number where there is no room, 0 when done.
+int take_room(const std::string& path, std::uintmax_t from, std::uintmax_t to) {
+  const node::Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!file) return errno;
+  if (::fallocate(file.get(), 0, static_cast<off_t>(from), static_cast<off_t>(to - from)) == 0) return 0;
+  if (errno != EOPNOTSUPP && errno != ENOSYS) return errno;
+  struct statvfs disk{};  // of a file system that promises nothing: what is free now
+  if (::fstatvfs(file.get(), &disk) == 0 && disk.f_bavail < (to - from) / disk.f_frsize) return ENOSPC;
+  std::error_code failed;
+  if (std::filesystem::file_size(path, failed) < to && !failed)
+    std::filesystem::resize_file(path, to, failed);
+  return failed.value();
 }
 
 }  // namespace
@@ -76,6 +96,7 @@ void Results::create(const Scenario& s) {
   note("network", s.ground->description());
   note("scenario_checksum", hex(s.fingerprint));
   check(ncmpi_enddef(file_), "describe it");
+  if (this_rank() == 0) make_room(0, length_of(0));
   settle();
 }
 
@@ -112,6 +133,8 @@ void Results::write(std::int64_t t, std::span<const double> truth, const Summary
                     const PublicOrder& order, std::span<const double> estimates) {
   const MPI_Offset record = t / every_ - 1;
   const bool first = this_rank() == 0;
+  if (first) make_room(length_of(record), length_of(record + 1));
+  settle();
   // Collective: ranks that have nothing of a variable write no numbers of it.
   const MPI_Offset one = first ? 1 : 0;
   const int time = static_cast<int>(t);
@@ -131,20 +154,19 @@ void Results::write(std::int64_t t, std::span<const double> truth, const Summary
   if (estimates_)
     check(ncmpi_iput_vara_double(file_, estimate_, from.data(), count.data(), estimates.data(), nullptr),
           "write into it");
-  if (first) make_room(record);
   check(ncmpi_wait_all(file_, NC_REQ_ALL, nullptr, nullptr), "write into it");
   settle();
 }
 
 /// Rank 0 counts the record in the header, and others may be killed before their part of it is written: the
-/// file is as long as the header says even then, with zeros in place of what is missing, and can be read.
-void Results::make_room(MPI_Offset record) {
-  const std::uintmax_t needed = length_of(record + 1);
-  std::error_code failed;
-  if (std::filesystem::file_size(path_, failed) < needed && !failed)
-    std::filesystem::resize_file(path_, needed, failed);
-  if (failed && failure_.empty())
-    failure_ = path_ + ": got " + failed.message() + ", expected to make room in it; free the disk";
+/// file is as long as the header says even then, with zeros in place of what is missing, and can be read. And
+/// MPI libraries do not tell of a disk that became full while they wrote (OpenMPI 4.1): nobody writes before
+/// the room is there.
+void Results::make_room(std::uintmax_t from, std::uintmax_t to) {
+  const int failed = take_room(path_, from, to);
+  if (failed != 0 && failure_.empty())
+    failure_ = path_ + ": got " + std::strerror(failed) + ", expected room for " + std::to_string(to - from) +
+               " bytes more; free the disk";
 }
 
 std::uintmax_t Results::length_of(MPI_Offset records) {

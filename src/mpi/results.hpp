@@ -34,7 +34,7 @@ class Results {
  private:
   void create(const Scenario& scenario);
   void open(const Scenario& scenario);
-  void make_room(MPI_Offset record);
+  void make_room(std::uintmax_t from, std::uintmax_t to);
   /// Bytes of the file with so many records.
   std::uintmax_t length_of(MPI_Offset records);
   /// Keeps the first failure of this rank for `agree`.

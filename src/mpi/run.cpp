@@ -35,6 +35,8 @@ class Share {
     const Bytes bytes = shared_bytes(kOwnBytes);
     together([&] {
       scenario_ = read_scenario(command.scenario, bytes);
+      const std::vector<int> first{0};
+      partition::require_simulable(scenario_.sensors.model(first), first, scenario_.plant, scenario_.run);
       if (exchange_.rank() == 0) require_outputs(command, scenario_);
     });
     cut();
@@ -102,7 +104,8 @@ class Share {
     flag_ = command_.results + ".ended";
     together([&] {
       if (exchange_.rank() != 0) return;
-      std::filesystem::remove(flag_);  // of a machine that went down
+      std::error_code none;
+      std::filesystem::remove(flag_, none);  // of a machine that went down
       if (!command_.resume) checkpoint_->clear();
       if (command_.checkpoint > 0) checkpoint_->make();
     });

@@ -17,15 +17,25 @@ namespace {
 /// Agent-samples of estimates above which summaries are kept unless estimates are asked for.
 constexpr double kManyEstimates = 1e7;
 
-void read_filter(const Section& s, Scenario& out) {
-  out.family = s.text("name");
-  partition::require_family(out.family);
-  for (const FamilyInfo& info : families())
-    if (info.name == out.family) out.params = params_of(s, info.params, {"name", "label"});
-  make_filter(out.family, out.params);  // checks the values
+/// What the library refuses without knowing the file is told with its place there.
+template <class Make>
+auto placed(const Section& s, const char* key, const Make& make) {
+  try {
+    return make();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(s.where(key) + ": " + error.what());
+  }
 }
 
-void read_attack(const Section& s, RunOptions& run) {
+void read_filter(const Section& s, Scenario& out) {
+  out.family = s.text("name");
+  placed(s, "name", [&] { partition::require_family(out.family); });
+  for (const FamilyInfo& info : families())
+    if (info.name == out.family) out.params = params_of(s, info.params, {"name", "label"});
+  placed(s, "name", [&] { return make_filter(out.family, out.params); });  // checks the values
+}
+
+void read_attack(const Section& s, Scenario& out) {
   const std::string kind = s.text("kind");
   for (const AttackInfo& info : attack_infos()) {
     if (info.name != kind) continue;
@@ -33,13 +43,16 @@ void read_attack(const Section& s, RunOptions& run) {
     std::vector<int> agents;
     for (const double id : s.numbers("agents")) agents.push_back(agent_of(s, "agents", id));
     if (agents.empty()) refuse(s.where("agents"), "nobody", "the agents that are attacked");
-    AnyAttack attack = make_attack(
-        kind,
-        Schedule(s.whole("start", 0, kMost, 1), agents, s.whole("stop", 1, INT64_MAX, Schedule::kForever),
-                 s.number("probability", 0.0, 1.0, 1.0)),
-        params);
-    if (attack.measurement) run.attacks.push_back(attack.measurement);
-    if (attack.message) run.message_attacks.push_back(attack.message);
+    const std::int64_t start = s.whole("start", 0, kMost, 1);
+    const std::int64_t stop = s.whole("stop", 1, INT64_MAX, Schedule::kForever);
+    const double probability = s.number("probability", 0.0, 1.0, 1.0);
+    AnyAttack attack = placed(s, "kind", [&] {
+      const Schedule schedule(start, agents, stop, probability);
+      schedule.require_agents_below(out.agents());
+      return make_attack(kind, schedule, params);
+    });
+    if (attack.measurement) out.run.attacks.push_back(attack.measurement);
+    if (attack.message) out.run.message_attacks.push_back(attack.message);
     return;
   }
   refuse(s.where("kind"), "\"" + kind + "\"", "an attack of `garrison list attacks`");
@@ -95,9 +108,7 @@ Scenario read_scenario(const std::string& path, const Bytes& bytes) {
   read_filter(file.section("filter"), out);
   read_run(file.section("run"), out);
   if (file.has("attack"))
-    for (const Section& one : file.sections("attack")) read_attack(one, out.run);
-  for (const Attack& attack : out.run.attacks) attack->schedule().require_agents_below(out.agents());
-  for (const auto& attack : out.run.message_attacks) attack->schedule().require_agents_below(out.agents());
+    for (const Section& one : file.sections("attack")) read_attack(one, out);
   read_link(file.section("link"), out.run.link);
   file.section("noise").only({"law"});
   out.plant.noise = file.section("noise").text("law", "auto");

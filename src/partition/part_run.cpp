@@ -32,6 +32,12 @@ struct Nobody final : Victims {  // closed-loop attacks never come here
 
 }  // namespace
 
+void require_simulable(const Model& some, std::vector<int> ids, const PlantOptions& plant,
+                       const RunOptions& options) {
+  require_open_loop(options);
+  static_cast<void>(detail::NoiseLaw(plant.noise, some, nullptr, std::move(ids)));
+}
+
 struct PartRun::Parts {
   Parts(const Model& given, std::vector<int> public_ids, int agents, const PlantOptions& plant,
         const RunOptions& options)

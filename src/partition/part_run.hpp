@@ -13,6 +13,11 @@
 
 namespace garrison::partition {
 
+/// Refuses at once what `PartRun` would refuse after the design: attacks and noise that cannot be simulated.
+/// `some`: the model of the agents `ids`, any ones. @throws InvalidInput
+void require_simulable(const Model& some, std::vector<int> ids, const PlantOptions& plant,
+                       const RunOptions& options);
+
 /// The truth is worked out on every rank: it is as small as the plant.
 /// Threads: one at a time.
 class PartRun {

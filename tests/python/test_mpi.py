@@ -219,6 +219,7 @@ def test_networks_and_sensors_read_by_rank_run_as_those_of_one_process(filter: s
         ({"C": np.ones((40, 3))}, "40 x 3 numbers, expected 40 x 2, a row per agent"),
         ({"C": np.ones((39, 2))}, "39 x 2 numbers, expected 40 x 2"),
         ({"C": np.array([[1.0, 0.0]] * 39 + [[0.0, np.inf]])}, "agent 39: got inf, expected a finite number"),
+        ({"C": np.array([[1.0, 0.0]] * 39 + [[0.0, 2.0**123 * 0.9375]])}, "agent 39: got nan"),  # never written
         ({"measurement_bound": np.full(40, -1.0)}, "expected a finite number >= 0"),
         ({"measurement_bound": np.ones((40, 1))}, "40 x 1 numbers, expected 40, one per agent"),
         ({"edges": np.array([[0, 1, 2]], np.int32)}, "1 x 3 numbers, expected edges x 2"),
@@ -251,6 +252,53 @@ def test_a_file_that_does_not_fit_is_told_once_and_ends_every_rank_with_2(
     told = [line for line in done.stderr.splitlines() if line.startswith("garrison-mpi:")]
     assert len(told) == 1
     assert message in told[0]
+
+
+def test_values_that_say_missing_are_refused(tmp_path: Path) -> None:
+    _inputs(tmp_path / "in.nc", C=np.array([[1.0, 0.0]] * 39 + [[0.0, -999.0]]))
+    with netcdf_file(str(tmp_path / "in.nc"), "a") as inputs:
+        inputs.variables["C"]._FillValue = -999.0
+    done = _mpi(2, "run", _read_scenario(tmp_path, "saturation"))
+    assert done.returncode == 2
+    assert 'variable "C", agent 39: got nan, expected a finite number' in done.stderr
+
+
+def test_a_full_disk_ends_the_run_and_what_was_written_is_whole(tmp_path: Path) -> None:
+    namespace = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = f"mount -t tmpfs -o size=256k tmpfs '{disk}'"
+    if subprocess.run([*namespace, mount], capture_output=True).returncode != 0:
+        pytest.skip("no disks of our own here")
+    path = _scenario(tmp_path, "scalar_gain", "", steps=2000)  # 300 bytes per sample
+    whole, part = tmp_path / "whole.nc", tmp_path / "part.nc"
+    assert _mpi(2, "run", path, "-o", whole).returncode == 0
+    run = f"'{_MPIRUN}' -n 2 '{_PROGRAM}' run '{path}' -o '{disk}/out.nc'"
+    script = f"{mount} && {run}; code=$?; cp '{disk}/out.nc' '{part}'; exit $code"
+    done = subprocess.run([*namespace, script], env=_ENVIRONMENT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2
+    assert done.stderr.count("got No space left on device, expected room for") == 1
+    assert "pwritev" not in done.stderr  # nobody wrote where no room was
+    with netcdf_file(str(part), mmap=False) as got, netcdf_file(str(whole), mmap=False) as expected:
+        samples = got.variables["time"][:].size
+        assert 100 < samples < 1000
+        for name in ("time", "truth", "error_q95", "estimate"):
+            assert np.array_equal(got.variables[name][:], expected.variables[name][:samples])
+
+
+def test_a_part_of_a_checkpoint_that_was_changed_is_refused(tmp_path: Path) -> None:
+    path = _scenario(tmp_path, "scalar_gain", "")
+    words = ("run", path, "-o", tmp_path / "out.nc", "--checkpoint", "4")
+    assert _mpi(2, *words).returncode == 0
+    part = tmp_path / "out.nc.checkpoint" / "sample-8.1-of-2"
+    content = bytearray(part.read_bytes())
+    content[20] ^= 4
+    part.write_bytes(content)
+    done = _mpi(3, *words, "--resume")
+    assert done.returncode == 2
+    told = [line for line in done.stderr.splitlines() if line.startswith("garrison-mpi:")]
+    assert "sample-8.1-of-2: got a file that was cut or changed" in told[0]
+    assert "start without --resume" in told[0]
 
 
 def test_a_run_is_not_gone_on_with_after_its_inputs_changed(tmp_path: Path) -> None:
@@ -318,6 +366,16 @@ def test_states_with_sets_of_agents_go_on_on_another_number_of_ranks(tmp_path: P
             "does not depend on the filter",
         ),
         (("steps = 9", "steps = 0"), [], "a whole number in 1.."),
+        (("steps = 9", "steps = 1e1"), [], "got 10, written as a decimal, expected a whole number in 1.."),
+        (('kind = "grid"\n', ""), [], "[network].kind: got neither kind nor edges"),
+        (("[run]", '[noise]\nlaw = "norma"\n[run]'), [], 'did you mean "normal"?'),
+        (("value = 3.0", ""), [], "[attack].kind: bias.value: got no value"),
+        (
+            ('kind = "bias"\nagents = [2, 7]\nstart = 2\nvalue = 3.0', 'kind = "outdated"\nagents = [2]\nage = 2'),
+            ["-o", "{folder}/new.nc", "--checkpoint", "3"],
+            "cannot be gone on with",
+        ),
+        (("", ""), ["-o", "/dev/null", "--force"], "no plain file, expected a file"),
         (("[run]", "[output]\nevery = 10\n[run]"), [], "got 10, expected at most 9, [run].steps"),
         (('"grid"', '"complete"'), [], 'got "complete", expected one of grid'),
         (
@@ -368,6 +426,7 @@ def test_bad_input_is_told_once_and_ends_every_rank_with_2(
     told = [line for line in done.stderr.splitlines() if line.startswith("garrison-mpi:")]
     assert len(told) == 1
     assert message.format(folder=tmp_path) in told[0]
+    assert done.stdout == ""  # before anything was done, which takes minutes for huge networks
 
 
 def test_help_is_there_behind_a_command_too() -> None:

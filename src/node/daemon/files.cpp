@@ -41,18 +41,31 @@ std::string read_text(const std::string& path, const std::string& expected) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+namespace {
+
+void fill_file(const Descriptor& file, const std::string& path, Bytes content) {
+  for (std::size_t done = 0; done < content.size();) {
+    const ssize_t wrote = ::write(file.get(), content.data() + done, content.size() - done);
+    if (wrote < 0) refuse_file(path, "room on the disk");
+    done += static_cast<std::size_t>(wrote);
+  }
+  if (::fsync(file.get()) != 0) refuse_file(path, "a disk that takes it");
+}
+
+}  // namespace
+
 void replace_file(const std::string& path, Bytes content, int mode) {
   const std::string beside_it = path + ".new";
   {
     const Descriptor file(
         ::open(beside_it.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, static_cast<mode_t>(mode)));
     if (!file) refuse_file(beside_it, "a file that can be written");
-    for (std::size_t done = 0; done < content.size();) {
-      const ssize_t wrote = ::write(file.get(), content.data() + done, content.size() - done);
-      if (wrote < 0) refuse_file(beside_it, "room on the disk");
-      done += static_cast<std::size_t>(wrote);
+    try {
+      fill_file(file, beside_it, content);
+    } catch (const IoError&) {
+      ::unlink(beside_it.c_str());  // half of a file helps nobody, and takes room
+      throw;
     }
-    if (::fsync(file.get()) != 0) refuse_file(beside_it, "a disk that takes it");
   }
   if (::rename(beside_it.c_str(), path.c_str()) != 0) refuse_file(path, "a file that can be replaced");
   const Descriptor folder(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

@@ -151,7 +151,9 @@ std::int64_t Section::whole(const std::string& key, std::int64_t least, std::int
   const std::string expected = "a whole number in " + std::to_string(least) + ".." + std::to_string(most);
   const TomlValue& found = need(key, expected);
   const auto* whole = std::get_if<std::int64_t>(&found.value);
-  if (whole == nullptr || *whole < least || *whole > most) refuse(where(key), shown(found), expected);
+  const auto* decimal = std::get_if<double>(&found.value);
+  const char* how = decimal != nullptr && *decimal == std::floor(*decimal) ? ", written as a decimal" : "";
+  if (whole == nullptr || *whole < least || *whole > most) refuse(where(key), shown(found) + how, expected);
   return *whole;
 }
 
