@@ -192,7 +192,7 @@ class Structural(garrison._core.Filter):
     """
     Single-time-scale estimator with exact residual tests.
 
-    Source: Doostmohammadian et al., IEEE TNSE 2022
+    Source: Doostmohammadian et al., IEEE TNSE 2021
 
     design: how the gains are found; auto: riccati, else kalman, else h2
     share: whose measurements an agent uses besides its own

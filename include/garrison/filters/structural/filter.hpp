@@ -52,7 +52,7 @@ namespace garrison {
 struct GARRISON_EXPORT Structural {
   static constexpr std::string_view name = "structural";
   static constexpr std::string_view title = "Single-time-scale estimator with exact residual tests";
-  static constexpr std::string_view source = "Doostmohammadian et al., IEEE TNSE 2022";
+  static constexpr std::string_view source = "Doostmohammadian et al., IEEE TNSE 2021";
 
   struct Params {
     std::string design = "auto";
