@@ -291,12 +291,7 @@ def _made_of(
     found: dict[str, NDArray[Any]],
 ) -> Run:
     """The run of what it was made of, its lists, and its arrays by the names of a saved run."""
-    changed = {
-        key.removeprefix(run_file.VARYING): value for key, value in found.items() if key.startswith(run_file.VARYING)
-    }
     arrays = {key: found[key] for key in run_file.ARRAYS if key in found}
-    run = Run(lists | {"made": made} | arrays, model, network, filter, changed)
-    run.signals = {
-        key.removeprefix(run_file.SIGNAL): value for key, value in found.items() if key.startswith(run_file.SIGNAL)
-    }
+    run = Run(lists | {"made": made} | arrays, model, network, filter, run_file.marked(found, run_file.VARYING))
+    run.signals = run_file.marked(found, run_file.SIGNAL)
     return run

@@ -162,10 +162,11 @@ def _sources(model: _core.Model) -> list[int]:
 
 def shared_sources(model: _core.Model) -> list[str]:
     """Names of the sources that stand behind outputs of several agents."""
-    behind: dict[str, set[int]] = {}
-    if len(set(model.sources)) == len(model.sources):
+    sources = model.sources
+    if len(set(sources)) == len(sources):
         return []
-    names = iter(model.sources)
+    behind: dict[str, set[int]] = {}
+    names = iter(sources)
     for agent, C in enumerate(model.C):
         for _, name in zip(C, names, strict=False):
             behind.setdefault(name, set()).add(agent)

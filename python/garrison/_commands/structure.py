@@ -1,13 +1,10 @@
 """`garrison structure`: which sensors are necessary, and what could replace them."""
 
 import argparse
-from pathlib import Path
 
-from garrison._commands.output import new_file
+from garrison._commands.output import new_file, write_picture
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, whole_number
-from garrison.anatomy import Anatomy, read_anatomy, states_text, table_rows
-from garrison.paths import whole_file
-from garrison.words import refusal
+from garrison.anatomy import read_anatomy, states_text, table_rows
 
 
 def add(commands: Commands) -> None:
@@ -36,7 +33,9 @@ def do(args: argparse.Namespace) -> int:
     anatomy = read_anatomy(args.source, args.measured)
     report = anatomy.report()
     if args.output:
-        _write_picture(new_file(args.output, args.force), anatomy)
+        from garrison.figures import anatomy_figure
+
+        write_picture(new_file(args.output, args.force), anatomy_figure(anatomy))
     if args.json:
         print_json(report)
     else:
@@ -65,15 +64,3 @@ def do(args: argparse.Namespace) -> int:
         if args.output:
             console.print(f"\nwritten to {args.output}")
     return OK if report.get("observable", True) else NO
-
-
-def _write_picture(target: Path, anatomy: Anatomy) -> None:
-    from garrison.figures import anatomy_figure
-
-    figure = anatomy_figure(anatomy)
-    kinds = figure.canvas.get_supported_filetypes()
-    kind = target.suffix.lower().removeprefix(".")
-    if kind not in kinds:
-        raise refusal(f"--output {target}", f"the ending {target.suffix!r}", "one of .png, .svg, .pdf")
-    with whole_file(target) as temporary:
-        figure.savefig(temporary, dpi=120, format=kind)

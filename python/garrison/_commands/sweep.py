@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from garrison._commands.output import write_picture
 from garrison._commands.terminal import (
     INTERRUPTED,
     NO,
@@ -17,7 +18,6 @@ from garrison._commands.terminal import (
     print_table,
     whole_number,
 )
-from garrison.paths import whole_file
 from garrison.scenario import read_document
 from garrison.sweeps import Sweep, parsed, points_of, sweep
 from garrison.sweeps.grid import read_points
@@ -128,9 +128,7 @@ def _dry(args: argparse.Namespace, points: list[dict[str, Any]]) -> int:
 def _pictures(found: Sweep) -> list[str]:
     if len(found.keys) not in (1, 2) or all(row["status"] != "ok" for row in found.trials):
         return []
-    figure = found.plot()
-    with whole_file(found.folder / "sweep.png") as temporary:
-        figure.savefig(temporary, dpi=120, format="png")
+    write_picture(found.folder / "sweep.png", found.plot())
     return ["sweep.png"]
 
 

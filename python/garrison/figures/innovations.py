@@ -1,17 +1,12 @@
 """What a filter tests, agent by agent."""
 
-import datetime as dt
-from typing import Any
-
-import matplotlib.dates
 import numpy as np
 from matplotlib.figure import Figure
 
-from garrison.figures.style import dot_alone, log_scale, plain, time_label, times
+from garrison.figures.style import date_ticks, dot_alone, log_scale, plain, time_label, times
 from garrison.record import Run
 from garrison.scenario import Scenario
 
-_DATES: Any = matplotlib.dates  # matplotlib has no types for it
 _MOST_AGENTS = 24
 
 
@@ -54,10 +49,7 @@ def innovation_figure(scenario: Scenario, run: Run, before: int = 30, after: int
         ax.set_title(f"{plain(scenario.names[k])}{note}", fontsize=9, loc="left", fontweight=weight)
         log_scale(ax, run.statistic[0, at, k])
         ax.tick_params(labelsize=7)
-        if scenario.dates and isinstance(scenario.dates[0], dt.date):
-            locator = _DATES.AutoDateLocator(maxticks=5)
-            ax.xaxis.set_major_locator(locator)
-            ax.xaxis.set_major_formatter(_DATES.ConciseDateFormatter(locator))
+        date_ticks(ax, scenario, most=5)
     figure.supylabel("test statistic", fontsize=9)
     figure.supxlabel(f"{time_label(scenario) or 'date'} (solid: statistic; dashed: threshold; X: accused)", fontsize=9)
     return figure

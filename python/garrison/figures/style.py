@@ -3,12 +3,14 @@
 import datetime as dt
 from typing import Any
 
+import matplotlib.dates
 import numpy as np
 from numpy.typing import NDArray
 
 from garrison.scenario import Scenario
 from garrison.verdict import Verdict
 
+_DATES: Any = matplotlib.dates  # matplotlib has no types for it
 #: per verdict: marker, colour, word
 LOOKS = {
     Verdict.CLEARED: ("o", "#0072B2", "cleared"),
@@ -114,6 +116,15 @@ def time_label(scenario: Scenario) -> str:
     if not scenario.dates:
         return "sample"
     return "" if isinstance(scenario.dates[0], dt.date) else "time (s)"
+
+
+def date_ticks(ax: Any, scenario: Scenario, most: int | None = None) -> None:
+    """Short dates below a time axis of moments, at most so many; other axes stay as they are."""
+    if not scenario.dates or not isinstance(scenario.dates[0], dt.date):
+        return
+    locator = _DATES.AutoDateLocator(maxticks=most)
+    ax.xaxis.set_major_locator(locator)
+    ax.xaxis.set_major_formatter(_DATES.ConciseDateFormatter(locator))
 
 
 def trial_words(trial: int, trials: int) -> str:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from garrison.figures.style import LOOKS, axes, plain, time_label, times
+from garrison.figures.style import LOOKS, axes, date_ticks, plain, time_label, times
 from garrison.record import Run
 from garrison.scenario import Scenario
 from garrison.verdict import Verdict
@@ -42,10 +42,7 @@ def verdict_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
     ax.set_ylim(len(agents) - 0.4, -0.6)
     ax.set_xlim(at[0], at[-1])
     ax.set_xlabel(time_label(scenario))
-    if scenario.dates and isinstance(scenario.dates[0], dt.date):
-        locator = _DATES.AutoDateLocator()
-        ax.xaxis.set_major_locator(locator)
-        ax.xaxis.set_major_formatter(_DATES.ConciseDateFormatter(locator))
+    date_ticks(ax, scenario)
     handles = [Patch(color=LOOKS[v][1], label=LOOKS[v][2]) for v in found]
     ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, fontsize=8)
     return figure

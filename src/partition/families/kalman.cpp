@@ -32,8 +32,6 @@ std::unique_ptr<PartRunner> runner(const ParamMap& given, const Whole* whole, co
   return cast_engine<Rdkf>(std::move(gains), own, region, exchange);
 }
 
-int one_round(const ParamMap&) { return 1; }
-
 std::string why_whole(int agents) {
   return agents <= kDesignedWhole ? "covariances of all agents depend on each other" : "";
 }

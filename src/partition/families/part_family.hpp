@@ -36,6 +36,9 @@ typename F::Params params_of(const ParamMap& given) {
   return parse_params<typename F::Params>(std::string(F::name), given);
 }
 
+/// `rounds` of a family that exchanges messages once a sample.
+inline int one_round(const ParamMap&) { return 1; }
+
 /// The agents of a rank with gains by the names of `names`.
 template <class F>
 std::unique_ptr<PartRunner> part_engine(typename F::Gains gains, const Model& own, const Region& region,

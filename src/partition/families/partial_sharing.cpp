@@ -63,7 +63,6 @@ std::string why_whole(const ParamMap& given, int) {
 
 }  // namespace
 
-const PartFamily partial_sharing_parts{PartialSharing::name, false, [](const ParamMap&) { return 1; },
-                                       why_whole, runner};
+const PartFamily partial_sharing_parts{PartialSharing::name, false, one_round, why_whole, runner};
 
 }  // namespace garrison::partition
