@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
@@ -44,7 +45,8 @@ constexpr const char* kUsage =
     "  --slepc       SLEPc in place of Lanczos, where it is built in\n"
     "  --version\n"
     "\n"
-    "Exit codes: 0 done, 2 a file or the command line was refused (the message comes from rank 0 alone).\n";
+    "Exit codes: 0 done, 1 a spectrum that did not settle, 2 a file or the command line was refused (the "
+    "message comes from rank 0 alone).\n";
 
 struct Words {
   std::string command;
@@ -128,7 +130,7 @@ int obey(int count, char** words, int rank) {
   try {
     const Words given = read_words(count, words);
     if (given.command == "run") run(given.run);
-    if (given.command == "spectrum") print_spectrum(given.spectrum);
+    if (given.command == "spectrum" && !print_spectrum(given.spectrum)) return 1;
     if (rank == 0 && given.command == "partition") make_partition(given);
     if (rank == 0 && given.command == "whole") run_whole(given.run.scenario, static_cast<int>(given.threads));
     return 0;
@@ -142,16 +144,25 @@ int obey(int count, char** words, int rank) {
   }
 }
 
+/// `code`, unless what was printed, which may be all that was asked for, did not reach its place: a full
+/// disk.
+int printed(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::fprintf(stderr, "garrison-mpi: standard output: got %s, expected a place to write to\n",
+               std::strerror(errno));
+  return 2;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
   const std::string_view first = count > 1 ? words[1] : "";
   const bool help = std::any_of(words + std::min(count, 1), words + count,
                                 [](const std::string_view word) { return word == "--help" || word == "-h"; });
-  if (first == "--version") return std::printf("garrison-mpi " GARRISON_VERSION "\n"), 0;
-  if (help) return std::fputs(kUsage, stdout), 0;
+  if (first == "--version") return std::printf("garrison-mpi " GARRISON_VERSION "\n"), printed(0);
+  if (help) return std::fputs(kUsage, stdout), printed(0);
   MPI_Init(&count, &words);
-  const int code = obey(count, words, this_rank());
+  const int code = printed(obey(count, words, this_rank()));
   MPI_Finalize();
   return code;
 }

@@ -36,7 +36,9 @@ class Share {
     together([&] {
       scenario_ = read_scenario(command.scenario, bytes);
       const std::vector<int> first{0};
-      partition::require_simulable(scenario_.sensors.model(first), first, scenario_.plant, scenario_.run);
+      const Model one = scenario_.sensors.model(first);
+      partition::require_simulable(one, first, scenario_.plant, scenario_.run);
+      partition::require_params(scenario_.family, scenario_.params, one);
       if (exchange_.rank() == 0) require_outputs(command, scenario_);
     });
     cut();

@@ -29,7 +29,7 @@ auto placed(const Section& s, const char* key, const Make& make) {
 
 void read_filter(const Section& s, Scenario& out) {
   out.family = s.text("name");
-  placed(s, "name", [&] { partition::require_family(out.family); });
+  partition::require_family(out.family, s.where("name"));
   for (const FamilyInfo& info : families())
     if (info.name == out.family) out.params = params_of(s, info.params, {"name", "label"});
   placed(s, "name", [&] { return make_filter(out.family, out.params); });  // checks the values

@@ -19,7 +19,7 @@ constexpr double kOwnBytes = 100.0;
 
 }  // namespace
 
-void print_spectrum(const SpectrumCommand& command) {
+bool print_spectrum(const SpectrumCommand& command) {
   MpiExchange exchange;
   Scenario scenario;
   const Bytes bytes = shared_bytes(kOwnBytes);
@@ -37,7 +37,7 @@ void print_spectrum(const SpectrumCommand& command) {
       command.slepc ? slepc_spectrum(cut.region, exchange, most)
                     : partition::laplacian_spectrum(cut.region, exchange, most,
                                                     [&](const auto& now) { progress.at(now.products); });
-  if (exchange.rank() != 0) return;
+  if (exchange.rank() != 0) return s.settled;
   std::printf("lambda_2   %.10g  an eigenvalue is within %.1e\n", s.lambda2, s.residual2);
   std::printf("lambda_max %.10g  an eigenvalue is within %.1e; none is above %.10g\n", s.lambda_max,
               s.residual_max, s.bound);
@@ -51,6 +51,7 @@ void print_spectrum(const SpectrumCommand& command) {
         "not settled after %d products: lambda_2 is smaller still. Raise --products%s. Certainly "
         "stable: step = %.10g\n",
         s.products, has_slepc() ? " or take --slepc" : "", 1.0 / s.bound);
+  return s.settled;
 }
 
 }  // namespace garrison::mpi

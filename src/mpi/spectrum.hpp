@@ -13,7 +13,8 @@ struct SpectrumCommand {
   bool slepc = false;            ///< SLEPc in place of Lanczos
 };
 
-/// Rank 0 prints. All ranks call it. @throws Error on all ranks with the same message
-void print_spectrum(const SpectrumCommand& command);
+/// Rank 0 prints. All ranks call it. False where the search ended before it settled.
+/// @throws Error on all ranks with the same message
+bool print_spectrum(const SpectrumCommand& command);
 
 }  // namespace garrison::mpi

@@ -12,8 +12,13 @@
 
 namespace garrison::partition {
 
-/// Refuses a family that does not run on many ranks, with those that do. @throws InvalidInput
-void require_family(const std::string& family);
+/// Refuses a family that does not run on many ranks, with those that do; `which` names its place.
+/// @throws InvalidInput
+void require_family(const std::string& family, const std::string& which = "filter.name");
+
+/// Refuses parameters that the design refuses whatever the network: `one` is the model of any agent.
+/// @throws InvalidInput as `require_family`, and as the family's design does
+void require_params(const std::string& family, const ParamMap& params, const Model& one);
 
 /// Agents up to which a family whose agents' gains depend on each other is designed as a whole: its design
 /// then has more ways to a solution.

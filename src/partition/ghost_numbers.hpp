@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One number of each agent, where those of ghosts come from their ranks.
+// Numbers of each agent, where those of ghosts come from their ranks.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -13,22 +14,36 @@ namespace garrison::partition {
 template <class Number>
 class GhostNumbers {
  public:
-  GhostNumbers(const Region& region, Exchange& exchange)
-      : region_(region), exchange_(exchange), out_(region.packed.size()), in_(region.arrival.size()) {
+  /// `width` numbers of each agent.
+  GhostNumbers(const Region& region, Exchange& exchange, std::size_t width = 1)
+      : region_(region),
+        exchange_(exchange),
+        width_(width),
+        out_(width * region.packed.size()),
+        in_(width * region.arrival.size()) {
     exchange_.connect(region_.routes);
   }
-  /// `here`: a number at each place; those of own agents that others hear are sent, those of ghosts written.
-  void fetch(std::span<Number> here) {
-    for (std::size_t k = 0; k < out_.size(); ++k) out_[k] = here[static_cast<std::size_t>(region_.packed[k])];
+  /// `at(place)`: the first number of each place; those of own agents that others hear are sent, those of
+  /// ghosts written.
+  template <class At>
+  void fetch_by(const At& at) {
+    for (std::size_t k = 0; k < region_.packed.size(); ++k)
+      std::copy_n(at(region_.packed[k]), width_, out_.data() + k * width_);
     exchange_.begin(reinterpret_cast<const std::byte*>(out_.data()), reinterpret_cast<std::byte*>(in_.data()),
-                    sizeof(Number));
+                    width_ * sizeof(Number));
     exchange_.finish();
-    for (std::size_t k = 0; k < in_.size(); ++k) here[static_cast<std::size_t>(region_.arrival[k])] = in_[k];
+    for (std::size_t k = 0; k < region_.arrival.size(); ++k)
+      std::copy_n(in_.data() + k * width_, width_, at(region_.arrival[k]));
+  }
+  /// `here`: a number at each place.
+  void fetch(std::span<Number> here) {
+    fetch_by([&](int place) { return here.data() + place; });
   }
 
  private:
   const Region& region_;
   Exchange& exchange_;
+  std::size_t width_;
   std::vector<Number> out_;
   std::vector<Number> in_;
 };

@@ -358,7 +358,12 @@ def test_states_with_sets_of_agents_go_on_on_another_number_of_ranks(tmp_path: P
     ("change", "words", "message"),
     [
         (("rows = 4\ncolumns = 4", "rows = 1\ncolumns = 2"), [], "16 rows, expected 2, one per agent"),
-        (('"saturation"', '"platoon"'), [], "expected a filter that runs on many ranks: saturation, scalar_gain"),
+        (
+            ('"saturation"', '"platoon"'),
+            [],
+            '[filter].name: got "platoon", expected a filter that runs on many ranks: saturation, scalar_gain',
+        ),
+        (("threshold = 0.3", ""), [], "saturation.threshold: got no value"),
         (("step = 0.1", "stepp = 0.1"), [], 'did you mean "step"?'),
         (
             ('kind = "bias"\nagents = [2, 7]\nstart = 2\nvalue', 'kind = "stealthy"\nagents = [2]\nfraction'),
@@ -427,6 +432,16 @@ def test_bad_input_is_told_once_and_ends_every_rank_with_2(
     assert len(told) == 1
     assert message.format(folder=tmp_path) in told[0]
     assert done.stdout == ""  # before anything was done, which takes minutes for huge networks
+
+
+@pytest.mark.parametrize("words", [("whole", "{path}"), ("run", "{path}", "--hash"), ("--help",)])
+def test_what_cannot_be_printed_is_no_success(words: tuple[str, ...], tmp_path: Path) -> None:
+    path = _scenario(tmp_path, "saturation", "")
+    with Path("/dev/full").open("w") as full:
+        command = [str(_PROGRAM), *(word.format(path=path) for word in words)]
+        done = subprocess.run(command, env=_ENVIRONMENT, stdout=full, stderr=subprocess.PIPE, text=True, timeout=120)
+    assert done.returncode == 2
+    assert "standard output: got No space left on device" in done.stderr
 
 
 def test_help_is_there_behind_a_command_too() -> None:

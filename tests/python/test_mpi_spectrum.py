@@ -54,9 +54,10 @@ def test_the_spectrum_is_that_of_the_network_with_the_same_digits_on_any_ranks(t
 
 
 def test_too_few_products_are_told(tmp_path):
-    out = _mpi(2, "spectrum", _network(tmp_path, 500, 0.1), "--products", "10").stdout
-    assert "not settled after 10 products" in out
-    assert "Certainly stable" in out
+    done = _mpi(2, "spectrum", _network(tmp_path, 500, 0.1), "--products", "10")
+    assert done.returncode == 1
+    assert "not settled after 10 products" in done.stdout
+    assert "Certainly stable" in done.stdout
 
 
 def test_what_has_no_spectrum_of_use_is_refused(tmp_path):

@@ -11,18 +11,22 @@ namespace {
 constexpr const PartFamily* kFamilies[] = {&saturation_parts, &scalar_gain_parts,     &rdkf_parts,
                                            &dkf_parts,        &partial_sharing_parts, &structural_parts};
 
-const PartFamily& family_of(const std::string& name) {
+const PartFamily& family_of(const std::string& name, const std::string& which = "filter.name") {
   std::string known;
   for (const PartFamily* one : kFamilies) {
     if (one->name == name) return *one;
     known += (known.empty() ? "" : ", ") + std::string(one->name);
   }
-  refuse("filter.name", "\"" + name + "\"", "a filter that runs on many ranks: " + known);
+  refuse(which, "\"" + name + "\"", "a filter that runs on many ranks: " + known);
 }
 
 }  // namespace
 
-void require_family(const std::string& family) { family_of(family); }
+void require_family(const std::string& family, const std::string& which) { family_of(family, which); }
+
+void require_params(const std::string& family, const ParamMap& params, const Model& one) {
+  family_of(family).require(params, one);
+}
 
 std::string needs_whole(const std::string& family, const ParamMap& params, int agents) {
   return family_of(family).needs_whole(params, agents);

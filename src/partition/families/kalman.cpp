@@ -38,7 +38,10 @@ std::string why_whole(int agents) {
 
 }  // namespace
 
-const PartFamily rdkf_parts{Rdkf::name, true, one_round,
+const PartFamily rdkf_parts{Rdkf::name,
+                            true,
+                            nothing_more,
+                            one_round,
                             [](const ParamMap& given, int agents) {
                               const auto p = params_of<Rdkf>(given);
                               return p.penalty == "group" ? "penalty \"group\" needs the neighbours' sensors"
@@ -46,7 +49,8 @@ const PartFamily rdkf_parts{Rdkf::name, true, one_round,
                             },
                             runner<Rdkf>};
 
-const PartFamily dkf_parts{Dkf::name, true, one_round,
-                           [](const ParamMap&, int agents) { return why_whole(agents); }, runner<Dkf>};
+const PartFamily dkf_parts{
+    Dkf::name,  true, nothing_more, one_round, [](const ParamMap&, int agents) { return why_whole(agents); },
+    runner<Dkf>};
 
 }  // namespace garrison::partition

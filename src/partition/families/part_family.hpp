@@ -18,6 +18,8 @@ struct PartFamily {
   std::string_view name;
   /// Its design refuses a network that is not connected.
   bool connected;
+  /// Refuses what the design refuses of parameters whatever the network, before it is cut.
+  void (*require)(const ParamMap& params, const Model& one);
   int (*rounds)(const ParamMap& params);
   std::string (*needs_whole)(const ParamMap& params, int agents);
   std::unique_ptr<PartRunner> (*runner)(const ParamMap& params, const Whole* whole, const Model& own,
@@ -35,6 +37,9 @@ template <class F>
 typename F::Params params_of(const ParamMap& given) {
   return parse_params<typename F::Params>(std::string(F::name), given);
 }
+
+/// `require` of a family that refuses no more than what `make_filter` does.
+inline void nothing_more(const ParamMap&, const Model&) {}
 
 /// `rounds` of a family that exchanges messages once a sample.
 inline int one_round(const ParamMap&) { return 1; }

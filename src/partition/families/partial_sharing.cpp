@@ -63,6 +63,7 @@ std::string why_whole(const ParamMap& given, int) {
 
 }  // namespace
 
-const PartFamily partial_sharing_parts{PartialSharing::name, false, one_round, why_whole, runner};
+const PartFamily partial_sharing_parts{
+    PartialSharing::name, false, nothing_more, one_round, why_whole, runner};
 
 }  // namespace garrison::partition

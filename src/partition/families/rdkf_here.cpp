@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "partition/families/rdkf_here.hpp"
 
-#include <algorithm>
+#include "partition/ghost_numbers.hpp"
 
 namespace garrison::partition {
 namespace {
@@ -10,23 +10,13 @@ namespace {
 class Ghosts final : public rdkf::Borders {
  public:
   Ghosts(const Region& region, Exchange& exchange, int states)
-      : region_(region),
-        exchange_(exchange),
-        numbers_(static_cast<std::size_t>(states * states)),
+      : exchange_(exchange),
         names_(region.names()),
-        out_(numbers_ * region.packed.size()),
-        in_(numbers_ * static_cast<std::size_t>(region.ghosts())) {
-    exchange.connect(region.routes);
-  }
+        numbers_(region, exchange, static_cast<std::size_t>(states * states)) {}
   void refresh(std::vector<Matrix>& P) override {
-    for (std::size_t k = 0; k < region_.packed.size(); ++k)
-      std::copy_n(at(P, region_.packed[k]).data(), numbers_, out_.data() + k * numbers_);
-    exchange_.begin(reinterpret_cast<const std::byte*>(out_.data()), reinterpret_cast<std::byte*>(in_.data()),
-                    numbers_ * sizeof(double));
-    exchange_.finish();
-    for (int k = 0; k < region_.ghosts(); ++k)
-      std::copy_n(in_.data() + static_cast<std::size_t>(k) * numbers_, numbers_,
-                  at(P, region_.arrival[static_cast<std::size_t>(k)]).data());
+    numbers_.fetch_by([&](int place) {
+      return P[static_cast<std::size_t>(names_[static_cast<std::size_t>(place)])].data();
+    });
   }
   double largest(double value) override {
     exchange_.largest(std::span(&value, 1));
@@ -34,15 +24,9 @@ class Ghosts final : public rdkf::Borders {
   }
 
  private:
-  Matrix& at(std::vector<Matrix>& P, int place) const {
-    return P[static_cast<std::size_t>(names_[static_cast<std::size_t>(place)])];
-  }
-  const Region& region_;
   Exchange& exchange_;
-  std::size_t numbers_;
   std::vector<int> names_;
-  std::vector<double> out_;
-  std::vector<double> in_;
+  GhostNumbers<double> numbers_;
 };
 
 /// Own agents and ghosts by name; ghosts have no rows.

@@ -45,21 +45,33 @@ std::string why_whole(const Saturation::Params& p) {
   return std::isnan(p.initial_error) ? "" : "bounds follow from all sensors: leave initial_error out";
 }
 
+std::string why_whole(const ScalarGain::Params& p) { return why_whole(ScalarGain::unsaturated(p)); }
+
+/// With bounds or a detector more is asked, but of the whole network, which is designed first then.
+template <class F>
+void require(const ParamMap& given, const Model& one) {
+  const auto params = params_of<F>(given);
+  if (why_whole(params).empty()) alike<F>(params, one);
+}
+
 template <class F>
 int rounds(const ParamMap& given) {
   return params_of<F>(given).rounds;
 }
 
+template <class F>
+constexpr PartFamily parts() {
+  return {F::name,
+          true,
+          require<F>,
+          rounds<F>,
+          [](const ParamMap& given, int) { return why_whole(params_of<F>(given)); },
+          runner<F>};
+}
+
 }  // namespace
 
-const PartFamily saturation_parts{
-    Saturation::name, true, rounds<Saturation>,
-    [](const ParamMap& given, int) { return why_whole(params_of<Saturation>(given)); }, runner<Saturation>};
-
-const PartFamily scalar_gain_parts{ScalarGain::name, true, rounds<ScalarGain>,
-                                   [](const ParamMap& given, int) {
-                                     return why_whole(ScalarGain::unsaturated(params_of<ScalarGain>(given)));
-                                   },
-                                   runner<ScalarGain>};
+const PartFamily saturation_parts = parts<Saturation>();
+const PartFamily scalar_gain_parts = parts<ScalarGain>();
 
 }  // namespace garrison::partition

@@ -62,7 +62,11 @@ std::unique_ptr<PartRunner> runner(const ParamMap& given, const Whole* whole, co
 }  // namespace
 
 const PartFamily structural_parts{
-    Structural::name, false, one_round,
-    [](const ParamMap&, int) -> std::string { return "gains follow from the whole network"; }, runner};
+    Structural::name,
+    false,
+    nothing_more,
+    one_round,
+    [](const ParamMap&, int) -> std::string { return "gains follow from the whole network"; },
+    runner};
 
 }  // namespace garrison::partition
