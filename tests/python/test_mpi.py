@@ -434,6 +434,16 @@ def test_bad_input_is_told_once_and_ends_every_rank_with_2(
     assert done.stdout == ""  # before anything was done, which takes minutes for huge networks
 
 
+@pytest.mark.parametrize("family", ["rdkf", "partial_sharing"])
+def test_what_a_design_asks_of_the_model_is_refused_before_the_partition(family: str, tmp_path: Path) -> None:
+    path = _scenario(tmp_path, family, "")
+    path.write_text(path.read_text().replace("process_covariance = 0.0004", ""))
+    done = _mpi(2, "run", path)
+    assert done.returncode == 2
+    assert done.stderr.count("garrison-mpi: process_covariance") == 1
+    assert done.stdout == ""
+
+
 @pytest.mark.parametrize("words", [("whole", "{path}"), ("run", "{path}", "--hash"), ("--help",)])
 def test_what_cannot_be_printed_is_no_success(words: tuple[str, ...], tmp_path: Path) -> None:
     path = _scenario(tmp_path, "saturation", "")

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The distributed Kalman filter and its resilient form: gains of neighbours depend on each other.
+#include <type_traits>
+
 #include "garrison/filters/rdkf/filter.hpp"
+#include "garrison/filters/rdkf/setting.hpp"
 #include "partition/families/part_family.hpp"
 #include "partition/families/rdkf_here.hpp"
 
@@ -36,11 +39,18 @@ std::string why_whole(int agents) {
   return agents <= kDesignedWhole ? "covariances of all agents depend on each other" : "";
 }
 
+/// Covariances of one agent.
+template <class F>
+void require(const ParamMap& given, const Model& one) {
+  if constexpr (std::is_same_v<F, Rdkf>) Rdkf::require_fitting(params_of<Rdkf>(given));
+  rdkf::part_setting(one, Network(1, {}));
+}
+
 }  // namespace
 
 const PartFamily rdkf_parts{Rdkf::name,
                             true,
-                            nothing_more,
+                            require<Rdkf>,
                             one_round,
                             [](const ParamMap& given, int agents) {
                               const auto p = params_of<Rdkf>(given);
@@ -50,7 +60,7 @@ const PartFamily rdkf_parts{Rdkf::name,
                             runner<Rdkf>};
 
 const PartFamily dkf_parts{
-    Dkf::name,  true, nothing_more, one_round, [](const ParamMap&, int agents) { return why_whole(agents); },
+    Dkf::name,  true, require<Dkf>, one_round, [](const ParamMap&, int agents) { return why_whole(agents); },
     runner<Dkf>};
 
 }  // namespace garrison::partition

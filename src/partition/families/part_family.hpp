@@ -38,8 +38,8 @@ typename F::Params params_of(const ParamMap& given) {
   return parse_params<typename F::Params>(std::string(F::name), given);
 }
 
-/// `require` of a family that refuses no more than what `make_filter` does.
-inline void nothing_more(const ParamMap&, const Model&) {}
+/// `require` of a family whose design looks at the whole network first.
+inline void nothing_before(const ParamMap&, const Model&) {}
 
 /// `rounds` of a family that exchanges messages once a sample.
 inline int one_round(const ParamMap&) { return 1; }

@@ -61,9 +61,13 @@ std::string why_whole(const ParamMap& given, int) {
   return p.selection.empty() && p.shared_each.empty() ? "" : "selections are given agent by agent";
 }
 
+void require(const ParamMap& given, const Model& one) {
+  if (why_whole(given, 1).empty())
+    PartialSharing::design(params_of<PartialSharing>(given), one, Network(1, {}));
+}
+
 }  // namespace
 
-const PartFamily partial_sharing_parts{
-    PartialSharing::name, false, nothing_more, one_round, why_whole, runner};
+const PartFamily partial_sharing_parts{PartialSharing::name, false, require, one_round, why_whole, runner};
 
 }  // namespace garrison::partition

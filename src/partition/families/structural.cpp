@@ -64,7 +64,7 @@ std::unique_ptr<PartRunner> runner(const ParamMap& given, const Whole* whole, co
 const PartFamily structural_parts{
     Structural::name,
     false,
-    nothing_more,
+    nothing_before,
     one_round,
     [](const ParamMap&, int) -> std::string { return "gains follow from the whole network"; },
     runner};
