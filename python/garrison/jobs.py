@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from garrison import _core, doubts
 from garrison.bound_kind import counts
-from garrison.drivers import KEEP, replay, require_room, simulate
+from garrison.drivers import KEEP, designed, replay, require_room, simulate
 from garrison.families import accuses, family_of
 from garrison.kalman import central_kalman, local_kalman
 from garrison.record import Run
@@ -20,6 +20,7 @@ from garrison.words import count, refusal
 
 Array = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
+Working = Callable[[str, float], None]
 
 
 @dataclass
@@ -86,12 +87,19 @@ class Row:
         return {"limited": {self.scenario.names[a]: float(v) for a, v in enumerate(share) if v > 0}}
 
 
-def run_scenario(scenario: Scenario, progress: Progress | None = None, conditions: bool = True) -> list[Row]:
+def run_scenario(
+    scenario: Scenario,
+    progress: Progress | None = None,
+    conditions: bool = True,
+    working: Working | None = None,
+) -> list[Row]:
     """Run every filter of the scenario under its attacks, and once more without them when there are any.
 
-    progress(label, done, total) is called at most once per percent of a run. conditions: as in `simulate`.
+    progress(label, done, total) is called at most once per percent of a run, working(label, seconds) about once a
+    second while a filter is designed. conditions: as in `simulate`.
     """
     rows: list[Row] = []
+    designs: dict[str, _core.Design] = {}  # made once, for both
     if conditions:
         require_conditions(scenario)
     for attacked in [True, False] if scenario.attacks else [False]:
@@ -101,10 +109,22 @@ def run_scenario(scenario: Scenario, progress: Progress | None = None, condition
                 rows.append(_kalman_row(scenario, label, attacked, log))
                 continue
             name = f"{label}{', attacked' if attacked else ''}"
-            run = _run(scenario, filter, attacked, _labelled(progress, name), conditions)
+            if label not in designs:
+                designs[label] = _designed(scenario, label, filter, working)
+            run = _run(scenario, filter, attacked, designs[label], _labelled(progress, name), conditions)
             log = log or run
             rows.append(Row(scenario, label, attacked, run, run.error, _distance(run.estimate, scenario.robust)))
     return rows
+
+
+def _designed(scenario: Scenario, label: str, filter: _core.Filter, working: Working | None) -> _core.Design:
+    """The filter for the scenario, with what it is to certify."""
+
+    def tell(what: str, seconds: float) -> None:
+        if working is not None:
+            working(f"{label}: {what}", seconds)
+
+    return designed(scenario.model, scenario.network, filter, **certificate_of(scenario, filter), progress=tell)
 
 
 def require_conditions(scenario: Scenario) -> None:
@@ -122,7 +142,8 @@ def rehearse(scenario: Scenario) -> None:
         if filter is not None:
             keep = _options(scenario, filter, True)["keep"]
             require_room(scenario.model, filter, keep, scenario.run.get("trials", 1), scenario.steps)
-            _run(scenario, filter, True, None, conditions=False, rehearsal=True)
+            design = _designed(scenario, label, filter, None)
+            _run(scenario, filter, True, design, None, conditions=False, rehearsal=True)
         else:
             y = scenario.measurements
             y = np.zeros((1, scenario.model.outputs)) if y is None else y[:1]
@@ -161,7 +182,6 @@ def certificate_of(scenario: Scenario, filter: _core.Filter) -> dict[str, Any]:
 def _options(scenario: Scenario, filter: _core.Filter, attacked: bool) -> dict[str, Any]:
     """Arguments that simulate and replay share."""
     options: dict[str, Any] = {k: scenario.run[k] for k in ("trials", "seed", "threads", "start") if k in scenario.run}
-    options |= certificate_of(scenario, filter)
     sets = filter.detail_names  # sets over time, for the pictures
     options["keep"] = (*KEEP, "signals", "details") if sets else KEEP
     return options | {"attack": scenario.attacks if attacked else [], "link": scenario.link}
@@ -171,11 +191,13 @@ def _run(
     scenario: Scenario,
     filter: _core.Filter,
     attacked: bool,
+    design: _core.Design,
     progress: Callable[[int, int], None] | None,
     conditions: bool,
     rehearsal: bool = False,
 ) -> Run:
-    options = _options(scenario, filter, attacked) | {"progress": progress, "conditions": conditions}
+    options = _options(scenario, filter, attacked)
+    options |= {"design": design, "progress": progress, "conditions": conditions}
     if rehearsal:
         options["trials"] = 1
     parts = scenario.plant, scenario.ground, filter

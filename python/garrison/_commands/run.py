@@ -109,8 +109,14 @@ def _run_with_progress(scenario: Scenario, console: Console, conditions: bool) -
             if label not in tasks:
                 tasks[label] = bar.add_task(label, total=total)
             bar.update(tasks[label], completed=done)
+            bar.update(designs, visible=False)
 
-        return run_scenario(scenario, progress, conditions)
+        designs = bar.add_task("", total=None, visible=False)
+
+        def working(label: str, seconds: float) -> None:
+            bar.update(designs, description=f"{label}, {seconds:.0f} s", visible=True)
+
+        return run_scenario(scenario, progress, conditions, working)
 
 
 def _estimate_names(rows: list[Row]) -> dict[str, Row]:

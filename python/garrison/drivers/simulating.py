@@ -106,7 +106,8 @@ def simulate(
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
         (garrison.Filter, garrison.attacks.custom) always run in one.
     progress : callable, optional
-        progress(done, total) is called at most once per percent.
+        progress(done, total) is called at most once per percent of the samples. The design before them tells of its own
+        progress in `prepare`, whose result runs, too.
     conditions : bool
         Evaluate the filter's conditions first, and put the required ones that are not met into the run's
         `warnings`.
