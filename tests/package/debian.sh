@@ -17,7 +17,9 @@ for deb in $(debs | sort); do
 done
 
 if [[ ${1:-} == --all ]]; then
-  lintian --version >/dev/null || { echo "debian: missing: apt-get install lintian" >&2 && exit 1; }
+  for tool in lintian autopkgtest; do
+    command -v "$tool" >/dev/null || { echo "debian: missing: apt-get install $tool" >&2 && exit 1; }
+  done
   lintian --pedantic --fail-on error,warning,info,pedantic dist/*.changes
   echo "debian: lintian --pedantic has no complaint"
 fi
@@ -65,7 +67,6 @@ left=$(inside find / -xdev -path /packages -prune -o -path /proc -prune -o -path
 echo "debian: installed, run and removed without a trace in a clean Debian 12 (debootstrap)"
 
 if [[ ${1:-} == --all ]]; then
-  command -v autopkgtest >/dev/null || { echo "debian: missing: apt-get install autopkgtest" >&2 && exit 1; }
   tools/copy.sh "$work/sources"  # without what a build leaves, which tests would take for what is installed
   # shellcheck disable=SC2046
   autopkgtest --apt-upgrade --no-built-binaries $(debs) "$work/sources" -- chroot "$work/root"
