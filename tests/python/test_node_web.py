@@ -60,7 +60,7 @@ def status(name: str, **other: Any) -> dict[str, Any]:
         "measured": True,
         "took_ms": 3.5,
         "accused": [1],
-        "proved": [],
+        "proved": [2, 7],
         "counters": dict.fromkeys(COUNTERS, 7),
         "sensor": {"taken": 5, "malformed": 1, "outside": 0, "restarts": 0},
         "snapshot_age_s": 0.5,
@@ -78,6 +78,7 @@ def test_metrics_are_in_the_format_of_prometheus() -> None:
         assert re.fullmatch(rf"# (HELP {name} .+|TYPE {name} (gauge|counter))", line) or sample.fullmatch(line), line
     assert text.count("# TYPE") == len(set(re.findall(r"# TYPE (\S+)", text)))
     assert 'garrison_up{node="gone"} 0' in text
+    assert 'garrison_proved{node="a"} 2' in text
     assert 'garrison_bound{node="a"} 0.25' in text
     assert 'garrison_bound{node="c"}' not in text  # no bound is no number
     assert 'garrison_frames_total{node="a",peer="b \\"x\\"\\\\",fate="replay"} 3' in text
@@ -101,7 +102,8 @@ def watcher(monkeypatch: pytest.MonkeyPatch) -> Iterator[Watcher]:
     """Of a node that answers and one that does not."""
     answers: dict[str, dict[str, Any] | None] = {"a.sock": status("a"), "b.sock": None}
     monkeypatch.setattr(Watcher, "_ask", staticmethod(lambda client: answers[client.path.name]))
-    scene = Scene("wind", {"a": (0.0, 1.0)}, ["a"], [[0.0, 0.0], [1.0, 0.0]])  # type: ignore[arg-type]
+    truth = [[0.0, 0.0], [1.0, 0.0]]
+    scene = Scene("wind", {"a": (0.0, 1.0)}, ["a"], truth, ["a", "b", "gauge"])  # type: ignore[arg-type]
     found = Watcher([Path("a.sock"), Path("b.sock")], scene, pause=0.01)
     found.start()
     yield found
@@ -117,6 +119,7 @@ def test_events_say_what_is_known_and_metrics_answer_beside_them(watcher: Watche
             assert streams[0].readline() == b"\n"
         a, b = event["nodes"]
         assert a["error"] == 2.0
+        assert a["proved"] == ["gauge", "source 7"]
         assert b["answers"] is False
         assert event["hijacked"] == ["a"]
         with pytest.raises(urllib.error.HTTPError) as refused:

@@ -81,7 +81,10 @@ def _page(plan: Plan, nodes: list[NodeFolder], port: int | None, say: Callable[[
         {} if scenario.positions is None else dict(zip(scenario.names, scenario.positions.tolist(), strict=True))
     )
     truth = None if run.truth is None else run.truth[0, 1:]
-    scene = Scene(scenario.title, positions, [scenario.names[a] for a in scenario.hit], truth)
+    sources = dict.fromkeys(scenario.model.sources) or [
+        name for name, C in zip(scenario.names, scenario.model.C, strict=True) if len(C)
+    ]
+    scene = Scene(scenario.title, positions, [scenario.names[a] for a in scenario.hit], truth, list(sources))
     watcher = Watcher([node.socket for node in nodes], scene)
     with Server("127.0.0.1", port, watcher) as server:
         say(f"http://127.0.0.1:{server.server_port}/")

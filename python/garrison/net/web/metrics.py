@@ -50,7 +50,8 @@ def exposition(statuses: Mapping[str, dict[str, Any] | None]) -> str:
         _family(lines, metric, "counter", what, _counters(known, key))
     for key, (metric, what) in _GAUGES.items():
         _family(lines, metric, "gauge", what, _gauges(known, key))
-    _family(lines, "accused", "gauge", "sensors that the node takes for attacked", _accused(known))
+    _family(lines, "accused", "gauge", "sensors that the node takes for attacked", _sizes(known, "accused"))
+    _family(lines, "proved", "gauge", "sources that a certificate with memory proves false", _sizes(known, "proved"))
     _family(lines, "sensor_lines_total", "counter", "lines of the sensor, by what became of them", _sensor(known))
     _family(lines, "link_state", "gauge", "0 down, 1 absent, 2 up", _link_states(known))
     for key, (metric, what) in _LINK_GAUGES.items():
@@ -90,9 +91,9 @@ def _gauges(known: Statuses, key: str) -> Samples:
             yield {"node": name}, status[key]
 
 
-def _accused(known: Statuses) -> Samples:
+def _sizes(known: Statuses, key: str) -> Samples:
     for name, status in known.items():
-        yield {"node": name}, len(status["accused"])
+        yield {"node": name}, len(status[key])
 
 
 def _sensor(known: Statuses) -> Samples:

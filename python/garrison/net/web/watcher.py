@@ -57,6 +57,7 @@ class Watcher:
             keys = ("t", "state", "estimate", "bound", "bound_kind", "verdict", "statistic", "threshold", "complete")
             node = {key: status[key] for key in keys} | {"name": name, "answers": True}
             node |= {"accused": status["accused"], "id": status["id"], "error": self._scene.error(status)}
+            node["proved"] = [self._scene.source(k) for k in status["proved"]]
             node |= {"why": _WHY.get(status["bound_kind"], ""), "counters": status["counters"]}
             node["links"] = [
                 {key: link[key] for key in ("name", "state", "age_s", "delay_us")} for link in status["links"]
