@@ -16,13 +16,11 @@ run: ## the main job: Irish wind with hijacked stations, report in out/wind
 dev: ## build quickly for a developer, few dimensions; then PYTHONPATH=python .venv/bin/pytest
 	@tools/dev.sh
 
-test: test-fast sanitizers ## all tests: C++, Python, and C++ again under the sanitizers
-	@ctest --preset asan
+test: setup ## all tests: C++, Python, and C++ again under the sanitizers
+	@tools/test.sh
 
-sanitizers: ## build the C++ tests with address and undefined-behaviour sanitizers, one at a time
-	@mkdir -p build
-	@tools/stage.sh "configure asan" flock build/asan.lock cmake --preset asan
-	@tools/stage.sh "build asan" flock build/asan.lock cmake --build --preset asan
+sanitizers: setup ## C++ tests with address and undefined-behaviour sanitizers
+	@tools/sanitizers.sh
 
 test-fast: setup ## C++ and Python tests without the sanitizers
 	@tools/stage.sh "configure release" cmake --preset release

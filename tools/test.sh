@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# tools/test.sh: all tests; those under the sanitizers beside the others, and told of after them.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+trap 'tools/behind.sh stop sanitizers' EXIT
+[[ -n ${SANITIZERS_BEGUN:-} ]] || tools/behind.sh begin sanitizers tools/sanitizers.sh
+make test-fast
+tools/behind.sh end sanitizers
