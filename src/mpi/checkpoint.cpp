@@ -87,7 +87,7 @@ void Checkpoint::write(std::int64_t t, const std::vector<int>& ids,
 
 Checkpoint::Latest Checkpoint::latest() const {
   const std::string path = folder_ + "/latest";
-  std::istringstream words(node::read_text(path, "a checkpoint: run with --checkpoint first"));
+  std::istringstream words(node::read_text(path, "a checkpoint: run with --checkpoint and --force first"));
   std::string program, version, a, b, c;
   Latest out{};
   std::uint64_t scenario = 0;
@@ -95,8 +95,9 @@ Checkpoint::Latest Checkpoint::latest() const {
   if (!words || program != "garrison-mpi" || version != "1" || out.sample < 1 || out.ranks < 1)
     refuse(path, "something else", "the line that garrison-mpi writes beside its checkpoints", kOtherwise);
   if (scenario != scenario_)
-    refuse(path, "a checkpoint of another scenario", "one of the scenario as it is now",
-           "put the file back as it was, or start without --resume");
+    refuse(path, "a checkpoint of another scenario",
+           "one of the scenario, and of the files that it names, as they are now",
+           "put back what was changed, or start with --force, not --resume");
   return out;
 }
 

@@ -36,9 +36,13 @@ void say_cut(const partition::Region& region, MpiExchange& exchange, const std::
   exchange.sum(counts);
   exchange.largest(most);
   if (exchange.rank() != 0) return;
-  std::printf("%d agents, %.1f neighbours each; %d ranks (%s): at most %.0f agents on one, ghosts %.3f %%\n",
-              region.agents, static_cast<double>(counts[1]) / region.agents, exchange.ranks(), made.c_str(),
-              most[0], 100.0 * static_cast<double>(counts[0]) / region.agents);
+  std::printf("%d agents, %.1f neighbours each; ", region.agents,
+              static_cast<double>(counts[1]) / region.agents);
+  if (exchange.ranks() == 1)
+    std::printf("one rank\n");
+  else
+    std::printf("%d ranks (%s): at most %.0f agents on one, ghosts %.3f %%\n", exchange.ranks(), made.c_str(),
+                most[0], 100.0 * static_cast<double>(counts[0]) / region.agents);
   std::fflush(stdout);
 }
 

@@ -10,6 +10,7 @@
 #include "mpi/hash.hpp"
 #include "mpi/netcdf_file.hpp"
 #include "mpi/netcdf_inputs.hpp"
+#include "mpi/values.hpp"
 #include "node/daemon/toml_file.hpp"
 
 namespace garrison::mpi {
@@ -23,8 +24,11 @@ class Inputs {
   NetcdfInput of(const node::Section& s, const char* key) {
     const node::Section named = s.section(key);
     named.only({"file", "variable"});
-    NetcdfInput input{(folder_ / named.text("file")).string(), named.text("variable", key)};
-    if (!checksums_.contains(input.path)) checksums_[input.path] = checksum_of_file(input.path);
+    const std::string name = named.text("file");
+    if (name.empty()) refuse(named.where("file"), "\"\"", "the path of a netCDF file");
+    NetcdfInput input{(folder_ / name).string(), named.text("variable", key)};
+    if (!checksums_.contains(input.path))
+      checksums_[input.path] = placed(named, "file", [&] { return checksum_of_file(input.path); });
     return input;
   }
   std::vector<std::string> paths() const {

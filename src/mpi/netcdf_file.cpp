@@ -28,10 +28,13 @@ std::string shape(std::span<const std::int64_t> sizes) {
 }
 
 std::ifstream opened(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
   std::error_code failed;
-  if (file && !std::filesystem::is_directory(path, failed)) return file;
-  throw IoError(path + ": got " + (file ? "a folder" : std::strerror(errno)) + ", expected " + kForm);
+  if (std::filesystem::is_directory(path, failed)) throw IoError(path + ": got a folder, expected " + kForm);
+  if (std::filesystem::exists(path, failed) && !std::filesystem::is_regular_file(path, failed))
+    throw IoError(path + ": got no plain file, expected " + kForm);  // a pipe would wait for ever
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw IoError(path + ": got " + std::strerror(errno) + ", expected " + kForm);
+  return file;
 }
 
 /// Whole numbers and floating ones have names of their own; a text has none.
@@ -111,12 +114,17 @@ void NetcdfVariable::describe() {
     MPI_Offset size = 0;
     check(ncmpi_inq_dimlen(file_, id, &size));
     sizes_.push_back(size);
+    if (size == 0) refuse(where(), "no numbers", "at least one row");
     if (id == unlimited) refuse(where(), "an unlimited dimension", "fixed ones");
   }
   if (bytes_of(type_) == 0) refuse(where(), "text", "numbers");
-  double given = 0.0;
-  for (const char* name : {"_FillValue", "missing_value"})
-    if (ncmpi_get_att_double(file_, id_, name, &given) == NC_NOERR) missing_.push_back(given);
+  for (const char* name : {"_FillValue", "missing_value"}) {
+    MPI_Offset length = 0;
+    if (ncmpi_inq_attlen(file_, id_, name, &length) != NC_NOERR) continue;
+    std::vector<double> given(static_cast<std::size_t>(length));
+    check(ncmpi_get_att_double(file_, id_, name, given.data()));
+    missing_.insert(missing_.end(), given.begin(), given.end());
+  }
   if (type_ == NC_DOUBLE || type_ == NC_FLOAT) missing_.push_back(NC_FILL_DOUBLE);  // never written
   for (const char* packed : {"scale_factor", "add_offset"}) {
     MPI_Offset length = 0;
@@ -144,7 +152,7 @@ void NetcdfVariable::require(std::span<const std::int64_t> sizes, bool whole,
                  [](std::int64_t asked, std::int64_t got) { return asked < 0 || asked == got; });
   if (!fits) refuse(where(), shape(sizes_) + " numbers", dimensions);
   if (whole && (type_ == NC_FLOAT || type_ == NC_DOUBLE))
-    refuse(where(), "numbers with fractions", "whole ones", "write it as int32");
+    refuse(where(), "floating-point numbers", "whole ones", "write it as int32");
 }
 
 template <class Number, class Get>
@@ -158,6 +166,15 @@ void NetcdfVariable::read_rows(std::int64_t first, std::int64_t count, std::vect
 }
 void NetcdfVariable::read(std::int64_t first, std::int64_t count, std::vector<int>& out) const {
   read_rows(first, count, out, ncmpi_get_vara_int_all);
+  const auto numbers = static_cast<std::ptrdiff_t>(
+      std::accumulate(sizes_.begin() + 1, sizes_.end(), count, std::multiplies<>()));
+  const auto end = out.begin() + numbers;
+  const auto found =
+      std::find_first_of(out.begin(), end, missing_.begin(), missing_.end(),
+                         [](int value, double missing) { return static_cast<double>(value) == missing; });
+  if (found != end)
+    refuse(where() + ", row " + std::to_string(first + (found - out.begin()) * count / numbers),
+           std::to_string(*found) + ", which its _FillValue or missing_value says is missing", "numbers");
 }
 void NetcdfVariable::read(std::int64_t first, std::int64_t count, std::vector<double>& out) const {
   read_rows(first, count, out, ncmpi_get_vara_double_all);

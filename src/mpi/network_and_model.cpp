@@ -97,8 +97,8 @@ std::unique_ptr<partition::Ground> read_ground(const Section& s, Inputs& inputs,
     const int count = agents();
     const double radius = s.number("radius", 0.0, 2.0);
     require_lists(s.where("radius"), text(radius), count, near_share(radius) * count, bytes);
-    return partition::random_geometric(count, radius,
-                                       static_cast<std::uint64_t>(s.whole("seed", 0, INT64_MAX, 0)));
+    const auto seed = static_cast<std::uint64_t>(s.whole("seed", 0, INT64_MAX, 0));
+    return placed(s, "radius", [&] { return partition::random_geometric(count, radius, seed); });
   }
   if (kind == "band") {
     s.only({"kind", "agents", "range"});

@@ -32,13 +32,15 @@ Owners made(const Scenario& scenario, int ranks) {
     if (asked) partition::require_balanced("METIS", out.of, ranks);
     instead = ", because METIS left " + why;
   }
-  if (scenario.method == "blocks") {
-    const auto blocks = partition::band(scenario.agents(), 1);  // blocks of ids whatever the network is
-    return {blocks->owners(ranks), "blocks of ids"};
+  if (scenario.method != "blocks") {
+    Owners out{scenario.ground->owners(ranks), "coordinates" + instead};
+    const std::string why = partition::unbalanced(out.of, ranks);
+    if (why.empty()) return out;
+    if (scenario.method == "coordinates") partition::require_balanced("coordinates", out.of, ranks);
+    instead += ", because coordinates left " + why;
   }
-  Owners out{scenario.ground->owners(ranks), "coordinates" + instead};
-  partition::require_balanced("coordinates", out.of, ranks);
-  return out;
+  const auto blocks = partition::band(scenario.agents(), 1);  // blocks of ids whatever the network is
+  return {blocks->owners(ranks), "blocks of ids" + instead};
 }
 
 }  // namespace

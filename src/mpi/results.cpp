@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -54,9 +55,11 @@ Results::~Results() {
 }
 
 void Results::check(int code, const char* what) {
-  if (code != NC_NOERR && failure_.empty())
-    failure_ = path_ + ": got " + ncmpi_strerror(code) + ", expected to " + what +
-               "; use another -o, or free the disk";
+  if (code == NC_NOERR || !failure_.empty()) return;
+  const bool reads = std::string_view(what).starts_with("find") || std::string_view(what).starts_with("read");
+  failure_ =
+      path_ + ": got " + ncmpi_strerror(code) + ", expected to " + what +
+      (reads ? "; it was changed: start with --force, not --resume" : "; use another -o, or free the disk");
 }
 void Results::settle() { agree(std::exchange(failure_, {})); }
 

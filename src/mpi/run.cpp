@@ -39,7 +39,9 @@ class Share {
       const Model one = scenario_.sensors.model(first);
       partition::require_simulable(one, first, scenario_.plant, scenario_.run);
       partition::require_params(scenario_.family, scenario_.params, one);
-      if (exchange_.rank() == 0) require_outputs(command, scenario_);
+      if (exchange_.rank() != 0) return;
+      require_outputs(command, scenario_);
+      if (command.resume) static_cast<void>(Checkpoint(command.results, scenario_.fingerprint).sample());
     });
     cut();
     build();
@@ -114,7 +116,7 @@ class Share {
     results_ = std::make_unique<Results>(command_.results, scenario_, command_.resume);
     order_ = std::make_unique<PublicOrder>(ids_, scenario_.agents(), scenario_.states());
     if (!command_.resume)
-      say("garrison-mpi: the job was ended; no checkpoint was written yet: start again\n");
+      say("garrison-mpi: the job was ended; no checkpoint was written yet: start again, with --force\n");
   }
 
   void resume() {
@@ -178,8 +180,13 @@ class Share {
       std::printf("estimates overflowed in %" PRId64 " samples, %" PRId64
                   " agents rejoined: the filter diverged\n",
                   runner_->overflows(), sums[5]);
-    if (command_.hash && from > 0) std::printf("of the samples after %" PRId64 " alone: ", from);
-    if (command_.hash) std::printf("hash %016" PRIx64 "\n", static_cast<std::uint64_t>(sums[6]));
+    if (!command_.hash) return;
+    if (samples == 0.0) {
+      std::printf("no hash: every sample was there\n");
+      return;
+    }
+    if (from > 0) std::printf("of the samples after %" PRId64 " alone: ", from);
+    std::printf("hash %016" PRIx64 "\n", static_cast<std::uint64_t>(sums[6]));
   }
 
   const RunCommand& command_;

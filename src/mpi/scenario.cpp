@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mpi/scenario.hpp"
 
+#include <filesystem>
 #include <limits>
 
 #include "garrison/attacks/registry.hpp"
@@ -16,16 +17,6 @@ namespace {
 
 /// Agent-samples of estimates above which summaries are kept unless estimates are asked for.
 constexpr double kManyEstimates = 1e7;
-
-/// What the library refuses without knowing the file is told with its place there.
-template <class Make>
-auto placed(const Section& s, const char* key, const Make& make) {
-  try {
-    return make();
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(s.where(key) + ": " + error.what());
-  }
-}
 
 void read_filter(const Section& s, Scenario& out) {
   out.family = s.text("name");
@@ -55,7 +46,11 @@ void read_attack(const Section& s, Scenario& out) {
     if (attack.message) out.run.message_attacks.push_back(attack.message);
     return;
   }
-  refuse(s.where("kind"), "\"" + kind + "\"", "an attack of `garrison list attacks`");
+  std::vector<std::string> known;
+  for (const AttackInfo& info : attack_infos()) known.emplace_back(info.name);
+  const std::string near = nearest_name(kind, known);
+  refuse(s.where("kind"), "\"" + kind + "\"", "an attack of `garrison list attacks`",
+         near.empty() ? "" : "did you mean \"" + near + "\"?");
 }
 
 void read_run(const Section& s, Scenario& out) {
@@ -73,6 +68,8 @@ void read_link(const Section& s, LinkFaults& link) {
   link.drop = s.number("drop", 0.0, 1.0, 0.0);
   link.delay = s.number("delay", 0.0, 1.0, 0.0);
   link.delay_rounds = whole(s, "delay_rounds", 1, 1);
+  if (s.has("delay_rounds") && !s.has("delay"))
+    refuse(s.where("delay_rounds"), "a delay without its probability", "the key delay beside it");
 }
 
 void read_output(const Section& s, Scenario& out) {
@@ -91,6 +88,9 @@ void read_output(const Section& s, Scenario& out) {
 }  // namespace
 
 Scenario read_scenario(const std::string& path, const Bytes& bytes) {
+  std::error_code none;
+  if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none))
+    refuse(path, "no plain file", "a scenario (TOML)");  // every rank reads it
   const std::string text = node::read_text(path, "a scenario (TOML)");
   const Section file = node::parse_toml(text, path);
   file.only({"title", "model", "network", "filter", "attack", "link", "noise", "run", "partition", "output"});

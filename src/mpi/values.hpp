@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "garrison/core/error.hpp"
 #include "garrison/core/params.hpp"
 #include "garrison/core/types.hpp"
 #include "node/daemon/toml_file.hpp"
@@ -26,6 +27,15 @@ int agent_of(const Section& s, const char* key, double value);
 /// Empty, or a number per state.
 Vector vector(const Section& s, const char* key, int states);
 Matrix matrix(const Section& s, const char* key, std::size_t columns);
+/// What the library refuses without knowing the file is told with its place there.
+template <class Make>
+auto placed(const Section& s, const char* key, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    throw InvalidInput(s.where(key) + ": " + error.what());
+  }
+}
 /// Values of a filter or an attack; every key that is no parameter has to be in `others`.
 ParamMap params_of(const Section& s, std::span<const ParamInfo> infos, std::vector<std::string> others);
 

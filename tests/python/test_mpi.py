@@ -223,13 +223,15 @@ def test_networks_and_sensors_read_by_rank_run_as_those_of_one_process(filter: s
         ({"measurement_bound": np.full(40, -1.0)}, "expected a finite number >= 0"),
         ({"measurement_bound": np.ones((40, 1))}, "40 x 1 numbers, expected 40, one per agent"),
         ({"edges": np.array([[0, 1, 2]], np.int32)}, "1 x 3 numbers, expected edges x 2"),
-        ({"edges": np.array([[0.0, 1.5]])}, "numbers with fractions, expected whole ones"),
+        ({"edges": np.array([[0.0, 1.5]])}, "floating-point numbers, expected whole ones"),
+        ({"edges": np.zeros((0, 2), np.int32)}, "no numbers, expected at least one row"),
         ({"edges": np.array([[0, 1], [1, 40]], np.int32)}, "row 1: got (1, 40), expected two different agents"),
         ({"edges": np.array([[0, 1], [5, 5]], np.int32)}, "row 1: got (5, 5)"),
         ({"edges": np.array([[0, 1], [2, 3]], np.int32)}, "not connected"),
         ({"edges": np.array([[b"a", b"b"]], "c")}, "text, expected numbers"),
         ("variable", 'no variable "K", expected one; it has'),
         ("key", 'did you mean "file"'),
+        ("empty", '[C].file: got "", expected the path of a netCDF file'),
     ],
 )
 def test_a_file_that_does_not_fit_is_told_once_and_ends_every_rank_with_2(
@@ -245,7 +247,7 @@ def test_a_file_that_does_not_fit_is_told_once_and_ends_every_rank_with_2(
     elif isinstance(inputs, int):
         file.write_bytes(file.read_bytes()[:inputs])
     elif isinstance(inputs, str):
-        change = {"variable": 'file = "in.nc", variable = "K"', "key": 'fil = "in.nc"'}[inputs]
+        change = {"variable": 'file = "in.nc", variable = "K"', "key": 'fil = "in.nc"', "empty": 'file = ""'}[inputs]
         path.write_text(path.read_text().replace('file = "in.nc"', change, 1))
     done = _mpi(3, "run", path)
     assert done.returncode == 2, done.stderr
@@ -261,6 +263,24 @@ def test_values_that_say_missing_are_refused(tmp_path: Path) -> None:
     done = _mpi(2, "run", _read_scenario(tmp_path, "saturation"))
     assert done.returncode == 2
     assert 'variable "C", agent 39: got nan, expected a finite number' in done.stderr
+    _inputs(tmp_path / "in.nc", edges=np.array([[k, k + 1] for k in range(39)], np.int32))
+    with netcdf_file(str(tmp_path / "in.nc"), "a") as inputs:
+        inputs.variables["edges"].missing_value = np.array([-1, 7], np.int32)
+    done = _mpi(2, "run", _read_scenario(tmp_path, "saturation"))
+    assert done.returncode == 2
+    assert '"edges", row 6: got 7, which its _FillValue or missing_value says is missing' in done.stderr
+
+
+@pytest.mark.parametrize("name", ["in.nc", "scenario"])
+def test_a_pipe_that_nobody_writes_into_is_not_waited_for(name: str, tmp_path: Path) -> None:
+    _inputs(tmp_path / "in.nc")
+    path = _read_scenario(tmp_path, "saturation")
+    pipe = path if name == "scenario" else tmp_path / name
+    pipe.unlink()
+    os.mkfifo(pipe)
+    done = _mpi(2, "run", path)
+    assert done.returncode == 2
+    assert done.stderr.count("got no plain file, expected") == 1
 
 
 def test_a_full_disk_ends_the_run_and_what_was_written_is_whole(tmp_path: Path) -> None:
@@ -310,6 +330,7 @@ def test_a_run_is_not_gone_on_with_after_its_inputs_changed(tmp_path: Path) -> N
     done = _mpi(2, *words, "--resume")
     assert done.returncode == 2
     assert "another scenario" in done.stderr
+    assert done.stdout == ""  # before the network was cut
 
 
 def test_a_killed_rank_ends_the_job_and_three_ranks_go_on(tmp_path: Path) -> None:
@@ -381,6 +402,8 @@ def test_states_with_sets_of_agents_go_on_on_another_number_of_ranks(tmp_path: P
             "cannot be gone on with",
         ),
         (("", ""), ["-o", "/dev/null", "--force"], "no plain file, expected a file"),
+        (("[run]", "[link]\ndelay_rounds = 2\n[run]"), [], "[link].delay_rounds: got a delay without its probability"),
+        (('kind = "bias"', 'kind = "bais"'), [], 'did you mean "bias"?'),
         (("[run]", "[output]\nevery = 10\n[run]"), [], "got 10, expected at most 9, [run].steps"),
         (('"grid"', '"complete"'), [], 'got "complete", expected one of grid'),
         (
@@ -481,7 +504,7 @@ def test_a_checkpoint_of_an_earlier_run_is_forgotten(tmp_path: Path) -> None:
     assert _mpi(2, "run", path, "-o", out).returncode == 0  # writes none
     done = _mpi(2, "run", path, "-o", out, "--resume")
     assert done.returncode == 2
-    assert "run with --checkpoint first" in done.stderr
+    assert "run with --checkpoint and --force first" in done.stderr
     assert "the job was ended" not in done.stderr
 
 
@@ -577,6 +600,11 @@ def test_a_partition_that_leaves_a_rank_without_agents_is_refused_or_replaced(tm
     done = _mpi(3, "run", path)
     assert done.returncode == 0, done.stderr
     assert "(coordinates, because METIS left no agent on rank" in done.stdout
+    near = 'kind = "random_geometric"\nagents = 3\nradius = 1.9\nseed = 4'
+    path.write_text((text + '"auto"\n').replace('kind = "path"\nagents = 4', near))
+    done = _mpi(3, "run", path)
+    assert done.returncode == 0, done.stderr
+    assert "at most 1 agents on one" in done.stdout
 
 
 def test_a_partition_that_cannot_be_kept_does_not_end_the_run(tmp_path: Path) -> None:
