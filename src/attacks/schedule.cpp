@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace garrison {
 
@@ -24,6 +25,9 @@ Schedule::Schedule(std::vector<Phase> phases, std::int64_t stop, double probabil
   if (!(probability_ >= 0.0 && probability_ <= 1.0))
     refuse("probability", text(probability_), "a number in [0, 1]");
 }
+
+Schedule::Schedule(std::int64_t start, std::vector<int> agents, std::int64_t stop, double probability)
+    : Schedule(std::vector<Phase>{{start, std::move(agents)}}, stop, probability) {}
 
 std::span<const int> Schedule::agents(std::int64_t t) const {
   if (t >= stop_ || t < phases_.front().start) return {};

@@ -144,3 +144,19 @@ def test_a_link_to_a_folder_and_an_unwritable_parent(folder: Path) -> None:
     names = sorted(p.name for p in (folder / "locked" / "out").iterdir())
     assert names == ["estimates.csv", "manifest.json", "overview.png", "report.html", "summary.json"]
     assert (folder / "link").is_symlink()
+
+
+def test_a_run_without_a_folder_prints_and_writes_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    scenario = str(Path(__file__).parents[2] / "examples" / "wind" / "rdkf.toml")
+    assert main(["run", scenario]) == 0
+    said = capsys.readouterr().out
+    assert "Kalman" in said
+    assert "nothing was written; -o FOLDER keeps" in said
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("words", [["--npz"], ["--force"], ["--all-estimates"], ["-o", ""]])
+def test_how_to_write_without_where_is_refused(words, capsys):
+    assert main(["run", "no_such_file.toml", *words]) == 2
+    assert "-o: got " in capsys.readouterr().err

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "garrison/core/error.hpp"
@@ -30,8 +29,7 @@ class GARRISON_EXPORT Schedule {
 
   /// One phase: the same agents from `start` on.
   Schedule(std::int64_t start, std::vector<int> agents, std::int64_t stop = kForever,
-           double probability = 1.0)
-      : Schedule(std::vector<Phase>{{start, std::move(agents)}}, stop, probability) {}
+           double probability = 1.0);
 
   /// Agents that may be attacked at time t, before chance.
   std::span<const int> agents(std::int64_t t) const;

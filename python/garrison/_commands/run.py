@@ -22,6 +22,7 @@ from garrison.jobs import Row, run_scenario, signal_size
 from garrison.report import table_rows
 from garrison.report.table import error_note, warnings_of
 from garrison.scenario import Scenario, read_scenario
+from garrison.words import refusal
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,7 +37,9 @@ def add(commands: Commands) -> None:
         "run", help="simulate or replay a scenario; write summary.json, estimates, report.html", allow_abbrev=False
     )
     command.add_argument("scenario", help="scenario file (TOML)")
-    command.add_argument("-o", "--output", required=True, help="folder to write to; must be new or empty")
+    command.add_argument(
+        "-o", "--output", help="folder to write to; must be new or empty (left out: the results are printed alone)"
+    )
     add_set(command)
     command.add_argument("--force", action="store_true", help="replace the output of an earlier run")
     command.add_argument("--npz", action="store_true", help="write the whole main run (Run.load) instead of a CSV file")
@@ -48,21 +51,22 @@ def add(commands: Commands) -> None:
 
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
+    _require_output(args)
     given = settings(args.set)
     scenario = read_scenario(args.scenario, given)
     console = console_for(stderr=args.json)
     doubt: Exception | None = None
-    with output_folder(Path(args.output), args.force) as folder:
+    where = "nothing was written; -o FOLDER keeps summary, estimates, pictures and a report"
+    if args.output is None:
         rows = _run_with_progress(scenario, console, not args.no_conditions)
-        summary = _summary(scenario, rows) | ({"set": given} if given else {})
-        (folder / "summary.json").write_text(json.dumps(clean(summary), indent=1), encoding="utf-8")
-        for name, row in _estimate_names(rows if args.all_estimates else rows[:1]).items():
-            _write_estimates(folder / name, scenario, row, args.npz)
-        try:
-            _write_pictures(folder, scenario, rows)
-        except Exception as error:  # what is computed is kept whatever happens to its pictures
-            doubt = error
-        written = sorted(p.name for p in folder.iterdir())
+        summary = _summary(scenario, rows, given)
+    else:
+        with output_folder(Path(args.output), args.force) as folder:
+            rows = _run_with_progress(scenario, console, not args.no_conditions)
+            summary = _summary(scenario, rows, given)
+            doubt = _write(folder, scenario, rows, summary, args)
+            written = sorted(p.name for p in folder.iterdir())
+        where = f"written to {args.output}: {', '.join(written)}"
     if args.json:
         print_json(summary)
     else:
@@ -70,7 +74,6 @@ def do(args: argparse.Namespace) -> int:
         print_table(scenario.title, head, cells, console)
         print(f"\n{error_note(scenario)}".rstrip())
     print_warnings(warnings_of(scenario, rows), stderr=args.json)
-    where = f"written to {args.output}: {', '.join(written)}"
     print(where, file=sys.stderr if args.json else sys.stdout)
     if isinstance(doubt, _core.Error):
         print_warnings([f"no report and no picture: {doubt}"], stderr=args.json)
@@ -79,8 +82,32 @@ def do(args: argparse.Namespace) -> int:
     return OK
 
 
-def _summary(scenario: Scenario, rows: list[Row]) -> dict[str, Any]:
-    return {
+def _require_output(args: argparse.Namespace) -> None:
+    """Refuse options that say how to write, without where."""
+    if args.output == "":
+        raise refusal("-o", '""', "the folder to write to")
+    for option in ("force", "npz", "all_estimates"):
+        if args.output is None and getattr(args, option):
+            raise refusal("-o", f"nothing, with --{option.replace('_', '-')}", "the folder to write to")
+
+
+def _write(
+    folder: Path, scenario: Scenario, rows: list[Row], summary: dict[str, Any], args: argparse.Namespace
+) -> Exception | None:
+    """Everything that a run leaves behind; what kept its pictures from being drawn."""
+    (folder / "summary.json").write_text(json.dumps(clean(summary), indent=1), encoding="utf-8")
+    for name, row in _estimate_names(rows if args.all_estimates else rows[:1]).items():
+        _write_estimates(folder / name, scenario, row, args.npz)
+    try:
+        _write_pictures(folder, scenario, rows)
+    except Exception as error:  # what is computed is kept whatever happens to its pictures
+        return error
+    return None
+
+
+def _summary(scenario: Scenario, rows: list[Row], given: dict[str, Any]) -> dict[str, Any]:
+    made = {"set": given} if given else {}
+    return made | {
         "title": scenario.title,
         "version": _core.__version__,
         "scenario": scenario.path.name,

@@ -8,7 +8,9 @@ from garrison.words import refusal
 try:
     import matplotlib as _matplotlib  # noqa: F401
 except ImportError:
-    raise refusal("figures", "no matplotlib", 'it installed: pip install "garrison[plot]"') from None
+    raise refusal(
+        "figures", "no matplotlib", 'it installed: pip install "garrison[plot]", or Debian\'s python3-matplotlib'
+    ) from None
 
 from garrison.figures.analysis import analysis_figure
 from garrison.figures.anatomy import anatomy_figure
