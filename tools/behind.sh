@@ -8,20 +8,19 @@ action=$1 job=build/log/behind-$2
 shift 2
 mkdir -p build/log
 
-# A session of its own is a group of its own to the scheduler, which knows nothing of nice outside: so it is told, too.
-yields() { { echo "$2" >"/proc/$1/autogroup"; } 2>/dev/null || true; }
-
 case $action in
   begin)
     rm -f "$job".*
+    # A session of its own is a group of its own to the scheduler, which knows nothing of nice outside: so it is told. The
+    # session tells it of itself: until it is one, it would be the caller that gives way.
     # shellcheck disable=SC2016  # expanded there
-    setsid bash -c 'job=$1; shift; code=0; "$@" || code=$?; echo "$code" >"$job.code"' - "$job" "$@" >"$job.log" 2>&1 </dev/null &
+    setsid bash -c '{ echo 19 >/proc/self/autogroup; } 2>/dev/null
+      job=$1; shift; code=0; "$@" || code=$?; echo "$code" >"$job.code"' - "$job" "$@" >"$job.log" 2>&1 </dev/null &
     echo $! >"$job.pid"
-    yields $! 19
     ;;
   end)
     pid=$(<"$job.pid")
-    yields "$pid" 0
+    { echo 0 >"/proc/$pid/autogroup"; } 2>/dev/null || true
     tail --pid="$pid" --lines=+1 --follow "$job.log"
     rm "$job.pid"
     exit "$(<"$job.code")"

@@ -40,9 +40,12 @@ def output_folder(path: Path, force: bool) -> Iterator[Path]:
     """
     _ours(path, force)
     target = path.resolve()
-    target.parent.mkdir(parents=True, exist_ok=True)
-    home = target if target.is_dir() else target.parent
-    temporary = Path(tempfile.mkdtemp(prefix=_TEMPORARY, dir=home))
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        home = target if target.is_dir() else target.parent
+        temporary = Path(tempfile.mkdtemp(prefix=_TEMPORARY, dir=home))
+    except OSError as error:  # it names a folder that nobody asked for
+        raise _core.IoError(f"{path}: got {error.strerror}, expected a folder that can be written into") from None
     try:
         yield temporary
         files = sorted(p.name for p in temporary.iterdir())
