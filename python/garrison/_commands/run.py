@@ -34,7 +34,9 @@ _MOST_NUMBERS = 2_000_000
 def add(commands: Commands) -> None:
     """Declare the command."""
     command = commands.add_parser(
-        "run", help="simulate or replay a scenario; write summary.json, estimates, report.html", allow_abbrev=False
+        "run",
+        help="simulate or replay a scenario; with -o write summary.json, estimates, report.html",
+        allow_abbrev=False,
     )
     command.add_argument("scenario", help="scenario file (TOML)")
     command.add_argument(
