@@ -11,10 +11,10 @@ mkdir -p build/log
 case $action in
   begin)
     rm -f "$job".*
-    # A session of its own is a group of its own to the scheduler, which knows nothing of nice outside: so it is told. The
-    # session tells it of itself: until it is one, it would be the caller that gives way.
+    # A session of its own is a group of its own to the scheduler, where that has groups, and nice counts within it alone: so
+    # it is told, too. The session tells it of itself: until it is one, it would be the caller that gives way.
     # shellcheck disable=SC2016  # expanded there
-    setsid bash -c '{ echo 19 >/proc/self/autogroup; } 2>/dev/null
+    setsid nice -n 19 bash -c '{ echo 19 >/proc/self/autogroup; } 2>/dev/null
       job=$1; shift; code=0; "$@" || code=$?; echo "$code" >"$job.code"' - "$job" "$@" >"$job.log" 2>&1 </dev/null &
     echo $! >"$job.pid"
     ;;
