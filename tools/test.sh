@@ -4,5 +4,5 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 trap 'tools/behind.sh stop sanitizers' EXIT
 [[ -n ${SANITIZERS_BEGUN:-} ]] || tools/behind.sh begin sanitizers tools/sanitizers.sh
-make test-fast
+make --no-print-directory test-fast
 tools/behind.sh end sanitizers
