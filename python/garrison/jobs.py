@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from garrison import _core, doubts
 from garrison.bound_kind import counts
-from garrison.drivers import KEEP, designed, replay, require_room, simulate
+from garrison.drivers import KEEP, replay, require_room, simulate
 from garrison.families import accuses, family_of
 from garrison.kalman import central_kalman, local_kalman
+from garrison.prepared import Prepared, prepare
 from garrison.record import Run
 from garrison.scenario import Scenario
 from garrison.varying_network import links_of
@@ -99,7 +100,7 @@ def run_scenario(
     second while a filter is designed. conditions: as in `simulate`.
     """
     rows: list[Row] = []
-    designs: dict[str, _core.Design] = {}  # made once, for both
+    designs: dict[str, Prepared] = {}  # made once, for both
     if conditions:
         require_conditions(scenario)
     for attacked in [True, False] if scenario.attacks else [False]:
@@ -117,14 +118,14 @@ def run_scenario(
     return rows
 
 
-def _designed(scenario: Scenario, label: str, filter: _core.Filter, working: Working | None) -> _core.Design:
+def _designed(scenario: Scenario, label: str, filter: _core.Filter, working: Working | None) -> Prepared:
     """The filter for the scenario, with what it is to certify."""
 
     def tell(what: str, seconds: float) -> None:
         if working is not None:
             working(f"{label}: {what}", seconds)
 
-    return designed(scenario.model, scenario.network, filter, **certificate_of(scenario, filter), progress=tell)
+    return prepare(scenario.model, scenario.network, filter, **certificate_of(scenario, filter), progress=tell)
 
 
 def require_conditions(scenario: Scenario) -> None:
@@ -191,13 +192,13 @@ def _run(
     scenario: Scenario,
     filter: _core.Filter,
     attacked: bool,
-    design: _core.Design,
+    design: Prepared,
     progress: Callable[[int, int], None] | None,
     conditions: bool,
     rehearsal: bool = False,
 ) -> Run:
     options = _options(scenario, filter, attacked)
-    options |= {"design": design, "progress": progress, "conditions": conditions}
+    options |= {"design": design._design, "progress": progress, "conditions": conditions}
     if rehearsal:
         options["trials"] = 1
     parts = scenario.plant, scenario.ground, filter

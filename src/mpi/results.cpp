@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -22,6 +21,8 @@
 
 namespace garrison::mpi {
 namespace {
+
+constexpr const char* kChanged = "it was changed: start with --force, not --resume";
 
 std::string hex(std::uint64_t value) {
   std::array<char, 17> out{};
@@ -54,12 +55,9 @@ Results::~Results() {
   if (file_ >= 0) ncmpi_close(file_);
 }
 
-void Results::check(int code, const char* what) {
-  if (code == NC_NOERR || !failure_.empty()) return;
-  const bool reads = std::string_view(what).starts_with("find") || std::string_view(what).starts_with("read");
-  failure_ =
-      path_ + ": got " + ncmpi_strerror(code) + ", expected to " + what +
-      (reads ? "; it was changed: start with --force, not --resume" : "; use another -o, or free the disk");
+void Results::check(int code, const char* what, const char* advice) {
+  if (code != NC_NOERR && failure_.empty())
+    failure_ = path_ + ": got " + ncmpi_strerror(code) + ", expected to " + what + "; " + advice;
 }
 void Results::settle() { agree(std::exchange(failure_, {})); }
 
@@ -119,7 +117,7 @@ void Results::open(const Scenario& s) {
   settle();
   const auto id_of = [&](const char* name) {
     int id = -1;
-    check(ncmpi_inq_varid(file_, name, &id), "find its variables");
+    check(ncmpi_inq_varid(file_, name, &id), "find its variables", kChanged);
     return id;
   };
   time_ = id_of("time");
@@ -175,8 +173,8 @@ void Results::make_room(std::uintmax_t from, std::uintmax_t to) {
 std::uintmax_t Results::length_of(MPI_Offset records) {
   MPI_Offset begin = 0;
   MPI_Offset size = 0;
-  check(ncmpi_inq_varoffset(file_, time_, &begin), "find its records");
-  check(ncmpi_inq_recsize(file_, &size), "find its records");
+  check(ncmpi_inq_varoffset(file_, time_, &begin), "find its records", kChanged);
+  check(ncmpi_inq_recsize(file_, &size), "find its records", kChanged);
   return static_cast<std::uintmax_t>(begin + records * size);
 }
 
@@ -184,9 +182,9 @@ void Results::require_until(std::int64_t t) {
   const MPI_Offset records = t / every_;
   MPI_Offset written = 0;
   int time = -1;
-  check(ncmpi_inq_dimid(file_, "time", &time), "find its records");
+  check(ncmpi_inq_dimid(file_, "time", &time), "find its records", kChanged);
   settle();
-  check(ncmpi_inq_dimlen(file_, time, &written), "find its records");
+  check(ncmpi_inq_dimlen(file_, time, &written), "find its records", kChanged);
   const std::uintmax_t needed = length_of(written);
   settle();
   std::error_code failed;
@@ -194,7 +192,7 @@ void Results::require_until(std::int64_t t) {
   std::vector<int> times(static_cast<std::size_t>(whole ? records : 0));
   const MPI_Offset first = 0;
   const auto count = static_cast<MPI_Offset>(times.size());
-  check(ncmpi_get_vara_int_all(file_, time_, &first, &count, times.data()), "read its samples");
+  check(ncmpi_get_vara_int_all(file_, time_, &first, &count, times.data()), "read its samples", kChanged);
   for (std::size_t k = 0; k < times.size(); ++k) whole &= times[k] == static_cast<int>(k + 1) * every_;
   if (!whole && failure_.empty())
     failure_ = path_ + ": got results that do not hold all samples up to " + std::to_string(t) +

@@ -38,7 +38,7 @@ class Results {
   /// Bytes of the file with so many records.
   std::uintmax_t length_of(MPI_Offset records);
   /// Keeps the first failure of this rank for `agree`.
-  void check(int code, const char* what);
+  void check(int code, const char* what, const char* advice = "use another -o, or free the disk");
   void settle();
 
   std::string path_;

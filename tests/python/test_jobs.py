@@ -17,8 +17,8 @@ def test_a_filter_is_designed_once_for_its_run_under_attack_and_the_one_without(
         tell("bounds", 1.5)
         return real(model, network, filter, **wanted)
 
-    real = jobs.designed
-    monkeypatch.setattr(jobs, "designed", counted)
+    real = jobs.prepare
+    monkeypatch.setattr(jobs, "prepare", counted)
     said = []
     scenario = read_scenario(_WIND)
     rows = jobs.run_scenario(scenario, working=lambda what, seconds: said.append((what, seconds)))

@@ -10,6 +10,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from garrison.net.web.command import main
 from garrison.net.web.metrics import exposition
@@ -102,8 +103,8 @@ def watcher(monkeypatch: pytest.MonkeyPatch) -> Iterator[Watcher]:
     """Of a node that answers and one that does not."""
     answers: dict[str, dict[str, Any] | None] = {"a.sock": status("a"), "b.sock": None}
     monkeypatch.setattr(Watcher, "_ask", staticmethod(lambda client: answers[client.path.name]))
-    truth = [[0.0, 0.0], [1.0, 0.0]]
-    scene = Scene("wind", {"a": (0.0, 1.0)}, ["a"], truth, ["a", "b", "gauge"])  # type: ignore[arg-type]
+    truth = np.array([[0.0, 0.0], [1.0, 0.0]])
+    scene = Scene("wind", {"a": (0.0, 1.0)}, ["a"], truth, ["a", "b", "gauge"])
     found = Watcher([Path("a.sock"), Path("b.sock")], scene, pause=0.01)
     found.start()
     yield found

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -68,11 +70,10 @@ class Plant:
         return [(C, np.ones(len(C))) for C in parts]
 
 
-def sources_of(model: _core.Model) -> list[str]:
-    """Who stands behind each output: an agent where the model names no sources."""
-    return list(model.sources) or [
-        name for name, C in zip(model_agents(model), model.C, strict=True) for _ in range(len(C))
-    ]
+def sources_of(model: _core.Model, agents: Iterable[str] | None = None) -> list[str]:
+    """Who stands behind each output: an agent, by its name in `agents`, where the model names no sources."""
+    names = model_agents(model) if agents is None else agents
+    return list(model.sources) or [name for name, C in zip(names, model.C, strict=True) for _ in range(len(C))]
 
 
 def model_agents(model: _core.Model) -> list[str]:

@@ -43,18 +43,17 @@ def designed(
     model: _core.Model,
     network: _core.Network,
     filter: _core.Filter,
-    design: _core.Design | None = None,
-    certificate: str = "none",
-    failure: float = 1e-6,
-    attacked: int | None = None,
-    levels: tuple[float, float] | None = None,
-    memory: bool = False,
-    progress: Callable[[str, float], None] | None = None,
+    design: _core.Design | None,
+    certificate: str,
+    failure: float,
+    attacked: int | None,
+    levels: tuple[float, float] | None,
+    memory: bool,
 ) -> _core.Design:
-    """The design that is given, or that of the three with what is to be certified; progress: as in `prepare`."""
+    """The design that is given, or that of the three with what is to be certified."""
     wanted = run_options.certificate(filter, certificate, failure, attacked, levels, memory)
     if design is None:
-        return _core.Design(model, network, filter, **wanted, progress=progress)
+        return _core.Design(model, network, filter, **wanted)
     if wanted:
         raise refusal("certificate", f"{certificate!r} with a design", "none", "garrison.prepare takes it")
     return design

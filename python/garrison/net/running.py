@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from garrison.certifying.plant import sources_of
 from garrison.net.folder import NodeFolder, write_network
 from garrison.net.kills import kill_some, seconds_back
 from garrison.net.liars import judge_liar
@@ -81,10 +82,8 @@ def _page(plan: Plan, nodes: list[NodeFolder], port: int | None, say: Callable[[
         {} if scenario.positions is None else dict(zip(scenario.names, scenario.positions.tolist(), strict=True))
     )
     truth = None if run.truth is None else run.truth[0, 1:]
-    sources = dict.fromkeys(scenario.model.sources) or [
-        name for name, C in zip(scenario.names, scenario.model.C, strict=True) if len(C)
-    ]
-    scene = Scene(scenario.title, positions, [scenario.names[a] for a in scenario.hit], truth, list(sources))
+    sources = list(dict.fromkeys(sources_of(scenario.model, scenario.names)))
+    scene = Scene(scenario.title, positions, [scenario.names[a] for a in scenario.hit], truth, sources)
     watcher = Watcher([node.socket for node in nodes], scene)
     with Server("127.0.0.1", port, watcher) as server:
         say(f"http://127.0.0.1:{server.server_port}/")
