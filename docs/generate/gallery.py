@@ -1,7 +1,6 @@
 """The gallery: every script of examples/gallery is run, and shown with its figure; last, a page of real nodes."""
 
 import ast
-import os
 import runpy
 from pathlib import Path
 from typing import Any
@@ -10,8 +9,8 @@ ROOT = Path(__file__).parents[2]
 SCRIPTS = ROOT / "examples" / "gallery"
 _HEAD = """# Gallery
 
-Every picture is made by the code above it when this page is built; the scripts are in `examples/gallery` and run from
-the root of the source tree. [Examples](../examples.md) lists the larger ones.
+Every picture is made by the code above it when this page is built, and is its `figure`: in a script of your own,
+`figure.savefig("picture.png")` writes it. The scripts are in `examples/gallery`, beside the files that they read. [Examples](../examples.md) lists the larger ones.
 """
 _NODES = """## Twelve daemons on a lossy network
 
@@ -29,13 +28,8 @@ def scripts() -> list[Path]:
 
 
 def figure_of(script: Path) -> Any:
-    """Run a script, from the root of the tree, and take its `figure`."""
-    before = Path.cwd()
-    os.chdir(ROOT)
-    try:
-        return runpy.run_path(str(script))["figure"]
-    finally:
-        os.chdir(before)
+    """Run a script and take its `figure`."""
+    return runpy.run_path(str(script))["figure"]
 
 
 def page(folder: Path) -> str:

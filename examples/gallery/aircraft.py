@@ -13,7 +13,8 @@ from garrison.importers.adsb import import_adsb
 from garrison.jobs import run_scenario
 from garrison.scenario import read_scenario
 
+examples = Path(__file__).parents[1]
 folder = Path(mkdtemp())
-import_adsb(Path("examples/import/adsb_sample.json.gz")).write(folder)
+import_adsb(examples / "import/adsb_sample.json.gz").write(folder)
 scenario = read_scenario(folder / "scenario.toml")
 figure = innovation_figure(scenario, run_scenario(scenario)[0].run, before=100, after=450)

@@ -12,7 +12,8 @@ from garrison.importers.openacc import import_openacc
 from garrison.jobs import run_scenario
 from garrison.scenario import read_scenario
 
+examples = Path(__file__).parents[1]
 folder = Path(mkdtemp())
-import_openacc([Path("examples/import/openacc_sample.csv")]).write(folder)
+import_openacc([examples / "import/openacc_sample.csv"]).write(folder)
 scenario = read_scenario(folder / "scenario.toml")
 figure = innovation_figure(scenario, run_scenario(scenario)[0].run)

@@ -6,5 +6,7 @@ the certified bounds, whoever sees it.
 """
 
 import runpy
+from pathlib import Path
 
-figure = runpy.run_path("examples/robots/team.py")["run"].plot()
+examples = Path(__file__).parents[1]
+figure = runpy.run_path(str(examples / "robots/team.py"))["run"].plot()

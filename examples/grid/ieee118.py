@@ -31,7 +31,10 @@ INERTIA, ROTOR_DAMPING, LOAD_DAMPING = 0.2, 0.05, 1.0  # per unit power, s^2, s,
 
 def grid() -> nx.Graph:
     """Buses 0..117 and lines with their susceptance; `generator` on the nodes."""
-    import pandapower.networks
+    try:
+        import pandapower.networks
+    except ImportError:
+        raise SystemExit('The network is pandapower\'s, which is not installed: pip install "garrison[grid]"') from None
 
     net: Any = pandapower.networks.case118()
     graph = nx.Graph()

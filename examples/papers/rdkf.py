@@ -1,4 +1,4 @@
-"""The simulation section of Dutta, Zhang, Jin (CDC 2019), claim by claim, and what it leaves open.
+"""The simulation section of Dutta, Zhang, Jin (2019), claim by claim, and what it leaves open.
 
     python examples/papers/rdkf.py -o out/papers/rdkf [--seeds 3]
 
@@ -309,7 +309,7 @@ def main() -> list[list[str]]:
     simulations(page, args.seeds, folder)
     convergence(page)
     lasting = persistent(page, args.seeds, folder)
-    print_claims("Dutta, Zhang, Jin, CDC 2019", page.rows)
+    print_claims("Dutta, Zhang, Jin, 2019", page.rows)
     print_table(
         "A coordinated false trajectory for ever, n = 4, 3 sensors per agent",
         ("radius of A", "attackers of 10", "error at k = 75", "at k = 150", "bound for every attack"),

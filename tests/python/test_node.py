@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import socket
 import struct
 import subprocess
@@ -154,6 +155,48 @@ def test_a_running_node_reads_its_sensor_anew(folder: Path, programs: str) -> No
         finally:
             process.terminate()
     assert process.returncode == 0
+
+
+def test_a_hang_up_lets_a_service_read_its_files_anew(folder: Path, programs: str) -> None:
+    settings = (folder / "node.toml").read_text()
+    command = [program("garrison-node", programs), str(folder / "node.toml")]
+    said = folder / "said"
+    with said.open("wb") as stream:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=stream)
+    with process:
+        try:
+            client = Client(folder / "node.sock")
+            _patiently(client)
+            socketed = settings.replace('source = "file"\npath = "sensor.csv"', 'source = "socket"')
+            (folder / "node.toml").write_text(socketed)
+            process.send_signal(signal.SIGHUP)
+            time.sleep(0.3)
+            assert client.measure([1.5]) == {"ok": True}
+            (folder / "node.toml").write_text(socketed.replace('"socket"', '"sokket"'))
+            process.send_signal(signal.SIGHUP)
+            time.sleep(0.3)
+            assert client.measure([2.5]) == {"ok": True}
+        finally:
+            process.terminate()
+    assert process.returncode == 0
+    good, bad = said.read_text().splitlines()
+    assert good == 'garrison-node: SIGHUP, files read anew: {"ok":true}'
+    assert "sokket" in bad
+
+
+def test_only_the_journal_is_told_priorities(folder: Path, programs: str, tmp_path: Path) -> None:
+    (folder / "node.toml").write_text("nonsense = 1\n")
+    command = [program("garrison-node", programs), "--check", str(folder / "node.toml")]
+
+    def said(named: bool) -> str:
+        with (tmp_path / "journal").open("wb") as stream:
+            of = os.fstat(stream.fileno())
+            journal = {"JOURNAL_STREAM": f"{of.st_dev}:{of.st_ino if named else 1}"}
+            assert subprocess.run(command, stderr=stream, env=os.environ | journal).returncode == 2
+        return (tmp_path / "journal").read_text()
+
+    assert said(named=True).startswith("<3>garrison-node: ")
+    assert said(named=False).startswith("garrison-node: ")
 
 
 def test_names_of_agents_may_be_anything(plan: Path, programs: str, tmp_path: Path) -> None:

@@ -54,7 +54,10 @@ def add(commands: Commands) -> None:
     command.add_argument("--period", type=number, help="length of the cycle in samples (default: a year)")
     command.add_argument("--root", action="store_true", help="work on the square root of the records")
     command.add_argument(
-        "--scale", type=number, default=1.0, help="multiply the records by this number, to convert units (default 1)"
+        "--scale",
+        type=number,
+        default=1.0,
+        help="multiply the records by this number, to convert units (default 1); in scenarios and gr.fit: factor",
     )
     command.add_argument(
         "--standardise",

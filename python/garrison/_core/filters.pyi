@@ -112,7 +112,7 @@ class Rdkf(garrison._core.Filter):
     """
     Resilient distributed Kalman filter.
 
-    Source: Dutta, Zhang, Jin, CDC 2019
+    Source: Dutta, Zhang, Jin, 2019
 
     weight: lambda of (8), the pull of a measurement at most; its estimate moves by at most half of (10), which is proportional to it; 0 ignores all measurements [1], >= 0, <= 1e+100
     penalty: of the whitened residual: "norm" = the paper's; "huber" = the same pull, but a Kalman step as long as it is not reached; "l1" = sensor by sensor; "group" = the neighbours' measurements too, which then travel
@@ -139,7 +139,7 @@ class Dkf(garrison._core.Filter):
     """
     Distributed Kalman filter, steady state (no protection).
 
-    Source: (7) of Dutta, Zhang, Jin, CDC 2019
+    Source: (7) of Dutta, Zhang, Jin, 2019
 
     """
     def __copy__(self) -> typing.Any: ...

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // `garrison check` for the saturation filter: each condition with its value, and the bounds that follow.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -25,6 +27,13 @@ using namespace saturation;
 /// A radius or norm of 1 up to rounding does not settle.
 constexpr double kRadiusMargin = 1e-9;
 
+/// Six digits, as the command line prints the value beside it.
+std::string six_digits(double value) {
+  std::array<char, 32> buffer{};
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 6).ptr;
+  return {buffer.data(), end};
+}
 std::string above(double value) { return "> " + text(value); }
 
 /// Three digits, never below the value: what satisfies a condition still does.
@@ -259,9 +268,10 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
                           false});
   // With lambda_0 < s a plant that contracts (a < 1) always has some small threshold with (9).
   const double a_max = std::max(1.0, normA_max_exact(setting));
-  c.conditions.push_back(
-      {"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + text(a_max), facts.a < a_max - kRadiusMargin,
-       "some threshold, initial error and rounds satisfy (9) (exact, unlike theorem 2)", false});
+  c.conditions.push_back({"||A|| < max(1, N/(N - lambda_0 + s))", facts.a, "< " + six_digits(a_max),
+                          facts.a < a_max - kRadiusMargin,
+                          "some threshold, initial error and rounds satisfy (9) (exact, unlike theorem 2)",
+                          false});
   const auto least = minimal_rounds(
       setting, p.chebyshev
                    ? std::function<double(int)>([&](int L) { return chebyshev_contraction(rates.gamma, L); })

@@ -9,6 +9,7 @@
 
 #include "garrison/engine/design_file.hpp"
 #include "node/daemon/memory.hpp"
+#include "node/daemon/service.hpp"
 #include "node/daemon/state.hpp"
 
 namespace garrison::node {
@@ -39,16 +40,25 @@ Desk::Desk(Station& station, std::uint64_t boot, std::unique_ptr<Sensor> sensor,
 
 void Desk::run(Loop& loop) {
   loop_ = &loop;
-  const sigset_t ending = ending_signals();
-  const Descriptor signals(::signalfd(-1, &ending, SFD_NONBLOCK | SFD_CLOEXEC));
-  signalfd_siginfo came{};
+  const sigset_t watched = node_signals();
+  const Descriptor signals(::signalfd(-1, &watched, SFD_NONBLOCK | SFD_CLOEXEC));
   saved_at_ = now().steady;
   settles_at_ = saved_at_ + kSettling;
-  while (::read(signals.get(), &came, sizeof came) != sizeof came) {
+  while (!ended(signals.get())) {
     wait(signals.get());
     tick(now().steady);
   }
   loop.end();
+}
+
+/// Whether a signal ended the node. A hang-up means the files are new, as with other services; to a node that
+/// was started by hand it means that its terminal is gone.
+bool Desk::ended(int signals) {
+  signalfd_siginfo came{};
+  if (::read(signals, &came, sizeof came) != sizeof came) return false;
+  if (came.ssi_signo != SIGHUP || by_hand_) return true;
+  say(Priority::notice, "SIGHUP, files read anew: " + reload());
+  return false;
 }
 
 void Desk::wait(int signals) {
@@ -131,7 +141,7 @@ void Desk::begin_log() {
   try {
     log_->begin();
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "<3>garrison-node: no log from here on: %s\n", error.what());
+    say(Priority::error, std::string("no log from here on: ") + error.what());
     ++around_.log_failed;
     log_.reset();
   }
@@ -149,11 +159,11 @@ void Desk::proof(Bytes content) {
   try {
     make_folder(folder);
     replace_file(path, content);
-    std::fprintf(stderr, "<4>garrison-node: %s has signed two different statements about sample %lld: %s\n",
-                 who == nullptr ? "somebody" : who->name.c_str(), static_cast<long long>(found->a.first),
-                 path.c_str());
+    say(Priority::warning, (who == nullptr ? "somebody" : who->name) +
+                               " has signed two different statements about sample " +
+                               std::to_string(found->a.first) + ": " + path);
   } catch (const Error& error) {
-    if (failed_++ == 0) std::fprintf(stderr, "<3>garrison-node: %s\n", error.what());
+    if (failed_++ == 0) say(Priority::error, error.what());
   }
 }
 
@@ -163,7 +173,7 @@ void Desk::save_state() {
   try {
     write_state(station_.settings.state_folder, station_.run, snapshot_);
   } catch (const Error& error) {
-    if (failed_++ == 0) std::fprintf(stderr, "<3>garrison-node: %s\n", error.what());
+    if (failed_++ == 0) say(Priority::error, error.what());
   }
 }
 

@@ -3,6 +3,8 @@
 // be late; the loop never waits for it.
 #pragma once
 
+#include <unistd.h>
+
 #include <memory>
 #include <optional>
 
@@ -26,6 +28,7 @@ class Desk {
   void save_state();
 
  private:
+  bool ended(int signals);
   void wait(int signals);
   void tick(Micros steady);
   void record(Note note, Bytes content);
@@ -45,6 +48,7 @@ class Desk {
   std::uint64_t former_until_ = 0;  ///< turn of the loop
   Ring& ring_;
   bool print_;
+  bool by_hand_ = ::isatty(STDERR_FILENO) != 0;  ///< asked at the start: a terminal that is gone is none
   std::optional<LogKeeper> log_;
   std::unique_ptr<Agent> mirror_;  ///< loads snapshots, to be asked what the loop has no time for
   std::unique_ptr<LocalSocket> socket_;

@@ -5,10 +5,10 @@
 #include <signal.h>
 
 #include <bit>
-#include <cstdio>
 #include <thread>
 
 #include "node/daemon/desk.hpp"
+#include "node/daemon/service.hpp"
 #include "node/daemon/state.hpp"
 
 namespace garrison::node {
@@ -29,8 +29,7 @@ std::size_t ring_size(const Station& station) {
 /// Until the kernel holds the clock for synchronised, or a signal comes; false then.
 bool wait_for_clock(const Settings& settings) {
   if (!settings.require_synchronised || clock_synchronised()) return true;
-  std::fprintf(stderr,
-               "<4>garrison-node: the clock is not synchronised; waiting ([clock].require_synchronised)\n");
+  say(Priority::warning, "the clock is not synchronised; waiting ([clock].require_synchronised)");
   notify("STATUS=no clock");
   const sigset_t ending = ending_signals();
   const timespec pause{0, 200'000'000};
@@ -46,10 +45,8 @@ std::vector<std::byte> kept_state(const Station& station) {
   const std::string& folder = station.settings.state_folder;
   auto found = read_state(folder, station.run);
   if (!found && has_state(folder))
-    std::fprintf(stderr,
-                 "<4>garrison-node: %s/state: got a file that is damaged or of another run; the node starts "
-                 "without it\n",
-                 folder.c_str());
+    say(Priority::warning,
+        folder + "/state: got a file that is damaged or of another run; the node starts without it");
   return found.value_or(std::vector<std::byte>{});
 }
 
@@ -72,8 +69,8 @@ class Estimating {
 }  // namespace
 
 void block_signals() {
-  const sigset_t ending = ending_signals();
-  ::sigprocmask(SIG_BLOCK, &ending, nullptr);
+  const sigset_t watched = node_signals();
+  ::sigprocmask(SIG_BLOCK, &watched, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
 }
 

@@ -7,7 +7,7 @@
 
 namespace garrison::node {
 
-/// Before any thread: the signals that end a program are waited for, not handled.
+/// Before any thread: the signals that a node knows are waited for, not handled.
 void block_signals();
 
 /// Until a signal comes. print: a line of JSON a sample on standard output. tamper: a liar, for tests of a

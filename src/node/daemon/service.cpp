@@ -2,11 +2,13 @@
 #include "node/daemon/service.hpp"
 
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/timex.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -29,12 +31,34 @@ void notify(const std::string& line) noexcept {
            static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + size));
 }
 
+namespace {
+/// Standard error is the stream that the service manager named: device:inode (systemd.exec(5)).
+bool journal_reads() {
+  const char* named = std::getenv("JOURNAL_STREAM");
+  struct stat stream{};
+  if (named == nullptr || ::fstat(STDERR_FILENO, &stream) != 0) return false;
+  return std::to_string(stream.st_dev) + ":" + std::to_string(stream.st_ino) == named;
+}
+}  // namespace
+
+void say(Priority priority, const std::string& what) {
+  static const bool with_priority = journal_reads();
+  if (with_priority) std::fprintf(stderr, "<%d>", static_cast<int>(priority));
+  std::fprintf(stderr, "garrison-node: %s\n", what.c_str());
+}
+
 sigset_t ending_signals() noexcept {
   sigset_t both;
   sigemptyset(&both);
   sigaddset(&both, SIGTERM);
   sigaddset(&both, SIGINT);
   return both;
+}
+
+sigset_t node_signals() noexcept {
+  sigset_t all = ending_signals();
+  sigaddset(&all, SIGHUP);
+  return all;
 }
 
 Micros watchdog_pause() noexcept {

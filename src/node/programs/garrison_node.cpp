@@ -5,6 +5,7 @@
 
 #include "garrison/version.hpp"
 #include "node/daemon/running.hpp"
+#include "node/daemon/service.hpp"
 
 using namespace garrison;
 using namespace garrison::node;
@@ -19,9 +20,10 @@ constexpr const char* kUsage =
     "  --print   a line of JSON a sample on standard output\n"
     "  --version\n"
     "\n"
+    "SIGTERM and SIGINT end it; SIGHUP lets a service read its files anew, as garrison-ctl reload does.\n"
     "Exit codes: 0 ended by a signal (or --check found nothing), 2 a file or the command line was refused.\n";
 
-void say(const Station& s) {
+void print_station(const Station& s) {
   std::printf("%s: agent %d of %d, %s, %d rounds every %.6g ms, %zu neighbours, first sample at %.6f\n",
               s.settings.file.c_str(), s.agent->id(), s.agent->agents(),
               std::string(s.agent->family()).c_str(), s.agent->rounds(),
@@ -52,11 +54,11 @@ int main(int count, char** words) {
   if (!start_crypto()) return std::fputs("garrison-node: the system has no random numbers\n", stderr), 2;
   try {
     Station station = read_station(file);
-    if (check) return say(station), 0;
+    if (check) return print_station(station), 0;
     run_node(station, print);
     return 0;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "<3>garrison-node: %s\n", error.what());
+    say(Priority::error, error.what());
     return 2;
   }
 }

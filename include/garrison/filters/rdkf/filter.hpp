@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The resilient distributed Kalman filter of Dutta, Zhang, Jin (CDC 2019).
+// The resilient distributed Kalman filter of Dutta, Zhang, Jin (2019).
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ namespace garrison {
 struct GARRISON_EXPORT Rdkf {
   static constexpr std::string_view name = "rdkf";
   static constexpr std::string_view title = "Resilient distributed Kalman filter";
-  static constexpr std::string_view source = "Dutta, Zhang, Jin, CDC 2019";
+  static constexpr std::string_view source = "Dutta, Zhang, Jin, 2019";
 
   struct Params {
     double weight = 1.0;
@@ -362,7 +362,7 @@ struct GARRISON_EXPORT Rdkf {
 struct GARRISON_EXPORT Dkf : Rdkf {
   static constexpr std::string_view name = "dkf";
   static constexpr std::string_view title = "Distributed Kalman filter, steady state (no protection)";
-  static constexpr std::string_view source = "(7) of Dutta, Zhang, Jin, CDC 2019";
+  static constexpr std::string_view source = "(7) of Dutta, Zhang, Jin, 2019";
 
   using RunsAs = Rdkf;
   struct Params {
