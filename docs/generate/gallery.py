@@ -10,7 +10,8 @@ SCRIPTS = ROOT / "examples" / "gallery"
 _HEAD = """# Gallery
 
 Every picture is made by the code above it when this page is built, and is its `figure`: in a script of your own,
-`figure.savefig("picture.png")` writes it. The scripts are in `examples/gallery`, beside the files that they read. [Examples](../examples.md) lists the larger ones.
+`figure.savefig("picture.png")` writes it. The scripts are in `examples/gallery`, beside the files that they read.
+[Examples](../examples.md) lists the larger ones.
 """
 _NODES = """## Twelve daemons on a lossy network
 
