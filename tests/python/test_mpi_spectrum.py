@@ -5,7 +5,9 @@ from pathlib import Path
 
 import garrison as gr
 import pytest
-from test_mpi import _mpi, pytestmark  # noqa: F401  (the mark holds for this file, too)
+from mpi_jobs import NEEDED, mpi
+
+pytestmark = NEEDED
 
 
 def _network(folder: Path, agents: int, radius: float) -> Path:
@@ -36,7 +38,7 @@ x0 = [1.0]
 
 def test_the_spectrum_is_that_of_the_network_with_the_same_digits_on_any_ranks(tmp_path):
     path = _network(tmp_path, 500, 0.1)
-    lines = [_mpi(ranks, "spectrum", path).stdout.splitlines()[1:] for ranks in (1, 2, 3)]
+    lines = [mpi(ranks, "spectrum", path).stdout.splitlines()[1:] for ranks in (1, 2, 3)]
     assert len(lines[0]) == 3
     assert lines[0] == lines[1] == lines[2]
     low, high, step = (
@@ -54,23 +56,23 @@ def test_the_spectrum_is_that_of_the_network_with_the_same_digits_on_any_ranks(t
 
 
 def test_too_few_products_are_told(tmp_path):
-    done = _mpi(2, "spectrum", _network(tmp_path, 500, 0.1), "--products", "10")
+    done = mpi(2, "spectrum", _network(tmp_path, 500, 0.1), "--products", "10")
     assert done.returncode == 1
     assert "not settled after 10 products" in done.stdout
     assert "Certainly stable" in done.stdout
 
 
 def test_what_has_no_spectrum_of_use_is_refused(tmp_path):
-    done = _mpi(2, "spectrum", _network(tmp_path, 500, 0.01))
+    done = mpi(2, "spectrum", _network(tmp_path, 500, 0.01))
     assert done.returncode == 2
     assert done.stderr.count("not connected") == 1
-    done = _mpi(2, "spectrum", _network(tmp_path, 500, 0.1), "--products", "none")
+    done = mpi(2, "spectrum", _network(tmp_path, 500, 0.1), "--products", "none")
     assert done.returncode == 2
     assert done.stderr.count("--products") == 1
 
 
 def test_slepc_that_is_not_built_in_is_refused_once(tmp_path):
-    done = _mpi(3, "spectrum", _network(tmp_path, 500, 0.1), "--slepc")
+    done = mpi(3, "spectrum", _network(tmp_path, 500, 0.1), "--slepc")
     if done.returncode == 0:
         pytest.skip("SLEPc is built in")
     assert done.returncode == 2
