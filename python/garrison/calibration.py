@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -94,6 +95,7 @@ def calibrate(
     *,
     measurements: ArrayLike,
     attacked: int = 1,
+    progress: Callable[[str, float], None] | None = None,
 ) -> Calibration:
     """Set a filter's nominal false-alarm rate so that the rate asked for is what clean records give.
 
@@ -116,6 +118,9 @@ def calibrate(
         Of records without attacks that the model was NOT fitted to, nan = missing.
     attacked : int
         Most sensors attacked, for the certificates' levels.
+    progress : callable, optional
+        progress(what, seconds) is called before every one of the 10 to 40 replays of the records: at which nominal
+        rate, and for how long all of it lasts already.
 
     Returns
     -------
@@ -134,7 +139,11 @@ def calibrate(
     if not isinstance(asked, float):
         raise refusal("filter", filter.name, "a filter with a false-alarm rate", "its parameter is called false_alarm")
 
+    tell, began = arguments.callback("progress", progress, "(what, seconds)"), time.monotonic()
+
     def run_at(rate: float) -> Run:
+        if tell is not None:
+            tell(f"replaying {filter.name} with {_RATE} = {rate:.3g}", time.monotonic() - began)
         again = _core.make_filter(filter.name, filter.params | {_RATE: rate})
         return replay(model, network, again, measurements=y, keep=("report",), conditions=False)
 

@@ -14,7 +14,7 @@ namespace garrison::partition {
 
 /// Refuses a family that does not run on many ranks, with those that do; `which` names its place.
 /// @throws InvalidInput
-void require_family(const std::string& family, const std::string& which = "filter.name");
+void require_family(const std::string& family, const std::string& which);
 
 /// Refuses parameters that the design refuses whatever the network: `one` is the model of any agent.
 /// @throws InvalidInput as `require_family`, and as the family's design does

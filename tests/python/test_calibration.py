@@ -116,7 +116,12 @@ false_alarm = RATE
 def test_bounds_and_levels_hold_on_the_records(years) -> None:
     found, network, clean, _ = years
     filter = gr.filters.Structural(false_alarm=1e-2)
-    calibrated = gr.calibrate(found.model, network, filter, measurements=clean, attacked=2)
+    told: list[tuple[str, float]] = []
+    progress = lambda what, seconds: told.append((what, seconds))  # noqa: E731
+    calibrated = gr.calibrate(found.model, network, filter, measurements=clean, attacked=2, progress=progress)
+    assert 5 <= len(told) <= 100
+    assert told[0][0] == "replaying structural with false_alarm = 0.01"
+    assert [seconds for _, seconds in told] == sorted(seconds for _, seconds in told)
     C = np.vstack(found.model.C)
     v = clean - (clean @ np.linalg.pinv(C).T) @ C.T
     assert (np.abs(v) <= calibrated.model.measurement_bound + 1e-12).all()

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table, print_warnings
+from garrison._commands.terminal import OK, Commands, console_for, print_json, print_table, print_warnings, working
 from garrison.calibration import Calibration, calibrate
 from garrison.scenario import Scenario, read_scenario
 from garrison.words import refusal
@@ -62,10 +62,11 @@ def _all(scenario: Scenario) -> list[tuple[str, Calibration]]:
     chosen = [(label, f) for label, f in scenario.filters if f is not None and "false_alarm" in f.params]
     if not chosen:
         raise refusal("filter", "no filter with a false-alarm rate", "one with a parameter false_alarm")
-    return [
-        (label, calibrate(scenario.model, scenario.network, f, measurements=scenario.measurements))
-        for label, f in chosen
-    ]
+    found = []
+    for label, f in chosen:
+        with working(f"calibrating {label}"):
+            found.append((label, calibrate(scenario.model, scenario.network, f, measurements=scenario.measurements)))
+    return found
 
 
 def _plain(label: str, scenario: Scenario, c: Calibration) -> dict[str, Any]:
