@@ -16,6 +16,7 @@ from garrison.numeric import numbers
 from garrison.objects import described_model, model_of
 from garrison.record import Run
 from garrison.result import Result
+from garrison.varying import Inputs, inputs_of
 from garrison.words import count, hinted, hinted_methods, refusal, require_order
 
 Array = NDArray[np.float64]
@@ -94,6 +95,7 @@ def calibrate(
     filter: _core.Filter,
     *,
     measurements: ArrayLike,
+    inputs: Inputs = None,
     attacked: int = 1,
     progress: Callable[[str, float], None] | None = None,
 ) -> Calibration:
@@ -116,6 +118,8 @@ def calibrate(
         With a parameter false_alarm.
     measurements : (samples, outputs) array
         Of records without attacks that the model was NOT fitted to, nan = missing.
+    inputs : (samples, p) array, table or function of t, optional
+        Known inputs of a model with B, as for `replay`: the row of a sample led to it.
     attacked : int
         Most sensors attacked, for the certificates' levels.
     progress : callable, optional
@@ -134,6 +138,7 @@ def calibrate(
     """
     require_order("calibrate", model, network, filter)
     y = numbers("measurements", measurements)
+    known = inputs_of(model, inputs, len(y)) if model.inputs or inputs is not None else None
     attacked = arguments.whole("attacked", attacked, 0, model.agents - 1)
     asked = filter.params.get(_RATE)
     if not isinstance(asked, float):
@@ -145,7 +150,7 @@ def calibrate(
         if tell is not None:
             tell(f"replaying {filter.name} with {_RATE} = {rate:.3g}", time.monotonic() - began)
         again = _core.make_filter(filter.name, filter.params | {_RATE: rate})
-        return replay(model, network, again, measurements=y, keep=("report",), conditions=False)
+        return replay(model, network, again, measurements=y, inputs=known, keep=("report",), conditions=False)
 
     def matching(margin: float) -> float:
         return _matching(lambda rate: _allowed(_ratios(run_at(rate)), asked, margin) / asked, asked)
@@ -166,7 +171,7 @@ def calibrate(
     thresholds = np.array(
         [_core.certificate.empirical_quantile(s, asked) for s in np.reshape(last.statistic, (-1, model.agents)).T]
     )
-    inflated, exceeds = _inflated(model, y)
+    inflated, exceeds = _inflated(model, y, known)
     return Calibration(
         _core.make_filter(filter.name, filter.params | {_RATE: nominal}),
         asked,
@@ -250,9 +255,9 @@ def _matching(over: Callable[[float], float], asked: float) -> float:
     return float(np.exp(low))
 
 
-def _inflated(model: _core.Model, y: Array) -> tuple[_core.Model, float]:
+def _inflated(model: _core.Model, y: Array, inputs: Array | None) -> tuple[_core.Model, float]:
     """The model with bounds that these records keep too, and the chance that the next one breaks one of them."""
-    v, w = clean_residuals(model, y)
+    v, w = clean_residuals(model, y, inputs)
     v = v[np.isfinite(v).all(axis=1)]
     w = w[np.isfinite(w).all(axis=1)]
     plain = described_model(model)

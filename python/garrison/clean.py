@@ -8,11 +8,15 @@ from garrison import _core
 Array = NDArray[np.float64]
 
 
-def clean_residuals(model: _core.Model, y: Array) -> tuple[Array, Array]:
-    """v (samples, outputs) and w (samples - 1, n) against the least-squares state of every complete sample."""
+def clean_residuals(model: _core.Model, y: Array, inputs: Array | None = None) -> tuple[Array, Array]:
+    """v (samples, outputs) and w (samples - 1, n) against the least-squares state of every complete sample.
+
+    inputs (samples, p): of a model with B; the row of a sample led to it.
+    """
     C = np.vstack(model.C)
     x = y @ np.linalg.pinv(C).T
-    return y - x @ C.T, x[1:] - x[:-1] @ model.A.T
+    w = x[1:] - x[:-1] @ model.A.T
+    return y - x @ C.T, w if inputs is None or not len(inputs) else w - inputs[1:] @ np.asarray(model.B).T
 
 
 def clean_levels(model: _core.Model, y: Array, attacked: int, delta: float) -> tuple[float, float] | None:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every process sends to every other one, over one of three transports: what rounds cost on each.
+// Processes on a ring, each of which sends to the four nearest, over one of three transports: what rounds
+// cost on each.
 #pragma once
 
 #include <array>
@@ -23,6 +24,8 @@ struct MeshPlan {
   std::vector<std::array<char, 41>> open, secret;         ///< of CURVE
 
   static std::unique_ptr<MeshPlan> of(int nodes);
+  /// Whom a node sends to and hears: two on either side.
+  std::vector<int> neighbours(int own) const;
 };
 
 class Mesh {
@@ -36,7 +39,7 @@ class Mesh {
 
   virtual ~Mesh() = default;
   virtual bool open() = 0;
-  /// A message of this round to everybody else.
+  /// A message of this round to all neighbours.
   virtual void send(int round) = 0;
   /// Waits for one; its round, or -1 when nothing came for seconds.
   virtual int receive() = 0;

@@ -11,7 +11,7 @@ namespace garrison::node::test {
 
 namespace {
 
-/// A ROUTER to hear, and a DEALER to everybody else.
+/// A ROUTER to hear, and a DEALER to every neighbour.
 class Curve final : public Mesh {
  public:
   Curve(MeshPlan& plan, int own) : plan_(plan), own_(own) {}
@@ -27,8 +27,7 @@ class Curve final : public Mesh {
     set(hears_, ZMQ_CURVE_SECRETKEY, secret(own_), 41);
     set(hears_, ZMQ_RCVTIMEO, &kPatienceMs, sizeof kPatienceMs);
     if (::zmq_bind(hears_, place(own_).c_str()) != 0) return false;
-    for (int j = 0; j < plan_.nodes; ++j) {
-      if (j == own_) continue;
+    for (const int j : plan_.neighbours(own_)) {
       void* socket = made(ZMQ_DEALER);
       set(socket, ZMQ_CURVE_SERVERKEY, plan_.open[static_cast<std::size_t>(j)].data(), 41);
       set(socket, ZMQ_CURVE_PUBLICKEY, plan_.open[static_cast<std::size_t>(own_)].data(), 41);

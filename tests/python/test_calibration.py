@@ -132,6 +132,26 @@ def test_bounds_and_levels_hold_on_the_records(years) -> None:
     assert z1 > 0.0 and z2 > 0.0
 
 
+def test_known_inputs_are_taken_out() -> None:
+    """The level of the noise is that of the same plant without inputs, whatever drives it."""
+    sensors = {
+        "process_bound": 0.1,
+        "measurement_bound": 0.1,
+        "process_covariance": 0.0025,
+        "measurement_covariance": 0.0025,
+    }
+    driven = gr.Model([[0.9]], [[1.0]] * 4, B=[[1.0]], **sensors)
+    network, filter = gr.Network.complete(4), gr.filters.Structural(false_alarm=1e-2)
+    u = 50.0 * np.sin(np.arange(3000.0))[:, None]
+    y = gr.simulate(driven, network, filter, steps=3000, inputs=u, noise="normal", seed=4, x0=[0.0]).measurements[0]
+    found = gr.calibrate(driven, network, filter, measurements=y, inputs=u)
+    assert 0.3 < found.nominal / found.asked < 3.0
+    assert found.got == pytest.approx(found.asked, rel=0.1)
+    assert found.model.process_bound < 0.5  # and not the size of the inputs
+    with pytest.raises(gr.InvalidInput, match="inputs: got none"):
+        gr.calibrate(driven, network, filter, measurements=y)
+
+
 def test_empirical_quantile_is_that_of_the_order_statistics() -> None:
     values = np.random.default_rng(1).permutation(np.arange(1.0, 1000.0))
     value, lower, upper = gr.certificate.empirical_quantile(np.append(values, np.nan), 0.01)

@@ -65,7 +65,8 @@ def _all(scenario: Scenario) -> list[tuple[str, Calibration]]:
     found = []
     for label, f in chosen:
         with working(f"calibrating {label}"):
-            found.append((label, calibrate(scenario.model, scenario.network, f, measurements=scenario.measurements)))
+            y, u = scenario.measurements, scenario.inputs
+            found.append((label, calibrate(scenario.model, scenario.network, f, measurements=y, inputs=u)))
     return found
 
 

@@ -94,7 +94,7 @@ _WHOLE = 1000.0
 LONG = (
     Row(
         "latency",
-        "a round of 10 and of 30 processes: <= 1.3 of raw datagrams, <= 0.5 of ZeroMQ CURVE, in one run",
+        "a round of 10 and of 30 processes, four neighbours each: <= 1.3 of raw datagrams, <= 0.5 of ZeroMQ CURVE",
         _latency,
         needs=LATENCY,
     ),
