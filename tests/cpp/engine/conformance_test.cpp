@@ -152,15 +152,16 @@ TEST_CASE("any number of threads gives the same bits, and so do trials side by s
       RunOptions o = options_with(Vector::Zero(n), 13);
       o.attacks = attacks;
       const PlantOptions plant{25, Vector::Constant(n, 0.2), 0.5, "uniform"};
+      const auto prepared = filter->prepare(model, network);
       o.threads = 1;
-      const Record one = simulate(model, network, *filter, plant, o);
+      const Record one = simulate(*prepared, plant, o);
       o.threads = 4;
-      const Record four = simulate(model, network, *filter, plant, o);
+      const Record four = simulate(*prepared, plant, o);
       CHECK(same(one.estimate, four.estimate));
       CHECK(same(one.bound, four.bound));
       CHECK(one.verdict == four.verdict);
       o.keep = {true, false, false, false};  // estimates alone: the path with eight trials side by side
-      const Record lanes = simulate(model, network, *filter, plant, o);
+      const Record lanes = simulate(*prepared, plant, o);
       CHECK(same(one.estimate, lanes.estimate));
       CHECK(same(one.error, lanes.error));
     }
@@ -279,13 +280,16 @@ TEST_CASE("an estimate that overflows is withheld, and the agent rejoins from it
 TEST_CASE("a liar that sends 1e308 for three samples leaves nobody with an estimate that is of no use") {
   for (const int n : {2, 9}) {
     const Setup s = setup(n, 7, static_cast<std::uint64_t>(80 + n));
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> y = s.y;
+    const Log log{y.data(), nullptr, 1, static_cast<int>(y.rows())};
     for (const auto& filter : test::every_filter()) {
+      const auto prepared = filter->prepare(s.model, s.network);
       for (const double lie : {1e308, 1e149, -1e140}) {
         CAPTURE(filter->name());
         CAPTURE(lie);
         RunOptions o = options_with(Vector::Zero(n));
         o.message_attacks = {forge(Schedule(4, {1}, 7), lie, true)};
-        const Record record = replay(s.model, s.network, *filter, s.y, Matrix(), o);
+        const Record record = replay(*prepared, log, o);
         CHECK(all_finite(record.estimate));
         CHECK((lie == 1e308 ? record.link.refused : record.link.forged) > 0);
       }

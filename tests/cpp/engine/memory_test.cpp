@@ -21,11 +21,7 @@ using certificate::Wanted;
 namespace {
 
 constexpr std::uint64_t kSeed = 20261201;
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kSystems = 40;
-#else
-constexpr int kSystems = 250;
-#endif
+constexpr int kSystems = test::tried(250);
 
 Wanted remembering(Spread spread, int attacked, double failure = 1e-6) {
   Wanted wanted{spread, failure, attacked, 1000};

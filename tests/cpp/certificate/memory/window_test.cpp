@@ -67,7 +67,7 @@ TEST_CASE("W2M, W3M and A contain the truth at the edge of their events, and acc
   Tally subsets;
   Tally search;
   int widths = 0;
-  for (int k = 0; k < 1500; ++k) {
+  for (int k = 0; k < test::tried(1500); ++k) {
     CAPTURE(k);
     test::WindowCase d = test::draw_window(rng, k % 3 == 0, false);
     test::play(rng, d);
@@ -104,13 +104,13 @@ TEST_CASE("W2M, W3M and A contain the truth at the edge of their events, and acc
   print("W3M", subsets);
   print("A", search);
   for (const Tally* t : {&leverage, &moving, &subsets, &search}) {
-    CHECK(t->answered > 250);
+    CHECK(t->answered > test::tried(250));
     CHECK(t->largest > 0.9);  // the events are reached: the test can fail
   }
-  CHECK(leverage.proved > 100);
-  CHECK(moving.proved > 50);
-  CHECK(subsets.proved > 100);
-  CHECK(widths > 100);
+  CHECK(leverage.proved > test::tried(100));
+  CHECK(moving.proved > test::tried(50));
+  CHECK(subsets.proved > test::tried(100));
+  CHECK(widths > test::tried(100));
 }
 
 TEST_CASE("with bounded noise at its bounds the sets always hold, and the hull is the smallest of them") {

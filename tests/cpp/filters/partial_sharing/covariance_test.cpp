@@ -63,7 +63,7 @@ TEST_CASE("covariances stay symmetric positive semidefinite over 1e5 steps") {
     for (int i = 0; i < 2; ++i) {
       LocalRecursion recursion(s, i);
       bool good = true;
-      for (int t = 0; t < 100000; ++t) {
+      for (int t = 0; t < test::tried(100000); ++t) {
         recursion.step();
         const Matrix& P = recursion.P();
         good = good && P.allFinite() && P == P.transpose();

@@ -33,7 +33,7 @@ ParamMap detecting(int attacked, int rounds, double threshold = 0.3) {
 
 TEST_CASE("300 random systems under loss and delay: no honest sensor is proved attacked") {
   test::Rng rng(11);
-  for (int run = 0; run < 300; ++run) {
+  for (int run = 0; run < test::tried(300); ++run) {
     const int N = test::whole(rng, 4, 9);
     const int n = test::whole(rng, 1, 3);
     const Model model = test::scalar_model(rng, n, N, test::uniform(rng, 0.9, 1.02), 0.01, 0.01);

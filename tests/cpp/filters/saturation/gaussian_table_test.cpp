@@ -48,12 +48,8 @@ Counts one(test::Rng& rng, Kind kind, double failure) {
   return worst.run(kind, kHorizon + 5, eta0, 0.0);
 }
 
-/// Random systems; the sanitizers take twenty times as long for the same.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kSystems = 60;
-#else
-constexpr int kSystems = 600;
-#endif
+/// Random systems.
+constexpr int kSystems = test::tried(600);
 
 Counts runs(Kind kind, double failure, std::uint64_t seed) {
   Counts all;

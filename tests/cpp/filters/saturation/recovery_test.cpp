@@ -38,12 +38,8 @@ Counts one(test::Rng& rng, Kind kind, bool chebyshev) {
   return worst.run(kind, 90, eta0, test::uniform(rng, 0.02, 0.4));
 }
 
-/// Random systems per kind; the sanitizers take twenty times as long for the same.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kSystems = 60;
-#else
-constexpr int kSystems = 600;
-#endif
+/// Random systems per kind.
+constexpr int kSystems = test::tried(600);
 
 Counts runs(Kind kind, std::uint64_t seed) {
   Counts all;

@@ -104,12 +104,8 @@ Counts runs(int systems, std::uint64_t seed, int kind) {
   return c;
 }
 
-/// Random systems per kind; the sanitizers take twenty times as long for the same.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kSystems = 150;
-#else
-constexpr int kSystems = 2000;
-#endif
+/// Random systems per kind.
+constexpr int kSystems = test::tried(2000);
 
 }  // namespace
 
