@@ -65,25 +65,32 @@ SubsetBound planar_sweep(const MatrixRef& C, int s) {
 
 std::optional<double> lambda0_orthogonal(const MatrixRef& C, int s) {
   detail::require_subset_input("lambda0", C, s);
-  std::vector<Eigen::Index> first;
+  const Eigen::Index most = std::min(C.rows(), C.cols());  // so many rows can be orthogonal to each other
+  Matrix first(most, C.cols());  // of each kind; a row meets the columns of its entries
+  Vector products(most);
   std::vector<int> size;
   for (Eigen::Index i = 0; i < C.rows(); ++i) {
     if (std::abs(C.row(i).squaredNorm() - 1.0) > kOrthogonal) return std::nullopt;
-    std::size_t home = first.size();
-    for (std::size_t g = 0; g < first.size(); ++g) {
-      const double product = std::abs(C.row(first[g]).dot(C.row(i)));
+    const auto kinds = static_cast<Eigen::Index>(size.size());
+    products.head(kinds).setZero();
+    for (Eigen::Index k = 0; k < C.cols(); ++k)
+      if (C(i, k) != 0.0) products.head(kinds) += C(i, k) * first.col(k).head(kinds);
+    Eigen::Index home = kinds;
+    for (Eigen::Index g = 0; g < kinds; ++g) {
+      const double product = std::abs(products(g));
       if (std::abs(product - 1.0) <= kOrthogonal)
         home = g;
       else if (product > kOrthogonal)
         return std::nullopt;
     }
-    if (home == first.size()) {
-      first.push_back(i);
+    if (home == most) return std::nullopt;
+    if (home == kinds) {
+      first.row(kinds) = C.row(i);
       size.push_back(0);
     }
-    ++size[home];
+    ++size[static_cast<std::size_t>(home)];
   }
-  if (static_cast<Eigen::Index>(first.size()) < C.cols()) return 0.0;
+  if (static_cast<Eigen::Index>(size.size()) < C.cols()) return 0.0;
   return std::max(0.0, static_cast<double>(*std::min_element(size.begin(), size.end()) - s));
 }
 

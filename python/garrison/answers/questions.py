@@ -52,7 +52,9 @@ class Questions:
     def answers(self, filter: _core.Filter | None) -> dict[str, Any]:
         """Every field of Analysis but its title."""
         over_time = self._removal("fewest sensors without which something is never seen", self.A)
-        one_sample = self._removal("fewest sensors without which one sample is not enough", self.identity)
+        one_sample = over_time
+        if not np.array_equal(self.A, self.identity):
+            one_sample = self._removal("fewest sensors without which one sample is not enough", self.identity)
         can_lie = [self.sensors.names[k] for k in self.sensors.can_lie]
         limits = self._limits(over_time, one_sample)
         gamma, of_saturation = self._saturation(len(can_lie))
@@ -227,8 +229,8 @@ class Questions:
             return [[] for _ in self.sensors.rows]
         system = structure.System(structure.Pattern.of(self.A))
         states = [[int(k) for k in np.flatnonzero(row)] for row in self.sensors.rows]
-        found = system.substitutes(states) if states else []
-        return [[self.model.state_names[k] for k in some] for some in found]
+        found, names = system.substitutes(states) if states else [], list(self.model.state_names)
+        return [[names[k] for k in some] for some in found]
 
     def _additions(self, over_time: Removal, one_sample: Removal, limit: Limit, gamma: float) -> list[Addition]:
         out = []

@@ -46,11 +46,16 @@ def smallest_removal(A: Array, rows: Array, may_go: list[int], budget: Any) -> R
     """
     if not _seen(A, rows):
         return Removal(0, 0, [])
-    example = _by_support(A, rows, may_go)
+    example = _by_support(A, rows, may_go, budget)
     if example is None:
         return Removal(len(may_go) + 1, len(may_go) + 1, [])
     most = len(example)
     certain = 0
+    if most > 1 and len(may_go) == len(rows) and _is_identity(A) and np.all(np.any(rows != 0.0, axis=1)):
+        attack = certificate.smallest_undetectable(rows, most - 1, 1e12)  # stops with the budget
+        if attack.size is not None:
+            return Removal(attack.size, attack.size, sorted(attack.example))
+        return Removal(attack.searched + 1, most, sorted(example))
     try:
         while certain + 1 < most and not budget.over:
             found = _breaking(A, rows, may_go, certain + 1, budget)
@@ -64,16 +69,8 @@ def smallest_removal(A: Array, rows: Array, may_go: list[int], budget: Any) -> R
 
 def _breaking(A: Array, rows: Array, may_go: list[int], size: int, budget: Any) -> list[int] | None:
     """A breaking set of `size` rows; None: there is none. Smaller sets are known not to break."""
-    if len(may_go) == len(rows):
-        if _is_identity(A) and np.all(np.any(rows != 0.0, axis=1)):
-            found = certificate.smallest_undetectable(rows, size, 1e12)
-            if found.size is not None:
-                return list(found.example)
-            if found.searched >= size:
-                return None
-            raise _core.InvalidInput("smallest_removal: the time is up")
-        if _core.s_sparse_observable(A, rows, size):
-            return None
+    if len(may_go) == len(rows) and _core.s_sparse_observable(A, rows, size):
+        return None
     for tried, some in enumerate(combinations(may_go, size)):
         if budget.over or tried > _MOST_SETS:
             raise _core.InvalidInput("smallest_removal: too many sets of sensors to try")
@@ -82,12 +79,15 @@ def _breaking(A: Array, rows: Array, may_go: list[int], size: int, budget: Any) 
     return None
 
 
-def _by_support(A: Array, rows: Array, may_go: list[int]) -> list[int] | None:
+def _by_support(A: Array, rows: Array, may_go: list[int], budget: Any) -> list[int] | None:
     """A breaking set that is quickly found: all sensors of one state. None: no such set breaks."""
     allowed = set(may_go)
+    at_once = _is_identity(A)  # then nothing else shows a state
     touching = [np.flatnonzero(column) for column in rows.T]
     for some in sorted(touching, key=len):
-        if allowed.issuperset(some.tolist()) and not _seen(A, np.delete(rows, some, axis=0)):
+        if budget.over:
+            break
+        if allowed.issuperset(some.tolist()) and (at_once or not _seen(A, np.delete(rows, some, axis=0))):
             return [int(k) for k in some]
     if not _seen(A, np.delete(rows, may_go, axis=0)):
         return list(may_go)

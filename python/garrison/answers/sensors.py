@@ -27,31 +27,30 @@ class Sensors:
     @property
     def can_lie(self) -> list[int]:
         """Rows that an attacker reaches."""
-        return [k for k in range(len(self.rows)) if k not in set(self.secured)]
+        secured = set(self.secured)
+        return [k for k in range(len(self.rows)) if k not in secured]
 
 
 def sensors_of(model: _core.Model, network: _core.Network, names: list[str] | None = None) -> Sensors:
     """One sensor per output. names: of the agents of the model. Raises InvalidInput when sizes do not fit."""
     split, net, owner = _core.split_outputs(model, network)
     agents = names or list(network.names) or [f"agent {i}" for i in range(model.agents)]
-    rows: list[Array] = []
+    # Asked for once each: these are copies of all matrices and names.
+    outputs, parts, named = [len(c) for c in model.C], split.C, list(model.output_names)
+    stacked = np.vstack(parts) if parts else np.zeros((0, model.states))
     agent: list[int] = []
     words: list[str] = []
     secured: list[int] = []
     part: dict[int, int] = {}
-    exposed = model.__getstate__().get("exposed") or [len(c) for c in model.C]
+    exposed = model.__getstate__().get("exposed") or outputs
     for i, of in enumerate(owner):
-        row = np.asarray(split.C[i]).reshape(-1, model.states)
-        if not len(row):
+        if not len(parts[i]):
             continue
         number = part.setdefault(of, 0)
         part[of] += 1
         if number >= exposed[of]:
-            secured.append(len(rows))
-        several = len(model.C[of]) > 1
-        output = model.output_names[len(rows)] if model.output_names else number + 1
-        words.append(f"{agents[of]}:{output}" if several else agents[of])
-        rows.append(row[0])
+            secured.append(len(words))
+        output = named[len(words)] if named else number + 1
+        words.append(f"{agents[of]}:{output}" if outputs[of] > 1 else agents[of])
         agent.append(i)
-    stacked = np.array(rows).reshape(-1, model.states)
     return Sensors(split, net, stacked, agent, words, secured)

@@ -3,6 +3,7 @@
 import logging
 import warnings
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,15 @@ class Grid:
     branches: list[tuple[int, int, float]]
     angles: Array
     same: dict[str, int] = field(default_factory=dict)
+
+    @cached_property
+    def near(self) -> list[dict[int, float]]:
+        """Of every bus: those that a branch joins to it, with the susceptance of all such branches."""
+        found: list[dict[int, float]] = [{} for _ in self.names]
+        for i, k, b in self.branches:
+            for bus, other in ((i, k), (k, i)):
+                found[bus][other] = found[bus].get(other, 0.0) + b
+        return found
 
 
 def read_grid_case(case: str) -> Grid:

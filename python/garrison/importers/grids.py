@@ -66,8 +66,10 @@ def import_pandapower(
     assumed = assumed or Assumptions()
     grid = read_grid_case(case)
     n = len(grid.names)
-    require_memory("the grid", f"{n} buses", 4.0 * n * n)
-    members = _members(grid, _chosen(grid, units), assumed.areas)
+    chosen = _chosen(grid, units)
+    measured = sum(1 + len(grid.near[b]) for b in chosen)
+    require_memory("the grid", f"{n} buses, {measured} measurements", 2.0 * (measured + 2 * n) * n)
+    members = _members(grid, chosen, assumed.areas)
     agents = [f"area {k}" if len(b) > 1 else f"bus {grid.names[b[0]]}" for k, b in enumerate(members, start=1)]
     blocks = [[_unit(grid, bus, assumed) for bus in buses] for buses in members]
     C = [np.vstack([rows for rows, _, _ in one]) for one in blocks]
@@ -137,18 +139,16 @@ def _members(grid: Grid, chosen: list[int], areas: int | None) -> list[list[int]
 
 def _unit(grid: Grid, bus: int, assumed: Assumptions) -> tuple[Array, Array, list[str]]:
     """Rows of C, covariance and names of the measurements of one phasor unit."""
-    near: dict[int, float] = {}
-    for i, k, b in grid.branches:
-        if bus in (i, k):
-            other = k if bus == i else i
-            near[other] = near.get(other, 0.0) + b
+    near = grid.near[bus]
     seen = [bus, *sorted(near)]
     R = np.full((len(seen), len(seen)), assumed.angle**2)
     R += np.diag([0.0, *((assumed.flow / near[k]) ** 2 for k in seen[1:])])
     R += np.diag([1e-4 * assumed.angle**2] * len(seen))  # rounding: without it two rows of one strong line are one
     name = grid.names[bus]
     names = [f"angle at {name}", *(f"angle at {grid.names[k]} from {name}" for k in seen[1:])]
-    return np.eye(len(grid.names))[seen], R, names
+    rows = np.zeros((len(seen), len(grid.names)))
+    rows[np.arange(len(seen)), seen] = 1.0
+    return rows, R, names
 
 
 def _block_diagonal(blocks: list[Array]) -> Array:

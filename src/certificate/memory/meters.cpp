@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 #include "../require.hpp"
 #include "../top.hpp"
 #include "dense.hpp"
 #include "garrison/certificate/kernels.hpp"
 #include "garrison/core/budget.hpp"
+#include "row_parts.hpp"
 
 namespace garrison::certificate {
 namespace {
@@ -19,18 +21,30 @@ namespace {
 constexpr double kNear = 1e-9;       // of 1: rounding of a leverage
 constexpr std::int64_t kPoll = 256;  // steps of the search between two looks at the clock
 
-bool determines(const Matrix& H) {
-  if (H.rows() < H.cols()) return false;
-  Eigen::ColPivHouseholderQR<Matrix> qr(H);
+bool of_full_rank(const Matrix& part) {
+  if (part.rows() < part.cols()) return false;
+  Eigen::ColPivHouseholderQR<Matrix> qr(part);
   qr.setThreshold(kNear);
-  return qr.rank() == H.cols();
+  return qr.rank() == part.cols();
+}
+
+bool determines(const MatrixRef& H) {
+  if (H.rows() < H.cols()) return false;
+  const auto parts = detail::row_parts(H);
+  return std::all_of(parts.begin(), parts.end(),
+                     [&](const detail::RowPart& p) { return of_full_rank(H(p.rows, p.columns)); });
 }
 
 /// Projector onto the range of H.
-Matrix hat(const Matrix& H) {
-  const Eigen::HouseholderQR<Matrix> qr(H);
-  const Matrix Q = qr.householderQ() * Matrix::Identity(H.rows(), H.cols());
-  return Q * Q.transpose();
+Matrix hat(const MatrixRef& H) {
+  Matrix Lam = Matrix::Zero(H.rows(), H.rows());
+  for (const detail::RowPart& p : detail::row_parts(H)) {
+    const Matrix part = H(p.rows, p.columns);
+    const Eigen::HouseholderQR<Matrix> qr(part);
+    const Matrix Q = qr.householderQ() * Matrix::Identity(part.rows(), part.cols());
+    Lam(p.rows, p.rows) = Q * Q.transpose();
+  }
+  return Lam;
 }
 
 /// The rows that are left; `out` need not be sorted.
@@ -49,11 +63,13 @@ void require_rows(const MatrixRef& H) {
   detail::require_room("H", static_cast<double>(H.rows()) * static_cast<double>(H.rows()));
 }
 
-/// Depth-first search for sets of `size` rows whose block of the hat matrix has eigenvalue 1.
+/// Depth-first search for sets of `size` rows of one part whose block of the hat matrix has eigenvalue 1.
 class Search {
  public:
-  Search(const Matrix& H, double tries) : H_(H), hat_(hat(H)), size_(hat_.cwiseAbs()), tries_(tries) {
-    const auto m = static_cast<std::size_t>(H.rows());
+  /// rows: how those of the part `H` are numbered.
+  Search(Matrix H, std::vector<Eigen::Index> rows, double tries)
+      : H_(std::move(H)), rows_(std::move(rows)), hat_(hat(H_)), size_(hat_.cwiseAbs()), tries_(tries) {
+    const auto m = rows_.size();
     partners_.resize(m);
     sums_.resize(m);
     for (std::size_t i = 0; i < m; ++i) {
@@ -73,13 +89,19 @@ class Search {
     for (std::size_t i = 0; i < partners_.size(); ++i) {
       set_.assign(1, static_cast<int>(i));
       if (extend(i, 0, size_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)), size - 1, complete))
-        return set_;
+        return numbered();
       if (!complete) break;
     }
     return {};
   }
 
  private:
+  std::vector<int> numbered() const {
+    std::vector<int> out;
+    for (const int k : set_) out.push_back(static_cast<int>(rows_[static_cast<std::size_t>(k)]));
+    return out;
+  }
+
   /// Row i of an eigenvector to 1 with the largest entry: sum over the set of |Lam_ij| >= 1.
   bool extend(std::size_t i, std::size_t from, double total, int need, bool& complete) {
     if (++steps_ % kPoll == 0 && current_budget().over()) complete = false;
@@ -111,7 +133,8 @@ class Search {
     return !determines(without(H_, set_));
   }
 
-  const Matrix& H_;
+  Matrix H_;
+  std::vector<Eigen::Index> rows_;
   Matrix hat_, size_;
   double tries_;
   std::int64_t steps_ = 0;
@@ -175,17 +198,20 @@ SmallestAttack smallest_undetectable(const MatrixRef& H, int most, double tries)
   const Matrix unit = H.rowwise().normalized();
   if (!determines(unit))
     refuse("H", "rows that do not determine the state", "full column rank", "remove the reference");
-  Search search(unit, tries);
+  std::vector<Search> searches;  // the smallest set is one of a single part
+  for (detail::RowPart& p : detail::row_parts(unit))
+    searches.emplace_back(Matrix(unit(p.rows, p.columns)), std::move(p.rows), tries);
   SmallestAttack found;
   bool complete = true;
   for (int k = 1; k <= std::min(most, static_cast<int>(H.rows())); ++k) {
-    std::vector<int> set = search.find(k, complete);
-    if (!set.empty()) {
-      found.size = k;
-      found.example = std::move(set);
-      return found;
+    for (Search& search : searches) {
+      found.example = search.find(k, complete);
+      if (!found.example.empty()) {
+        found.size = k;
+        return found;
+      }
+      if (!complete) return found;
     }
-    if (!complete) return found;
     found.searched = k;
   }
   return found;
