@@ -214,16 +214,19 @@ void bind_agents(py::module_& m) {
           "message.")
       .def(
           "join",
-          [](PyAgent& a, std::int64_t t, const std::vector<Letter>& inbox) {
+          [](PyAgent& a, std::int64_t t, const std::vector<Letter>& inbox, bool speak) {
             const Refusal why = a->listen(t);
             if (why != Refusal::none) refuse_call(a, "join", why, t);
             for (const Letter& letter : inbox) deliver(a, letter);
-            a->join();
+            a->join(speak);
           },
-          py::arg("t"), py::arg("inbox"),
+          py::arg("t"), py::arg("inbox"), py::arg("speak") = false,
           "Take over an estimate from what the neighbours sent in the first round of sample t, as an agent "
           "that starts in\n"
-          "a running network: its next sample is t + 1.")
+          "a running network: its next sample is t + 1. Where nobody was heard the agent keeps its own, and "
+          "says\n"
+          "nothing until it hears somebody; speak: it says it, for networks in which nobody else speaks, "
+          "either.")
       .def(
           "uncover", [](PyAgent& a) { a->uncover(); },
           "Something was missed that only the caller knows of, such as more than `attacked` measurements of\n"

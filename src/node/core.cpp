@@ -51,6 +51,7 @@ void Core::listen(Instant now) {
 void Core::tick(Instant now) noexcept {
   if (state_ == State::idle) return;
   watch_clock(now);
+  in_contact_ = now.steady - contact_at_ <= kContact;
   const std::int64_t slot = schedule_.slot(now.wall);
   if (state_ == State::listening) hear(slot);
   if (state_ == State::rounds && slot > agent_.sample()) {
@@ -82,6 +83,10 @@ Fate Core::message(int neighbour, std::int64_t sample, int round, Bytes body, st
   note(Call::deliver, sample, round, body, neighbour);
   if (state_ == State::rounds) advance(now);
   return fate;
+}
+
+void Core::contact(int neighbour, Instant now) noexcept {
+  if (neighbour_of(neighbour) < neighbours_.size()) contact_at_ = now.steady;
 }
 
 Fate Core::wanted(int neighbour, std::int64_t sample, int round) noexcept {
@@ -181,8 +186,10 @@ void Core::hear(std::int64_t slot) noexcept {
       heard |= places_[place(heard_slot_, 0, k)].sample == heard_slot_;
     alone_ = heard || others_ ? 0 : alone_ + 1;
     if (heard || alone_ >= listen_for_) {
-      agent_.join();
-      note(Call::join, heard_slot_);
+      // Neighbours that are there and say nothing wait for somebody to begin, as we do.
+      const bool speak = !heard && in_contact_;
+      agent_.join(speak);
+      note(Call::join, heard_slot_, speak ? 1 : 0);
       ++counters_.joins;
       state_ = State::waiting;
       return;
@@ -220,6 +227,7 @@ void Core::begin_sample(std::int64_t slot, Instant now) noexcept {
   state_ = State::rounds;
   const Agent::Sent first = agent_.sense(slot, y, bytes_);
   if (first.refusal != Refusal::none) return start_listening(schedule_.listen_for);  // no round to be in
+  silent_sample_ = first.bytes == 0;
   post(first, 0, true);
 }
 
@@ -254,6 +262,7 @@ void Core::fuse(Instant now, bool send) noexcept {
   for (std::size_t k = 0; k < neighbours_.size(); ++k) {
     if (agent_.has(neighbours_[k])) {
       silent_[k] = 0;
+      silent_sample_ = false;
       continue;
     }
     ++counters_.missing;
@@ -289,6 +298,8 @@ void Core::end_sample(Instant now) noexcept {
   note_numbers(Call::estimate, agent_.sample(), x);
   outlet_.ended(
       {agent_.sample(), agent_.report(), complete_, measured_, now.wall - schedule_.begin(agent_.sample())});
+  // Neither we nor anybody around said a word: listen, and begin if it stays so.
+  if (silent_sample_ && rounds_ > 0 && in_contact_) start_listening(schedule_.listen_for);
 }
 
 void Core::note(Call call, std::int64_t sample, int round, Bytes data, int sender) noexcept {

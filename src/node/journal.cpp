@@ -50,7 +50,7 @@ bool Replay::done(const Entry& entry) {
     case Call::listen:
       return agent_.listen(entry.sample) == Refusal::none;
     case Call::join:
-      return agent_.join() == Refusal::none;
+      return agent_.join(entry.round != 0) == Refusal::none;
     case Call::uncover:
       agent_.uncover();
       return true;

@@ -144,7 +144,12 @@ void LogWriter::record(std::uint8_t code, Bytes content) {
   write(content);
 }
 
+/// After a failure nothing more is written: behind a hole it could not be read.
 void LogWriter::write(Bytes bytes) noexcept {
+  if (failed_ != 0) {
+    ++failed_;
+    return;
+  }
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) ++failed_;
   bytes_ += static_cast<std::int64_t>(bytes.size());
 }

@@ -123,6 +123,7 @@ void Node::send_frame(Link& link, Inner inner, Bytes rest) noexcept {
 Fate Node::frame(Link& link, Bytes plain, Instant now) noexcept {
   const Inner inner = Inner::read(plain.data());
   const Bytes rest = plain.subspan(kInner);
+  core_.contact(link.peer.id(), now);
   switch (inner.kind) {
     case Kind::message: {
       const Fate fate = message(link, inner, rest, now);

@@ -59,8 +59,9 @@ std::string roster_text() {
 
 /// No name is looked up in a test: the address is put in after everything else was changed.
 std::string with_address(std::string text) {
+  int port = 7470;
   for (std::size_t at = 0; (at = text.find("\"HERE\"")) != std::string::npos;)
-    text.replace(at, 6, "\"127.0.0.1:7470\"");
+    text.replace(at, 6, "\"127.0.0.1:" + std::to_string(port++) + "\"");
   return text;
 }
 

@@ -224,7 +224,8 @@ TEST_CASE("states saved on two ranks go on on three with the same bits") {
 }
 
 TEST_CASE("families that do not run on many ranks are refused by name") {
-  CHECK_THROWS_WITH_AS(partition::require_family("platoon", "name"), doctest::Contains("\"platoon\""), InvalidInput);
+  CHECK_THROWS_WITH_AS(partition::require_family("platoon", "name"), doctest::Contains("\"platoon\""),
+                       InvalidInput);
   CHECK_THROWS_WITH_AS(partition::needs_whole("lfre", {}, 11),
                        doctest::Contains("saturation, scalar_gain, rdkf"), InvalidInput);
 }

@@ -6,12 +6,14 @@ import ctypes.util
 import json
 import os
 import re
+import resource
 import shutil
 import signal
 import socket
 import struct
 import subprocess
 import time
+from contextlib import ExitStack
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -23,7 +25,7 @@ from garrison.cli import main as garrison
 from garrison.net import Client
 from garrison.net.accept.load import Load
 from garrison.net.command import main
-from garrison.net.folder import write_network
+from garrison.net.folder import NodeFolder, write_network
 from garrison.net.plan import read_plan
 from garrison.net.programs import LIAR, is_there, program
 from garrison.net.soak import Soak
@@ -98,6 +100,43 @@ def test_killed_nodes_are_back_and_their_logs_are_read_to_the_end(
     # With the snapshot of the disk or, where that was not written yet, by joining: after what was sent before.
     assert all(log["estimates"] > 0 for log in logs)
     assert all(before["last"] < after["first"] for logs in lives for before, after in pairwise(logs))
+
+
+def _all_complete(nodes: list[NodeFolder], samples: int, patience: float) -> bool:
+    """Every node has had so many whole samples, before patience (seconds) ends."""
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        if all(_patiently(Client(node.socket))["counters"]["complete"] >= samples for node in nodes):
+            return True
+        time.sleep(0.1)
+    return False
+
+
+def test_a_network_that_starts_late_or_was_off_for_long_begins_by_itself(
+    plan: Path, programs: str, tmp_path: Path
+) -> None:
+    """Nobody has anything from anybody: each waits for the others to speak, until all see that nobody does."""
+    (tmp_path / "net").mkdir()
+    nodes = write_network(read_plan(plan), tmp_path / "net", time.time() - 500, programs)
+    roster = (tmp_path / "net" / "roster.toml").read_text()
+    for node in nodes:  # directly to each other
+        roster = roster.replace(f":{node.outside}", f":{node.port}")
+    (tmp_path / "net" / "roster.toml").write_text(roster)
+    for life in range(2):
+        with ExitStack() as stack:
+            running = []
+            for node in nodes:
+                command = [program("garrison-node", programs), str(node.settings)]
+                running.append(stack.enter_context(subprocess.Popen(command, stdin=subprocess.DEVNULL)))
+            try:
+                assert _all_complete(nodes, 5, patience=20.0), f"life {life}"
+                assert all(_patiently(Client(node.socket))["bound"] is None for node in nodes)  # start too long ago
+            finally:
+                for process in running:
+                    process.kill()  # before a snapshot was written: the second life knows nothing, either
+    logs = [_core.replay_log(path.read_bytes()) for path in sorted((tmp_path / "net").glob("*/log/*.mcap"))]
+    assert len(logs) == 2 * len(nodes)
+    assert all(log["differ"] == 0 for log in logs)
 
 
 def test_a_client_measures_and_watches(folder: Path, programs: str) -> None:
@@ -180,8 +219,8 @@ def test_a_hang_up_lets_a_service_read_its_files_anew(folder: Path, programs: st
             process.terminate()
     assert process.returncode == 0
     good, bad = said.read_text().splitlines()
-    assert good == 'garrison-node: SIGHUP, files read anew: {"ok":true}'
-    assert "sokket" in bad
+    assert good == "garrison-node: SIGHUP: files read anew"
+    assert "SIGHUP: files not read: " in bad and "sokket" in bad
 
 
 def test_only_the_journal_is_told_priorities(folder: Path, programs: str, tmp_path: Path) -> None:
@@ -284,6 +323,20 @@ def test_check_says_what_fits(folder: Path, programs: str) -> None:
         ),
         ("node.toml", 'name = "0"', 'name = "9"', ["node.toml, name", "an agent of", "0, 1, 2"]),
         ("node.toml", "part.gdesign", "nothing.gdesign", ["nothing.gdesign", "No such file"]),
+        (
+            "node.toml",
+            'path = "sensor.csv"',
+            'path = "sensor.csv"\nleast = [2]\nmost = [1]',
+            ["[sensor].least", "got 2", "less than 1"],
+        ),
+        ("node.toml", 'path = "sensor.csv"', 'path = "sensor.csv"\nscale = [0]', ["[sensor].scale", "not 0"]),
+        (
+            "node.toml",
+            'path = "node.sock"',
+            f'path = "/{"x" * 200}"',
+            ["[socket].path", "201 characters", "at most 107"],
+        ),
+        ("../roster.toml", "start = ", "start = 1796069212 # ", ["[run].start", "microseconds since 1970"]),
         ("sensor.csv", "\n", "\nwords\n", ["sensor.csv, line 2", '"words"', "1 numbers"]),
         ("../roster.toml", "period_ms = 100.0", "period_ms = 2", ["3 rounds", "a longer period_ms"]),
         ("../roster.toml", "initial = [0.0, 0.0]", "initial = [0.0]", ["[run].initial", "got 1 numbers", "2, one per"]),
@@ -303,6 +356,51 @@ def test_check_refuses_what_does_not_fit(
     assert done.stdout == ""
     for word in [*words, "got ", "expected "]:
         assert word in done.stderr
+
+
+@pytest.mark.parametrize(
+    "file", ["node.toml", "node.key", "part.gdesign", "sensor.csv", "../roster.toml", "state/boot"]
+)
+def test_pipes_are_not_waited_for(folder: Path, programs: str, file: str) -> None:
+    path = folder / file
+    path.unlink(missing_ok=True)
+    path.parent.mkdir(exist_ok=True)
+    os.mkfifo(path, 0o600)
+    done = check(folder, programs)
+    assert done.returncode == 2
+    assert "no plain file" in done.stderr
+
+
+def test_a_log_that_the_disk_did_not_take_goes_on_in_a_new_file(folder: Path, programs: str) -> None:
+    """The limit of a file's size stands in for a disk that is full, and is taken away again."""
+    roster = folder / ".." / "roster.toml"
+    roster.write_text(re.sub(r"start = \d+", f"start = {int(time.time() * 1e6) + 500_000}", roster.read_text()))
+    command = [program("garrison-node", programs), str(folder / "node.toml")]
+    with (folder / "said").open("wb") as said:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=said)
+    with process:
+        try:
+            client = Client(folder / "node.sock")
+            _patiently(client)
+            resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
+            for _ in range(100):
+                time.sleep(0.1)
+                if client.status()["log_failed"] > 0:
+                    break
+            assert client.status()["log_failed"] > 0
+            resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+            for _ in range(100):
+                time.sleep(0.1)
+                if len(list((folder / "log").glob("*.mcap"))) > 1:
+                    break
+            time.sleep(1.0)
+        finally:
+            process.terminate()
+    assert process.returncode == 0
+    assert (folder / "said").read_text().count("no log from here on, until there is room") == 1
+    cut, *others = [_core.replay_log(path.read_bytes()) for path in sorted((folder / "log").glob("*.mcap"))]
+    assert not cut["ended"] and cut["differ"] == 0
+    assert others[-1]["ended"] and others[-1]["differ"] == 0 and others[-1]["estimates"] > 0
 
 
 def test_check_refuses_keys_that_others_may_read_or_that_are_not_its_own(folder: Path, programs: str) -> None:

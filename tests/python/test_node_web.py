@@ -147,4 +147,4 @@ def test_the_page_is_one_file_that_asks_nobody_else(watcher: Watcher) -> None:
 def test_the_command_refuses_a_port_that_is_taken(watcher: Watcher, capsys: pytest.CaptureFixture[str]) -> None:
     with serving(watcher) as url:
         assert main(["--port", url.rpartition(":")[2], "a.sock"]) == 2
-    assert "expected an address that nobody listens at" in capsys.readouterr().err
+    assert "expected an address of this machine that is free" in capsys.readouterr().err

@@ -72,9 +72,11 @@ class GARRISON_EXPORT Agent {
   virtual Sent fuse(std::span<std::byte> out) noexcept = 0;
 
   /// Listens to sample t without taking part, to `join` with what was delivered for its first round: an
-  /// estimate from the neighbours, after which the agent is at the end of sample t. Refused: order.
+  /// estimate from the neighbours, after which the agent is at the end of sample t. Where nobody was heard it
+  /// keeps its own, and says nothing until it hears somebody (`reset`); with `speak` it says it: for networks
+  /// in which nobody else speaks, either. Refused: order.
   virtual Refusal listen(std::int64_t t) noexcept = 0;
-  virtual Refusal join() noexcept = 0;
+  virtual Refusal join(bool speak = false) noexcept = 0;
   /// A gap lies behind this state, whatever the driver saw: nothing is claimed that it may have broken.
   virtual void uncover() noexcept = 0;
 

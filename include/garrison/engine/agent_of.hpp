@@ -123,7 +123,7 @@ class AgentOf final : public Agent {
     if (evidence_) evidence_->begin(t, silence_.data());
     return Refusal::none;
   }
-  Refusal join() noexcept override {
+  Refusal join(bool speak) noexcept override {
     if (!listening_) return Refusal::order;
     const Inbox<Message> heard = rounds_ > 0 ? inbox() : nobody();
     F::template rejoin<n>(local_, *gains_, heard, t_, state_);
@@ -134,7 +134,7 @@ class AgentOf final : public Agent {
     uncover();
     round_ = rounds_;
     listening_ = false;
-    fresh_ = unheard(heard);
+    fresh_ = !speak && unheard(heard);
     return Refusal::none;
   }
   void uncover() noexcept override { garrison::uncover<F, n>(*gains_, state_); }

@@ -94,6 +94,8 @@ class Core {
   Fate message(int neighbour, std::int64_t sample, int round, Bytes body, std::uint64_t mark,
                Instant now) noexcept;
   Fate wanted(int neighbour, std::int64_t sample, int round) noexcept;
+  /// Anything genuine came from a neighbour.
+  void contact(int neighbour, Instant now) noexcept;
   /// When `tick` has to be called next, wall time.
   Micros due() const noexcept;
 
@@ -146,7 +148,11 @@ class Core {
   std::int64_t heard_slot_ = 0;    ///< listening: the slot that is listened to
   int alone_ = 0;                  ///< slots that nobody was heard in
   int listen_for_ = 0;
-  bool others_ = false;  ///< somebody was heard, but at another time
+  bool others_ = false;                          ///< somebody was heard, but at another time
+  static constexpr Micros kContact = 1'500'000;  ///< signs of life come more often
+  Micros contact_at_ = INT64_MIN / 2;            ///< steady
+  bool in_contact_ = false;
+  bool silent_sample_ = false;  ///< nothing was sent in this sample, nor heard
   bool complete_ = true;
   bool measured_ = false;
   int wants_ = 0;

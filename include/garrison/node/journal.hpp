@@ -18,7 +18,7 @@ enum class Call : std::uint8_t {
   deliver = 4,  ///< sender, round; data: the body
   fuse = 5,
   listen = 6,
-  join = 7,
+  join = 7,  ///< round: 1 = and speaks, although it has heard nobody
   uncover = 8,
   estimate = 9,  ///< no call: the estimate at the end of the sample, to compare with
 };

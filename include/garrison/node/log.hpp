@@ -33,7 +33,7 @@ class GARRISON_EXPORT LogWriter {
   void sample(std::string_view json, Micros wall);
   void flush() noexcept;
   std::int64_t bytes() const noexcept { return bytes_; }
-  /// Writes that failed.
+  /// Writes that failed; after the first one the file does not grow.
   std::int64_t failed() const noexcept { return failed_; }
 
  private:

@@ -36,7 +36,7 @@ def do(args: argparse.Namespace) -> int:
                 f"{one['first']}..{one['last']}",
                 str(one["estimates"]),
                 str(one["differ"]),
-                "was stopped" if one["ended"] else "was killed, or runs",
+                "was stopped" if one["ended"] else "was killed, runs, or had no room",
             ]
             for one in found
         ]

@@ -39,6 +39,22 @@ def whole_number(text: str) -> int:
     raise argparse.ArgumentTypeError(f"got {text!r}, expected a whole number")
 
 
+def port_number(text: str) -> int:
+    """A port on the command line; 0 = any that is free."""
+    value = whole_number(text)
+    if not 0 <= value <= 65535:
+        raise argparse.ArgumentTypeError(f"got {text!r}, expected a port, 0..65535")
+    return value
+
+
+def count_number(text: str) -> int:
+    """How often, on the command line."""
+    value = whole_number(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"got {text!r}, expected a whole number >= 0")
+    return value
+
+
 def number(text: str) -> float:
     """A number on the command line."""
     try:

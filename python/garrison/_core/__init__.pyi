@@ -616,10 +616,16 @@ class Agent:
         sample or round are dropped and counted, as are bodies that no agent could have sent. Returns the next
         message.
         """
-    def join(self, t: typing.SupportsInt | typing.SupportsIndex, inbox: collections.abc.Sequence[Message]) -> None:
+    def join(
+        self,
+        t: typing.SupportsInt | typing.SupportsIndex,
+        inbox: collections.abc.Sequence[Message],
+        speak: bool = False,
+    ) -> None:
         """
         Take over an estimate from what the neighbours sent in the first round of sample t, as an agent that starts in
-        a running network: its next sample is t + 1.
+        a running network: its next sample is t + 1. Where nobody was heard the agent keeps its own, and says
+        nothing until it hears somebody; speak: it says it, for networks in which nobody else speaks, either.
         """
     def load(self, data: typing.Any) -> None:
         """

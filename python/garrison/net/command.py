@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 from garrison import _core
-from garrison._commands.terminal import NO, OK, REFUSED, number, whole_number
+from garrison._commands.terminal import NO, OK, REFUSED, count_number, number, port_number
 from garrison.net.accept import ROWS
 from garrison.net.accept.daemons import ATTACK
 from garrison.net.accept.load import Load
@@ -36,7 +36,7 @@ def _parser() -> argparse.ArgumentParser:
     up.add_argument("file", help="network.toml: a scenario, periods, what the network loses")
     up.add_argument("-o", "--out", help="folder for keys, logs and summary.json; default: a temporary one, removed")
     up.add_argument(
-        "--page", type=whole_number, metavar="PORT", help="serve a live page on this port of 127.0.0.1; 0 = any"
+        "--page", type=port_number, metavar="PORT", help="serve a live page on this port of 127.0.0.1; 0 = any"
     )
     up.add_argument(
         "--attack",
@@ -44,7 +44,7 @@ def _parser() -> argparse.ArgumentParser:
         help="with somebody in between who has no key: replays, mutants and forgeries, each for a fifth of the "
         "datagrams, and a flood of 5000 a second",
     )
-    up.add_argument("--kills", type=whole_number, default=0, help="kill a daemon, and start it again, so many times")
+    up.add_argument("--kills", type=count_number, default=0, help="kill a daemon, and start it again, so many times")
     up.add_argument(
         "--liar", metavar="NAME", help="this agent's daemon lies to some neighbours, with its keys; see docs"
     )

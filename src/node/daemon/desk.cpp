@@ -51,13 +51,28 @@ void Desk::run(Loop& loop) {
   loop.end();
 }
 
+bool Desk::wait_until(const std::function<bool()>& ready) {
+  const sigset_t watched = node_signals();
+  const Descriptor signals(::signalfd(-1, &watched, SFD_NONBLOCK | SFD_CLOEXEC));
+  while (!ready()) {
+    if (ended(signals.get())) return false;
+    wait(signals.get());
+    if (socket_) socket_->serve();
+    notify("WATCHDOG=1");
+  }
+  return true;
+}
+
 /// Whether a signal ended the node. A hang-up means the files are new, as with other services; to a node that
 /// was started by hand it means that its terminal is gone.
 bool Desk::ended(int signals) {
   signalfd_siginfo came{};
   if (::read(signals, &came, sizeof came) != sizeof came) return false;
   if (came.ssi_signo != SIGHUP || by_hand_) return true;
-  say(Priority::notice, "SIGHUP, files read anew: " + reload());
+  const std::string answer = reload();
+  const bool taken = answer == kOk;
+  say(taken ? Priority::notice : Priority::error,
+      "SIGHUP: files " + (taken ? "read anew" : "not read: " + answer));
   return false;
 }
 
@@ -74,13 +89,10 @@ void Desk::tick(Micros steady) {
   if (sensor_->descriptor() >= 0) sensor_->readable(now().wall);
   drain();
   if (socket_) socket_->serve();
-  if (log_ && log_->file().bytes() >= station_.settings.log_bytes) loop_->ask_fresh();
+  if (log_ && !log_lost_ && log_->file().bytes() >= station_.settings.log_bytes) loop_->ask_fresh();
   if (steady - flushed_at_ >= kFlushPause) {
     flushed_at_ = steady;
-    if (log_) {
-      log_->file().flush();
-      around_.log_failed = log_->failed();
-    }
+    flush_log();
   }
   if (steady - saved_at_ >= station_.settings.state_every) save_state();
   watch_over(steady);
@@ -140,11 +152,23 @@ void Desk::begin_log() {
   if (!log_) return;
   try {
     log_->begin();
+    log_lost_ = false;
   } catch (const std::exception& error) {
-    say(Priority::error, std::string("no log from here on: ") + error.what());
-    ++around_.log_failed;
-    log_.reset();
+    lose_log(error.what());
   }
+}
+void Desk::lose_log(const std::string& why) {
+  if (!log_lost_) say(Priority::error, "no log from here on, until there is room: " + why);
+  log_lost_ = true;
+}
+
+/// Once a second: to the disk; where that has failed, anew as soon as it has room.
+void Desk::flush_log() {
+  if (!log_) return;
+  log_->file().flush();
+  around_.log_failed = log_->failed();
+  if (!log_->whole()) lose_log(log_->folder() + ": got a disk that does not take it");
+  if (log_lost_ && log_->room()) loop_->ask_fresh();
 }
 
 /// The one thing that is worth a line in the journal, and a file for others to check.
@@ -163,7 +187,7 @@ void Desk::proof(Bytes content) {
                                " has signed two different statements about sample " +
                                std::to_string(found->a.first) + ": " + path);
   } catch (const Error& error) {
-    if (failed_++ == 0) say(Priority::error, error.what());
+    if (!std::exchange(failing_, true)) say(Priority::error, error.what());
   }
 }
 
@@ -172,8 +196,10 @@ void Desk::save_state() {
   if (snapshot_.empty()) return;
   try {
     write_state(station_.settings.state_folder, station_.run, snapshot_);
+    stored_at_ = snapshot_at_;
+    failing_ = false;
   } catch (const Error& error) {
-    if (failed_++ == 0) say(Priority::error, error.what());
+    if (!std::exchange(failing_, true)) say(Priority::error, error.what());
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -14,12 +15,17 @@
 
 namespace garrison::node {
 
+/// The answer to a request that was done.
+inline constexpr const char* kOk = R"({"ok":true})";
+
 class Desk {
  public:
   /// Keeps references. print: a line a sample on standard output. @throws IoError
   Desk(Station& station, std::uint64_t boot, std::unique_ptr<Sensor> sensor, Ring& ring, bool print);
   const Sensor& sensor() const noexcept { return *sensor_; }
 
+  /// Serves clients until `ready`; false where a signal ended the node before.
+  bool wait_until(const std::function<bool()>& ready);
   /// Until a signal comes; the loop is told to end, and what it leaves is written.
   void run(Loop& loop);
   /// What came through the ring, to files and clients.
@@ -36,6 +42,8 @@ class Desk {
   void snapshot(Bytes content);
   void proof(Bytes content);
   void begin_log();
+  void lose_log(const std::string& why);
+  void flush_log();
   std::string answer(std::string_view request);
   std::string measured(std::string_view line);
   std::string reload();
@@ -58,12 +66,14 @@ class Desk {
   Status status_;
   bool known_ = false;
   Micros snapshot_at_ = -1;
+  Micros stored_at_ = -1;  ///< of the one on the disk
+  bool log_lost_ = false;  ///< the present file has a hole, or the next could not be begun: said once
   Micros saved_at_ = 0;
   Micros flushed_at_ = 0;
   Micros watched_at_ = 0;
   Micros settles_at_ = 0;  ///< 0: it has
   std::uint64_t turns_seen_ = 0;
-  std::int64_t failed_ = 0;
+  bool failing_ = false;  ///< the disk takes no state: said once
 };
 
 }  // namespace garrison::node

@@ -6,7 +6,7 @@
 namespace garrison::node {
 
 namespace {
-constexpr const char* kOk = R"({"ok":true})";
+constexpr const char* kBegun = "a node that has begun";
 
 std::string error_line(const std::string& which, const std::string& expected) {
   return Json().open('{').key("error").word(which).key("expected").word(expected).close('}').take();
@@ -15,9 +15,10 @@ std::string error_line(const std::string& which, const std::string& expected) {
 
 std::string Desk::answer(std::string_view request) {
   if (request == "status") {
-    if (!known_) return error_line("no status yet", "a node that has begun");
+    if (loop_ == nullptr) return error_line("a clock that is not synchronised", kBegun);
+    if (!known_) return error_line("no status yet", kBegun);
     around_.sensor = sensor_->counters();
-    around_.snapshot_age = snapshot_at_ < 0 ? -1 : now().steady - snapshot_at_;
+    around_.snapshot_age = stored_at_ < 0 ? -1 : now().steady - stored_at_;
     return status_json(status_, around_);
   }
   if (request.starts_with("y ")) return measured(request.substr(2));
@@ -36,6 +37,7 @@ std::string Desk::measured(std::string_view line) {
 
 /// Takes over what may change while the node runs: where measurements come from, and how much is kept.
 std::string Desk::reload() {
+  if (loop_ == nullptr) return error_line("a clock that is not synchronised", kBegun);
   if (former_) return error_line("reload", "a moment since the last one");
   try {
     const Station next = read_station(station_.settings.file);

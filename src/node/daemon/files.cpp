@@ -22,8 +22,12 @@ void refuse_file(const std::string& path, const std::string& expected) {
 }
 
 std::vector<std::byte> read_bytes(const std::string& path, std::size_t most, const std::string& expected) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!file) refuse_file(path, expected);
+  struct stat found{};
+  if (::fstat(file.get(), &found) != 0) refuse_file(path, expected);
+  // A pipe would be waited for for ever, a device never ends.
+  if (!S_ISREG(found.st_mode)) throw IoError(path + ": got no plain file, expected " + expected);
   std::vector<std::byte> all;
   std::array<std::byte, 65536> piece;
   while (true) {

@@ -52,8 +52,8 @@ Key key_from(const std::string& which, const std::string& base64) {
   const int bad = sodium_base642bin(octets(key), key.size(), base64.data(), base64.size(), nullptr, &size,
                                     nullptr, sodium_base64_VARIANT_ORIGINAL);
   if (bad != 0 || size != key.size())
-    refuse(which, std::to_string(base64.size()) + " characters", "32 bytes in base64 (44 characters)",
-           "garrison-keygen prints them");
+    refuse(which, std::to_string(base64.size()) + " characters that are not 32 bytes in base64",
+           "44 characters, as garrison-keygen prints them", "copy the line once more");
   return key;
 }
 
@@ -76,6 +76,7 @@ void write_key(const std::string& path, const Identity& identity) {
 Identity read_key(const std::string& path) {
   struct stat found{};
   if (::stat(path.c_str(), &found) != 0) refuse_file(path, "the key that garrison-keygen wrote");
+  if (!S_ISREG(found.st_mode)) refuse(path, "no plain file", "the key that garrison-keygen wrote");
   if ((found.st_mode & 077U) != 0)
     refuse(path, "a key that others than its owner may read or write", "mode 0600", "chmod 600 " + path);
   std::string text = read_text(path);

@@ -9,6 +9,8 @@
 namespace garrison::node {
 
 namespace {
+constexpr std::uintmax_t kLeastRoom = 1 << 18;
+
 /// With zeros in front, so that names are in the order of time.
 std::string padded(std::uint64_t number, std::size_t digits) {
   const std::string text = std::to_string(number);
@@ -32,6 +34,12 @@ void LogKeeper::begin() {
   file_.reset();  // the last one gets its end
   file_.emplace(std::move(next));
   drop_oldest();
+}
+
+bool LogKeeper::room() const noexcept {
+  std::error_code error;
+  const auto space = std::filesystem::space(folder_, error);
+  return !error && space.available > part_.size() + kLeastRoom;
 }
 
 void LogKeeper::drop_oldest() const {

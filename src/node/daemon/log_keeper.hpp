@@ -17,6 +17,11 @@ class LogKeeper {
 
   void begin();
   LogWriter& file() { return *file_; }
+  /// The disk has taken all of the present file.
+  bool whole() const noexcept { return file_->failed() == 0; }
+  /// The disk has room for the begin of another one.
+  bool room() const noexcept;
+  const std::string& folder() const noexcept { return folder_; }
   /// Another number of files, from the next one on.
   void keep(int files) noexcept { files_ = files; }
   /// Writes that failed, of all files.

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kMostMs = 7LL * 24 * 3600 * 1000;
 constexpr Micros kLeastRound = 1000;
+constexpr Micros kEarliest = 946'684'800'000'000, kLatest = 4'102'444'800'000'000;  // 2000 and 2100
 
 Micros micros(double ms) { return std::llround(1000.0 * ms); }
 
@@ -21,6 +22,7 @@ Member read_member(const Section& section) {
   Member m;
   m.id = static_cast<int>(section.whole("id", 0, 65535));
   m.name = section.text("name", std::to_string(m.id));
+  if (m.name.empty()) refuse(section.where("name"), "\"\"", "a name, or none: then its id is the name");
   m.open = open_key_from(section.where("key"), section.text("key"));
   m.address = address_from(section.where("address"), section.text("address"));
   m.directed = section.has("hears");
@@ -37,7 +39,11 @@ void require_different(const Roster& roster) {
     for (std::size_t j = 0; j < k; ++j) {
       const Member& a = roster.members[j];
       const Member& b = roster.members[k];
-      const char* same = a.id == b.id ? "id" : a.name == b.name ? "name" : a.open == b.open ? "key" : nullptr;
+      const char* same = a.id == b.id                         ? "id"
+                         : a.name == b.name                   ? "name"
+                         : a.open == b.open                   ? "key"
+                         : same_address(a.address, b.address) ? "address"
+                                                              : nullptr;
       if (same != nullptr)
         refuse(roster.path + ", [[agent]] " + b.name, std::string("the ") + same + " of " + a.name,
                std::string("another ") + same + " for every agent");
@@ -65,8 +71,9 @@ Roster parse_roster(const std::string& text, const std::string& path) {
   Roster out;
   out.path = path;
   out.schedule.start = run.moment("start");
-  if (std::abs(out.schedule.start) > (INT64_MAX >> 4))
-    refuse(run.where("start"), std::to_string(out.schedule.start), "a time of this age");
+  if (out.schedule.start < kEarliest || out.schedule.start > kLatest)
+    refuse(run.where("start"), std::to_string(out.schedule.start), "a time in this century",
+           "a date and time, or microseconds since 1970");
   out.schedule.period = micros(run.number("period_ms", 1.0, static_cast<double>(kMostMs)));
   out.schedule.round = micros(run.number("round_ms", 0.0, static_cast<double>(kMostMs), 0.0));
   out.schedule.resend = micros(run.number("resend_ms", 0.0, static_cast<double>(kMostMs), 0.0));

@@ -27,17 +27,11 @@ std::size_t ring_size(const Station& station) {
 }
 
 /// Until the kernel holds the clock for synchronised, or a signal comes; false then.
-bool wait_for_clock(const Settings& settings) {
+bool wait_for_clock(const Settings& settings, Desk& desk) {
   if (!settings.require_synchronised || clock_synchronised()) return true;
   say(Priority::warning, "the clock is not synchronised; waiting ([clock].require_synchronised)");
   notify("STATUS=no clock");
-  const sigset_t ending = ending_signals();
-  const timespec pause{0, 200'000'000};
-  while (!clock_synchronised()) {
-    if (::sigtimedwait(&ending, nullptr, &pause) > 0) return false;
-    notify("WATCHDOG=1");
-  }
-  return true;
+  return desk.wait_until(clock_synchronised);
 }
 
 /// What the last life left; nothing, with a word, where that cannot be used.
@@ -72,6 +66,7 @@ void block_signals() {
   const sigset_t watched = node_signals();
   ::sigprocmask(SIG_BLOCK, &watched, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a disk that is full
 }
 
 void run_node(Station& station, bool print, Tamper* tamper) {
@@ -86,7 +81,7 @@ void run_node(Station& station, bool print, Tamper* tamper) {
   Loop loop(station, boot, udp, desk.sensor(), ring);
   if (tamper != nullptr) loop.tamper_with(*tamper);
   notify("READY=1");
-  if (!wait_for_clock(settings)) return;
+  if (!wait_for_clock(settings, desk)) return;
   loop.begin(kept_state(station));
   {
     const Estimating estimating(loop);

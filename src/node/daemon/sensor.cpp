@@ -6,8 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 #include "garrison/core/error.hpp"
 #include "node/daemon/service.hpp"
@@ -41,6 +44,15 @@ void require_size(const std::string& file, const char* key, const std::vector<do
     refuse(file + ", [sensor]." + key, std::to_string(given.size()) + " numbers",
            std::to_string(outputs) + ", one per output of this agent");
 }
+
+/// What would have every measurement zero or missing.
+void require_sense(const std::string& file, const SensorSettings& s) {
+  for (const double scale : s.scale)
+    if (scale == 0.0) refuse(file + ", [sensor].scale", "0", "numbers that are not 0");
+  for (std::size_t k = 0; k < std::min(s.least.size(), s.most.size()); ++k)
+    if (!(s.least[k] < s.most[k]))
+      refuse(file + ", [sensor].least", text(s.least[k]), "less than " + text(s.most[k]) + ", its most");
+}
 }  // namespace
 
 std::optional<SensorLine> parse_line(std::string_view text, std::size_t outputs) {
@@ -72,6 +84,7 @@ Sensor::Sensor(const SensorSettings& settings, std::size_t outputs, const std::s
   require_size(file, "offset", settings.offset, outputs);
   require_size(file, "least", settings.least, outputs);
   require_size(file, "most", settings.most, outputs);
+  require_sense(file, settings);
   if (settings.source == Source::file) read_table();
   if (settings.source != Source::procfs) return;
   machine_.emplace(file + ", [sensor].read", settings.read);
@@ -135,6 +148,7 @@ void Sensor::take(std::span<double> y, Micros taken) noexcept {
   prepare(y);
   reading_.put(y, taken);
   ++counters_.taken;
+  failing_ = false;
 }
 
 void Sensor::read_machine(Micros steady) {
@@ -154,7 +168,7 @@ void Sensor::readable(Micros now) {
       line({piece.data(), static_cast<std::size_t>(got)}, now);
       continue;
     }
-    if (got == 0) return close();
+    if (got == 0) return ended();
     pending_.append(piece.data(), static_cast<std::size_t>(got));
     std::size_t end = 0;
     while ((end = pending_.find('\n')) != std::string::npos) {
@@ -177,6 +191,23 @@ void Sensor::tick(Micros steady) {
   open_at_ = steady + pause_;
   opened_ = true;
   open();
+  if (!input_ && !std::exchange(failing_, true))
+    say(Priority::error, "[sensor]: got " + std::string(std::strerror(errno)) + ", expected " + what() +
+                             "; tried again now and then");
+  if (input_ && settings_.command.empty()) failing_ = false;
+}
+
+/// The writer is gone; a command is started again.
+void Sensor::ended() {
+  if (child_ > 0 && !std::exchange(failing_, true))
+    say(Priority::warning,
+        "[sensor].command has ended; it is started again now and then: " + settings_.command);
+  close();
+}
+
+std::string Sensor::what() const {
+  if (settings_.source == Source::udp) return "[sensor].address to be free on this machine";
+  return settings_.command.empty() ? settings_.path + ", a named pipe" : "a command that can be started";
 }
 
 void Sensor::open() {

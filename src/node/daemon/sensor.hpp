@@ -54,6 +54,8 @@ class Sensor {
   void take(std::span<double> y, Micros taken) noexcept;
   void read_machine(Micros steady);
   void open();
+  std::string what() const;
+  void ended();
   void close();
   void start_command();
   void read_table();
@@ -64,6 +66,7 @@ class Sensor {
   std::vector<double> table_;
   std::optional<Machine> machine_;
   Descriptor input_;
+  bool failing_ = false;  ///< it cannot be opened, or its command ends: said once
   int child_ = -1;
   std::string pending_;
   Micros open_at_ = 0;

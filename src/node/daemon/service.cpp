@@ -27,7 +27,8 @@ void notify(const std::string& line) noexcept {
   std::memcpy(to.sun_path, path, size);
   if (path[0] == '@') to.sun_path[0] = '\0';  // of the abstract namespace
   const Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  ::sendto(socket.get(), line.data(), line.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&to),
+  ::sendto(socket.get(), line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
+           reinterpret_cast<const sockaddr*>(&to),
            static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + size));
 }
 

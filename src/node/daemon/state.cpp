@@ -16,19 +16,23 @@ constexpr std::size_t kHead = kMagic.size() + std::tuple_size_v<Prologue> + 8;
 constexpr std::size_t kDigest = 16;
 }  // namespace
 
-std::uint64_t next_boot(const std::string& folder) {
+std::uint64_t last_boot(const std::string& folder) {
   const std::string path = beside(folder, "boot");
+  if (!std::filesystem::exists(path)) return 0;
+  const std::string text = read_text(path);
   std::uint64_t boot = 0;
-  if (std::filesystem::exists(path)) {
-    const std::string text = read_text(path);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), boot);
-    if (error != std::errc{} || end == text.data() || boot == UINT64_MAX)
-      refuse(path, "\"" + text.substr(0, 40) + "\"", "how often this node has started",
-             "write a number that is greater than it ever was");
-  }
-  ++boot;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), boot);
+  const std::string_view rest(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (error != std::errc{} || rest.find_first_not_of(" \r\n") != std::string_view::npos || boot == UINT64_MAX)
+    refuse(path, "\"" + text.substr(0, 40) + "\"", "how often this node has started",
+           "write a number that is greater than it ever was");
+  return boot;
+}
+
+std::uint64_t next_boot(const std::string& folder) {
+  const std::uint64_t boot = last_boot(folder) + 1;
   const std::string text = std::to_string(boot) + "\n";
-  replace_file(path, text_bytes(text));
+  replace_file(beside(folder, "boot"), text_bytes(text));
   return boot;
 }
 

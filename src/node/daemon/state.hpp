@@ -10,6 +10,8 @@
 
 namespace garrison::node {
 
+/// How often the node has started; 0 = never. @throws IoError, InvalidInput
+std::uint64_t last_boot(const std::string& folder);
 /// One more than last time, on the disk before it is returned. @throws IoError, InvalidInput
 std::uint64_t next_boot(const std::string& folder);
 

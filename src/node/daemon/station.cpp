@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "node/daemon/station.hpp"
 
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <algorithm>
-#include <cstring>
+#include <filesystem>
 
 #include "garrison/engine/design_file.hpp"
 #include "node/daemon/files.hpp"
 #include "node/daemon/sensor.hpp"
+#include "node/daemon/state.hpp"
 
 namespace garrison::node {
 
@@ -43,6 +47,29 @@ Vector initial_of(const Roster& roster, int states) {
   return Eigen::Map<const Vector>(roster.initial.data(), states);
 }
 
+/// A folder that is there, or can be made, and takes files.
+void require_folder(const std::string& which, const std::string& path) {
+  std::filesystem::path there(path);
+  while (!there.empty() && !std::filesystem::exists(there)) there = there.parent_path();
+  if (there.empty()) there = ".";
+  if (!std::filesystem::is_directory(there))
+    refuse(which, there.string() + ", which is no folder", "a folder");
+  if (::access(there.c_str(), W_OK | X_OK) != 0)
+    refuse_file(which + ": " + there.string(), "a folder that takes files");
+}
+
+/// What a start would fail with.
+void require_places(const Settings& s) {
+  if (s.socket.size() >= sizeof(sockaddr_un::sun_path))
+    refuse(s.file + ", [socket].path", std::to_string(s.socket.size()) + " characters",
+           "at most " + std::to_string(sizeof(sockaddr_un::sun_path) - 1), "a shorter path, as in /run");
+  if (s.sensor.source == SensorSettings::Source::udp && same_address(s.sensor.address, s.listen))
+    refuse(s.file + ", [sensor].address", "the address of [listen]", "another port");
+  require_folder(s.file + ", [state].folder", s.state_folder);
+  if (s.log_inputs) require_folder(s.file + ", [log].folder", s.log_folder);
+  last_boot(s.state_folder);
+}
+
 bool hears(const Member& who, int whom) {
   return std::find(who.hears.begin(), who.hears.end(), whom) != who.hears.end();
 }
@@ -59,6 +86,9 @@ void add_links(Station& s) {
              in ? "a list without " + m.name : m.name, "those whom the design lets it hear",
              "write roster and parts from the same design");
     if (!in && !out) continue;
+    if (m.address.storage.ss_family != s.settings.listen.storage.ss_family)
+      refuse(s.settings.file + ", [listen].address", "an address of another family than " + m.name + " has",
+             "IPv4 or IPv6, as the roster has for the neighbours");
     s.links.push_back(m);
     s.listens.push_back(out);
   }
@@ -91,15 +121,13 @@ Station read_station(const std::string& path) {
   s.run = prologue_of(design_of(*s.agent), s.schedule,
                       {s.initial.data(), static_cast<std::size_t>(s.initial.size())});
   add_links(s);
+  require_places(s.settings);
   const Sensor tried(s.settings.sensor, static_cast<std::size_t>(s.agent->outputs()), s.settings.file);
   return s;
 }
 
 void require_same_run(const Station& now, const Station& next) {
   const Settings &a = now.settings, &b = next.settings;
-  const auto same_address = [](const Address& x, const Address& y) {
-    return x.size == y.size && std::memcmp(&x.storage, &y.storage, x.size) == 0;
-  };
   const auto same_links = [&] {
     return std::equal(now.links.begin(), now.links.end(), next.links.begin(), next.links.end(),
                       [&](const Member& x, const Member& y) {
@@ -110,9 +138,8 @@ void require_same_run(const Station& now, const Station& next) {
       {"name", now.self.id == next.self.id},
       {"key", now.identity.open == next.identity.open},
       {"part", now.part == next.part},
-      {"the run or schedule in the roster",
-       now.run == next.run && now.schedule.resend == next.schedule.resend},
-      {"a neighbour in the roster", same_links() && now.listens == next.listens},
+      {"run or schedule in the roster", now.run == next.run && now.schedule.resend == next.schedule.resend},
+      {"list of neighbours in the roster", same_links() && now.listens == next.listens},
       {"[listen].address", same_address(a.listen, b.listen)},
       {"[clock].require_synchronised", a.require_synchronised == b.require_synchronised},
       {"[log].level or folder", a.log_inputs == b.log_inputs && a.log_folder == b.log_folder},

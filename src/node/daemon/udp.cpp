@@ -48,6 +48,10 @@ Address address_from(const std::string& which, const std::string& text) {
   return out;
 }
 
+bool same_address(const Address& a, const Address& b) noexcept {
+  return a.size == b.size && std::memcmp(&a.storage, &b.storage, a.size) == 0;
+}
+
 bool is_loopback(const Address& address) noexcept {
   if (address.storage.ss_family == AF_INET) {
     const auto& v4 = reinterpret_cast<const sockaddr_in&>(address.storage);

@@ -23,6 +23,7 @@ struct Address {
 /// "127.0.0.1:7470", "[::1]:7470", "host:7470". @throws InvalidInput
 Address address_from(const std::string& which, const std::string& text);
 
+bool same_address(const Address& a, const Address& b) noexcept;
 /// Of this machine alone.
 bool is_loopback(const Address& address) noexcept;
 

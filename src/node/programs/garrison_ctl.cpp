@@ -26,7 +26,7 @@ constexpr const char* kUsage =
     "  status   everything a node says of itself, as a line of JSON\n"
     "  watch    a line a sample, until interrupted\n"
     "  reload   read node.toml again: [sensor], [log] size_mb and files, [state] every_s\n"
-    "  replay   do again what a log says and compare every bit\n"
+    "  replay   do again every call of a log and compare the estimates, bit by bit\n"
     "\n"
     "  verify-proof   whether a .proof convicts an agent of the roster\n"
     "\n"
@@ -45,9 +45,19 @@ Descriptor connected(const std::string& path) {
 
 Descriptor asked(const std::string& request, const std::string& path) {
   Descriptor socket = connected(path);
+  if (request != "watch") {  // whose first sample may be far away
+    const timeval patience{5, 0};
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  }
   const std::string line = request + "\n";
   ::send(socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
   return socket;
+}
+
+int no_answer(const std::string& path) {
+  std::fprintf(stderr, "garrison-ctl: %s: got no answer in 5 s, expected one of a running node\n",
+               path.c_str());
+  return 2;
 }
 
 /// 2, with what the node says, when it does not take its files.
@@ -58,6 +68,7 @@ int reload(const std::string& path) {
   for (ssize_t got = 0;
        answer.find('\n') == std::string::npos && (got = ::read(socket.get(), piece, sizeof piece)) > 0;)
     answer.append(piece, static_cast<std::size_t>(got));
+  if (answer.empty()) return no_answer(path);
   if (answer.starts_with(R"({"ok")")) return 0;
   return std::fprintf(stderr, "garrison-ctl: %s: not reloaded: %s", path.c_str(), answer.c_str()), 2;
 }
@@ -71,16 +82,24 @@ int ask(const std::string& request, const std::string& path, bool once) {
     std::fflush(stdout);
     if (once && std::memchr(piece, '\n', static_cast<std::size_t>(got)) != nullptr) return 0;
   }
-  return once ? 2 : 0;
+  return once ? no_answer(path) : 0;
+}
+
+LogReplay replayed(const std::string& path) {
+  try {
+    return replay_log(read_bytes(path, std::size_t{4} << 30U));
+  } catch (const garrison::InvalidInput& error) {
+    throw garrison::InvalidInput(path + ": " + error.what());
+  }
 }
 
 int replay(const std::string& path) {
-  const LogReplay r = replay_log(read_bytes(path, std::size_t{4} << 30U));
+  const LogReplay r = replayed(path);
   std::printf("%s: agent %d, %s, %lld calls, samples %lld..%lld, %lld estimates, %lld differ%s\n",
               path.c_str(), r.agent, r.family.c_str(), static_cast<long long>(r.calls),
               static_cast<long long>(r.first), static_cast<long long>(r.last),
               static_cast<long long>(r.estimates), static_cast<long long>(r.wrong),
-              r.ended ? "" : "; the file has no end");
+              r.ended ? "" : "; the file has no end: the node was killed, or runs, or its disk was full");
   return r.wrong == 0 ? 0 : 1;
 }
 

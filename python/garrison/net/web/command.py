@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from garrison._commands.terminal import whole_number
+from garrison._commands.terminal import port_number
 from garrison.net.web.scene import Scene
 from garrison.net.web.server import Server
 from garrison.net.web.watcher import Watcher
@@ -19,7 +19,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("socket", nargs="+", type=Path, help="[socket].path of a node")
     parser.add_argument("--host", default="127.0.0.1", help="address to listen at (default 127.0.0.1)")
-    parser.add_argument("--port", type=whole_number, default=9470, help="port to listen at (default 9470)")
+    parser.add_argument("--port", type=port_number, default=9470, help="port to listen at (default 9470)")
     return parser
 
 
@@ -36,7 +36,8 @@ def main(argv: list[str] | None = None) -> int:
             print(f"http://{args.host}:{server.server_port}/", flush=True)
             server.serve_forever()
     except (OSError, OverflowError) as error:
-        print(f"garrison-web: --port: got {error}, expected an address that nobody listens at", file=sys.stderr)
+        place = f"--host {args.host} --port {args.port}"
+        print(f"garrison-web: {place}: got {error}, expected an address of this machine that is free", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         pass
