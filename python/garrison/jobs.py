@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from garrison import _core, doubts
 from garrison.bound_kind import counts
-from garrison.drivers import KEEP, replay, require_room, simulate
+from garrison.drivers import KEEP, kept, replay, require_room, simulate
 from garrison.families import accuses, family_of
 from garrison.kalman import central_kalman, local_kalman
 from garrison.prepared import Prepared, prepare
@@ -142,7 +142,7 @@ def rehearse(scenario: Scenario) -> None:
     for label, filter in scenario.filters:
         if filter is not None:
             keep = _options(scenario, filter, True)["keep"]
-            require_room(scenario.model, filter, keep, scenario.run.get("trials", 1), scenario.steps)
+            require_room(scenario.model, filter, kept(keep), scenario.run.get("trials", 1), scenario.steps)
             design = _designed(scenario, label, filter, None)
             _run(scenario, filter, True, design, None, conditions=False, rehearsal=True)
         else:
