@@ -69,8 +69,9 @@ RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int thre
     else
       refuse_unknown("link", name, known);
   }
-  o.keep = {false, false, false, false, false, false};
-  const std::vector<std::string> keepable{"estimate", "report", "signals", "measurements", "details", "box"};
+  o.keep = {false, false, false, false, false, false, false, false};
+  const std::vector<std::string> keepable{"estimate", "report", "signals", "measurements",
+                                          "details",  "box",    "error",   "truth"};
   for (const std::string& name : keep) {
     if (name == "estimate")
       o.keep.estimate = true;
@@ -84,6 +85,10 @@ RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int thre
       o.keep.details = true;
     else if (name == "box")
       o.keep.report = o.keep.box = true;
+    else if (name == "error")
+      o.keep.error = true;
+    else if (name == "truth")
+      o.keep.truth = true;
     else
       refuse_unknown("keep", name, keepable);
   }
@@ -100,35 +105,70 @@ RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int thre
   return o;
 }
 
+/// f(name, numbers, lengths of the axes behind trial and time) of every array that a record holds.
+template <class R, class F>
+void each_array(R& r, const F& f) {
+  using Shape = std::vector<py::ssize_t>;
+  const py::ssize_t N = r.agents;
+  const py::ssize_t n = r.states;
+  const auto put = [&](const char* name, auto& numbers, Shape behind) {
+    if (!numbers.empty()) f(name, numbers, std::move(behind));
+  };
+  put("truth", r.truth, r.own_states ? Shape{N, n} : Shape{n});
+  put("measurements", r.measurements, {r.outputs});
+  put("estimate", r.estimate, {N, n});
+  put("error", r.error, {N});
+  put("bound", r.bound, {N});
+  put("box", r.box, {N, n});
+  put("published", r.published, {N});
+  put("bound_kind", r.bound_kind, {N});
+  put("statistic", r.statistic, {N});
+  put("threshold", r.threshold, {N});
+  put("verdict", r.verdict, {N});
+  put("signals", r.signals, {static_cast<py::ssize_t>(r.signal_names.size()), N});
+}
+
+/// The shape with `trials` and as many times as there are numbers for in front.
+std::vector<py::ssize_t> whole_shape(std::size_t numbers, py::ssize_t trials,
+                                     const std::vector<py::ssize_t>& behind) {
+  auto times = static_cast<py::ssize_t>(numbers) / trials;
+  for (const py::ssize_t length : behind) times /= length;
+  std::vector<py::ssize_t> shape{trials, times};
+  shape.insert(shape.end(), behind.begin(), behind.end());
+  return shape;
+}
+
+/// What a Python function takes of a block: sink(trial, [(name, array, its first row, rows of a whole trial,
+/// time of the first of those)]). The arrays are views that end with the call.
+std::function<void(const Record&, int, int)> sink_of(const py::object& sink, int steps) {
+  if (sink.is_none()) return {};
+  return [sink, steps](const Record& block, int trial, int first) {
+    const py::gil_scoped_acquire gil;
+    py::list arrays;
+    const py::capsule borrowed(&block, [](void*) {});
+    each_array(block, [&](const std::string& name, const auto& numbers, const auto& behind) {
+      auto shape = whole_shape(numbers.size(), 1, behind);
+      shape.erase(shape.begin());
+      using Number = typename std::decay_t<decltype(numbers)>::value_type;
+      const int before = name == "measurements" ? block.first_sample : 0;  // times without this array
+      arrays.append(py::make_tuple(name, py::array_t<Number>(shape, numbers.data(), borrowed),
+                                   std::max(first - before, 0), steps + 1 - before, before));
+    });
+    sink(trial, arrays);
+  };
+}
+
 py::dict from_record(Record&& r) {
   if (r.interrupted) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
     throw py::error_already_set();
   }
-  const py::ssize_t K = r.trials;
-  const py::ssize_t T = r.steps + 1;
-  const py::ssize_t N = r.agents;
-  const py::ssize_t n = r.states;
-  const auto S = static_cast<py::ssize_t>(r.signal_names.size());
   py::dict d;
-  const auto put = [&](const char* name, auto&& numbers, std::vector<py::ssize_t> shape) {
-    if (!numbers.empty()) d[name] = owned(std::move(numbers), std::move(shape));
-  };
-  const py::ssize_t samples = T - r.first_sample;
-  const auto M = static_cast<py::ssize_t>(r.measurements.size()) / (K * samples);
-  put("truth", r.truth,
-      r.own_states ? std::vector<py::ssize_t>{K, T, N, n} : std::vector<py::ssize_t>{K, T, n});
-  put("measurements", r.measurements, {K, samples, M});
-  put("estimate", r.estimate, {K, T, N, n});
-  put("error", r.error, {K, T, N});
-  put("bound", r.bound, {K, T, N});
-  put("box", r.box, {K, T, N, n});
-  put("published", r.published, {K, T, N});
-  put("bound_kind", r.bound_kind, {K, T, N});
-  put("statistic", r.statistic, {K, T, N});
-  put("threshold", r.threshold, {K, T, N});
-  put("verdict", r.verdict, {K, T, N});
-  put("signals", r.signals, {K, T, S, N});
+  each_array(r, [&](const char* name, auto& numbers, const auto& behind) {
+    auto shape = whole_shape(numbers.size(), r.trials, behind);
+    d[name] = owned(std::move(numbers), std::move(shape));
+  });
+  d["steps"] = r.steps;
   d["signal_names"] = r.signal_names;
   py::list accusations;
   for (const auto& a : r.accusations) accusations.append(py::make_tuple(a.trial, a.time, a.sets));
@@ -229,9 +269,12 @@ void bind_drivers(py::module_& m) {
          const std::string& noise, const Matrix& disturbances, int trials, int first_trial,
          std::uint64_t seed, int threads, const std::optional<Matrix>& start,
          const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
-         const Matrix& inputs, const py::dict& series, const py::object& progress) {
-        const RunOptions options = run_options(trials, first_trial, seed, threads, start, attacks, link, keep,
-                                               inputs, series, progress);
+         const Matrix& inputs, const py::dict& series, const py::object& progress, const py::object& sink,
+         std::size_t block_bytes) {
+        RunOptions options = run_options(trials, first_trial, seed, threads, start, attacks, link, keep,
+                                         inputs, series, progress);
+        options.sink = sink_of(sink, steps);
+        options.block_bytes = block_bytes;
         Record record;
         {
           const py::gil_scoped_release no_gil;
@@ -242,18 +285,20 @@ void bind_drivers(py::module_& m) {
       py::arg("design"), py::kw_only(), py::arg("steps"), py::arg("x0"), py::arg("start_error"),
       py::arg("noise"), py::arg("disturbances"), py::arg("trials"), py::arg("first_trial"), py::arg("seed"),
       py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"),
-      py::arg("inputs"), py::arg("series"), py::arg("progress"),
-      "Arrays of a simulated run; use garrison.simulate.");
+      py::arg("inputs"), py::arg("series"), py::arg("progress"), py::arg("sink") = py::none(),
+      py::arg("block_bytes") = std::size_t{16} << 20, "Arrays of a simulated run; use garrison.simulate.");
   m.def(
       "replay",
       [](const std::shared_ptr<Prepared>& prepared, const Array& measurements,
          const std::optional<Array>& truth, int trials, int first_trial, std::uint64_t seed, int threads,
          const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
          const std::vector<std::string>& keep, const Matrix& inputs, const py::dict& series,
-         const py::object& progress) {
-        const RunOptions options = run_options(trials, first_trial, seed, threads, start, attacks, link, keep,
-                                               inputs, series, progress);
+         const py::object& progress, const py::object& sink, std::size_t block_bytes) {
+        RunOptions options = run_options(trials, first_trial, seed, threads, start, attacks, link, keep,
+                                         inputs, series, progress);
         const Log log = log_of(prepared->model(), prepared->filter(), measurements, truth);
+        options.sink = sink_of(sink, log.steps);
+        options.block_bytes = block_bytes;
         Record record;
         {
           const py::gil_scoped_release no_gil;
@@ -264,5 +309,6 @@ void bind_drivers(py::module_& m) {
       py::arg("design"), py::kw_only(), py::arg("measurements"), py::arg("truth"), py::arg("trials"),
       py::arg("first_trial"), py::arg("seed"), py::arg("threads"), py::arg("start"), py::arg("attacks"),
       py::arg("link"), py::arg("keep"), py::arg("inputs"), py::arg("series"), py::arg("progress"),
+      py::arg("sink") = py::none(), py::arg("block_bytes") = std::size_t{16} << 20,
       "Arrays of a replayed run; use garrison.replay.");
 }

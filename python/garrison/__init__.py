@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from garrison.checks import Check, check
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
-    from garrison.drivers import again, replay, simulate
+    from garrison.drivers import again, every, replay, simulate
     from garrison.exposing import Exposed, expose
     from garrison.kalman import central_kalman, extended_kalman, local_kalman
     from garrison.lmi import lmi_gains
@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from garrison.prepared import Prepared, prepare
     from garrison.record import Run
     from garrison.resilience import Resilience, resilience_per_byte
+    from garrison.stored import StoredRun
     from garrison.sweeps import Sweep, sweep
     from garrison.varying import VaryingModel
     from garrison.varying_network import VaryingNetwork
@@ -90,7 +91,9 @@ _LATER = {
     "Prepared": "prepared",
     "prepare": "prepared",
     "Run": "record",
+    "StoredRun": "stored",
     "again": "drivers",
+    "every": "drivers",
     "replay": "drivers",
     "simulate": "drivers",
     "central_kalman": "kalman",
@@ -141,6 +144,7 @@ __all__ = [
     "Resilience",
     "Response",
     "Run",
+    "StoredRun",
     "SubsetBound",
     "Sweep",
     "VaryingModel",
@@ -158,6 +162,7 @@ __all__ = [
     "check",
     "compare",
     "design",
+    "every",
     "expose",
     "extended_kalman",
     "filters",

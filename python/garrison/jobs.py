@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from garrison import _core, doubts
 from garrison.bound_kind import counts
-from garrison.drivers import KEEP, replay, require_room, simulate
+from garrison.drivers import KEEP, kept, replay, require_room, simulate
 from garrison.families import accuses, family_of
 from garrison.kalman import central_kalman, local_kalman
 from garrison.prepared import Prepared, prepare
 from garrison.record import Run
+from garrison.run_file import ARRAYS
 from garrison.scenario import Scenario
 from garrison.varying_network import links_of
 from garrison.words import count, refusal
@@ -50,6 +51,17 @@ class Row:
             out["warnings"] = self.run.warnings
             out["counters"] = {k: v for k, v in self.run.counters.items() if v and k != "sent"}
         return out
+
+    def forget(self, shown: bool) -> None:
+        """Drop all arrays but those that pictures show of it, after it is summed up. shown: they show it at all."""
+        assert self.summary  # worked out while there is something to sum up
+        self.robust_error = None
+        self.error = self.error if shown else None
+        if self.run is not None:
+            self.run.signals, self.run.details = {}, []
+            for name in ARRAYS:
+                if not (shown and name in ("bound", "published")):
+                    setattr(self.run, name, None)
 
     def _bounds(self, run: Run) -> dict[str, Any]:
         if run.bound is None:
@@ -93,29 +105,54 @@ def run_scenario(
     progress: Progress | None = None,
     conditions: bool = True,
     working: Working | None = None,
+    whole: bool = True,
 ) -> list[Row]:
     """Run every filter of the scenario under its attacks, and once more without them when there are any.
 
     progress(label, done, total) is called at most once per percent of a run, working(label, seconds) about once a
-    second while a filter is designed. conditions: as in `simulate`.
+    second while a filter is designed. conditions: as in `simulate`. whole: keep all arrays of every run; else of the
+    first row alone, and of others what tables and pictures show, so that memory never holds two whole runs.
     """
-    rows: list[Row] = []
-    designs: dict[str, Prepared] = {}  # made once, for both
     if conditions:
         require_conditions(scenario)
-    for attacked in [True, False] if scenario.attacks else [False]:
-        log: Run | None = None  # of the main filter
-        for label, filter in scenario.filters:
-            if filter is None:
-                rows.append(_kalman_row(scenario, label, attacked, log))
-                continue
-            name = f"{label}{', attacked' if attacked else ''}"
-            if label not in designs:
-                designs[label] = _designed(scenario, label, filter, working)
-            run = _run(scenario, filter, attacked, designs[label], _labelled(progress, name), conditions)
-            log = log or run
-            rows.append(Row(scenario, label, attacked, run, run.error, _distance(run.estimate, scenario.robust)))
-    return rows
+    filters = [(label, filter) for label, filter in scenario.filters if filter is not None]
+    designs = {label: _designed(scenario, label, filter, working) for label, filter in filters}  # once, for both
+
+    def run(label: str, filter: _core.Filter, attacked: bool) -> Row:
+        report = _labelled(progress, f"{label}{', attacked' if attacked else ''}")
+        made = _run(scenario, filter, attacked, designs[label], report, conditions)
+        return Row(scenario, label, attacked, made, made.error, _distance(made.estimate, scenario.robust))
+
+    found: dict[bool, list[Row]] = {}
+    order = [True, False] if scenario.attacks else [False]
+    for attacked in reversed(order):  # the one whose arrays stay comes last
+        shown = attacked == order[0]
+        found[attacked] = _in_one_condition(scenario, attacked, run, None if whole else shown)
+    return [row for attacked in order for row in found[attacked]]
+
+
+def _in_one_condition(
+    scenario: Scenario, attacked: bool, run: Callable[[str, _core.Filter, bool], Row], shown: bool | None
+) -> list[Row]:
+    """A row per filter; the main one, whose measurements Kalman filters take, runs last and stays while they do.
+
+    shown: None keeps all arrays; else those of the main one where pictures show this condition, and what they show of
+    the others.
+    """
+    main = next((label for label, filter in scenario.filters if filter is not None), None)
+    rows: dict[str, Row] = {}
+    for label, filter in sorted(scenario.filters, key=lambda entry: entry[0] == main):
+        if filter is not None:
+            rows[label] = run(label, filter, attacked)
+            if shown is not None and label != main:
+                rows[label].forget(shown)
+    log = rows[main].run if main is not None else None
+    for label, filter in scenario.filters:
+        if filter is None:
+            rows[label] = _kalman_row(scenario, label, attacked, log)
+    if shown is False and main is not None:
+        rows[main].forget(shown)
+    return [rows[label] for label, _ in scenario.filters]
 
 
 def _designed(scenario: Scenario, label: str, filter: _core.Filter, working: Working | None) -> Prepared:
@@ -142,7 +179,7 @@ def rehearse(scenario: Scenario) -> None:
     for label, filter in scenario.filters:
         if filter is not None:
             keep = _options(scenario, filter, True)["keep"]
-            require_room(scenario.model, filter, keep, scenario.run.get("trials", 1), scenario.steps)
+            require_room(scenario.model, filter, kept(keep), scenario.run.get("trials", 1), scenario.steps)
             design = _designed(scenario, label, filter, None)
             _run(scenario, filter, True, design, None, conditions=False, rehearsal=True)
         else:

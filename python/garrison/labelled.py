@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from pathlib import Path
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,8 +13,6 @@ from garrison import _core
 from garrison.families import family_of
 from garrison.longform import agent_names, common_unit, state_names
 from garrison.objects import described
-from garrison.paths import whole_file, whole_folder
-from garrison.storage import digest, require_digest
 from garrison.verdict import Verdict
 from garrison.words import refusal
 
@@ -22,11 +20,23 @@ if TYPE_CHECKING:
     from garrison.record import Run
 
 _PER_AGENT = ("trial", "time", "agent")
+#: axis of an array of which only some times were kept
+_THINNED = re.compile(r"(time|sample)_every_(\d+)")
 
 
-def dimensions(run: Run) -> dict[str, tuple[str, ...]]:
+def thinned(axis: str, step: int) -> str:
+    """Name of an axis of times of which only the multiples of `step` were kept."""
+    return f"{axis}_every_{step}"
+
+
+def axes(filter: _core.Filter, name: str) -> tuple[str, ...]:
+    """Names of the axes of an array of a run."""
+    return dimensions(filter).get(name, _PER_AGENT)
+
+
+def dimensions(filter: _core.Filter) -> dict[str, tuple[str, ...]]:
     """Names of the axes of a run's arrays, where they are not (trial, time, agent)."""
-    own = family_of(run.filter).own_plants
+    own = family_of(filter).own_plants
     return {
         "truth": ("trial", "time", "agent", "state") if own else ("trial", "time", "state"),
         "estimate": (*_PER_AGENT, "state"),
@@ -50,49 +60,62 @@ def _outputs(run: Run) -> list[str]:
     return [a if m == 1 else f"{a}.{r}" for a, m in zip(agents, rows, strict=True) for r in range(m)]
 
 
-def _coordinates(run: Run) -> dict[str, tuple[str, Any, dict[str, Any]]]:
-    trials, times, agents = run.shape
-    states, outputs, units = state_names(run), _outputs(run), run.model.units
-    found: dict[str, tuple[str, Any, dict[str, Any]]] = {
-        "trial": ("trial", np.arange(trials), {}),
-        "time": ("time", np.arange(times), {"long_name": "sample; 0 is the start"}),
-        "agent": ("agent", np.array(agent_names(run) or range(agents)), {}),
-        "state": ("state", np.array(states), {}),
-        "state_unit": ("state", np.array([units.get(s, "") for s in states]), {}),
+def _coordinates(run: Run, lengths: Mapping[str, int]) -> dict[str, tuple[str, Any, dict[str, Any]]]:
+    """Coordinates of axes of these lengths, by name."""
+    agents: list[Any] = list(agent_names(run) or range(run.network.agents))
+    units, model = run.model.units, run.model
+    first = 0 if family_of(run.filter).own_plants else 1  # sample that is measured
+    inputs = list(model.input_names) or [f"u{k}" for k in range(1, model.inputs + 1)]
+    meanings = {
+        "time": "sample; 0 is the start",
+        "sample": "sample of the measurement",
+        "step": "leads from this time to the next",
     }
-    if run.measurements is not None:
-        first = times - run.measurements.shape[1]
-        found["sample"] = ("sample", np.arange(first, times), {"long_name": "sample of the measurement"})
-        found["output"] = ("output", np.array(outputs), {})
-        found["output_unit"] = ("output", np.array([units.get(o, "") for o in outputs]), {})
-    if run.inputs is not None:
-        names = list(run.model.input_names) or [f"u{k}" for k in range(1, run.model.inputs + 1)]
-        found["input"] = ("input", np.array(names), {})
-        found["input_unit"] = ("input", np.array([units.get(u, "") for u in names]), {})
-        found["step"] = ("step", np.arange(len(run.inputs)), {"long_name": "leads from this time to the next"})
+    numbers = {"trial": 0, "time": 0, "sample": first, "step": 0}
+    found: dict[str, tuple[str, Any, dict[str, Any]]] = {}
+    for axis, length in lengths.items():
+        base, step = axis, 1
+        if match := _THINNED.fullmatch(axis):
+            base, step = match[1], int(match[2])
+        if base in numbers:
+            start = -(-numbers[base] // step) * step
+            told = {"long_name": meanings[base]} if base in meanings else {}
+            found[axis] = (axis, start + step * np.arange(length), told)
+    named = {"agent": agents, "state": state_names(run), "output": _outputs(run)}
+    for axis, names in (named | {"input": inputs}).items():
+        if axis in lengths:
+            found[axis] = (axis, np.array(names), {})
+            if axis != "agent":
+                found[f"{axis}_unit"] = (axis, np.array([units.get(name, "") for name in names]), {})
     return found
 
 
-def dataset(run: Run, arrays: dict[str, Any]) -> Any:
-    """The xarray.Dataset of a run; signals are variables with their own names."""
+def about(model: _core.Model, name: str) -> dict[str, Any]:
+    """What a variable of the dataset says of its numbers."""
+    if name == "verdict":
+        return {
+            "flag_values": [int(v) for v in Verdict],
+            "flag_meanings": " ".join(v.name.lower() for v in Verdict),
+        }
+    unit = common_unit(model)
+    return {"units": unit} if unit and name in ("truth", "estimate", "error", "bound", "box") else {}
+
+
+def dataset(run: Run, arrays: dict[str, Any], elsewhere: Mapping[str, int] | None = None) -> Any:
+    """The xarray.Dataset of a run; signals are variables with their own names.
+
+    elsewhere: lengths of axes of arrays that are not in it, and yet to have coordinates.
+    """
     try:
         import xarray as xr
     except ImportError:
         raise refusal("to_xarray", "no xarray", 'it installed: pip install "garrison[xarray]"') from None
-    dims, unit = dimensions(run), common_unit(run.model)
-    variables: dict[str, Any] = {}
-    for name, values in arrays.items():
-        about: dict[str, Any] = (
-            {"units": unit} if unit and name in ("truth", "estimate", "error", "bound", "box") else {}
-        )
-        if name == "verdict":
-            about = {
-                "flag_values": [int(v) for v in Verdict],
-                "flag_meanings": " ".join(v.name.lower() for v in Verdict),
-            }
-        variables[name] = (dims.get(name, _PER_AGENT), values, about)
+    variables = {name: (axes(run.filter, name), values, about(run.model, name)) for name, values in arrays.items()}
+    lengths = dict(elsewhere or {})
+    for names, values, _ in variables.values():
+        lengths |= zip(names, values.shape, strict=True)
     made_of = described(run.model, run.network, run.filter)
-    about = {
+    told = {
         "title": f"garrison run: {run.filter.name}",
         "garrison": _core.__version__,
         **{name: json.dumps(part) for name, part in made_of.items()},
@@ -100,89 +123,4 @@ def dataset(run: Run, arrays: dict[str, Any]) -> Any:
         "bytes_per_step": run.bytes_per_step,
         **{f"count_{name}": value for name, value in run.counters.items()},
     }
-    used = {d for v in variables.values() for d in v[0]}
-    coordinates = {name: c for name, c in _coordinates(run).items() if c[0] in used}
-    return xr.Dataset(variables, coordinates, about)
-
-
-#: attributes of a file: everything but the arrays, and a digest of it and them
-_DOCUMENT, _DIGEST = "run", "run_digest"
-#: arrays of small numbers, which older netCDF holds with a sign only
-_BYTES = ("verdict", "bound_kind")
-
-
-def _marked(run: Run, document: dict[str, Any], arrays: dict[str, Any]) -> Any:
-    """The dataset of a run, with everything that makes the run again in an attribute."""
-    text = json.dumps(document | {"arrays": list(arrays)})
-    return dataset(run, arrays).assign_attrs({_DOCUMENT: text, _DIGEST: digest(text, arrays)})
-
-
-def to_netcdf(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, Any]) -> None:
-    """Write the dataset of a run, with everything that makes the run again, as netCDF."""
-    data = _marked(run, document, arrays)
-    # What older netCDF cannot hold: unsigned bytes, and attributes of 64 bits.
-    for name in set(_BYTES) & set(data):
-        about = data[name].attrs
-        data[name] = data[name].astype(np.int8)
-        data[name].attrs = {k: np.array(v, dtype=np.int8) if k == "flag_values" else v for k, v in about.items()}
-    data.attrs = {k: str(v) for k, v in data.attrs.items()}
-    with whole_file(path) as temporary:
-        data.to_netcdf(temporary)
-
-
-def to_zarr(run: Run, path: Path, document: dict[str, Any], arrays: dict[str, Any]) -> None:
-    """The same as a folder of zarr, of format 2: names of fixed width have no place in format 3 yet."""
-    _require_zarr("save")
-    data = _marked(run, document, arrays)
-    data.attrs = {k: str(v) for k, v in data.attrs.items()}
-    with whole_folder(path, _is_run) as temporary:
-        data.to_zarr(temporary, mode="w", consolidated=False, zarr_format=2)
-
-
-#: files of zarr: descriptions, and pieces by their numbers
-_ZARR = re.compile(r"\.zattrs|\.zgroup|\.zarray|\d+(\.\d+)*")
-
-
-def _is_run(folder: Path) -> bool:
-    """Whether `to_zarr` wrote a folder, and nobody put anything else into it."""
-    try:
-        about = json.loads((folder / ".zattrs").read_text(encoding="utf-8"))
-        files = (one.name for one in folder.rglob("*") if not one.is_dir())
-        return _DOCUMENT in about and all(_ZARR.fullmatch(name) for name in files)
-    except (OSError, ValueError, TypeError):
-        return False
-
-
-def _require_zarr(which: str) -> None:
-    try:
-        import zarr  # noqa: F401  (xarray finds it)
-    except ImportError:
-        raise refusal(which, "a folder of zarr and no zarr", 'it installed: pip install "garrison[store]"') from None
-
-
-def from_netcdf(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Document and arrays of a run that `to_netcdf` wrote. Raises IoError for any other file."""
-    return _read(path, {})
-
-
-def from_zarr(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Document and arrays of a run that `to_zarr` wrote. Raises IoError for any other folder."""
-    _require_zarr("load")
-    return _read(path, {"engine": "zarr", "consolidated": False})
-
-
-def _read(path: Path, how: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
-    try:
-        import xarray as xr
-    except ImportError:
-        raise refusal("load", f"{path.name} and no xarray", 'it installed: pip install "garrison[xarray]"') from None
-    try:
-        with xr.open_dataset(path, **how) as data:
-            text, given = data.attrs[_DOCUMENT], data.attrs[_DIGEST]
-            document = json.loads(text)
-            arrays = {name: np.array(data[name].values) for name in document.pop("arrays")}
-    except Exception as error:  # each backend has its own for what is damaged
-        raise _core.IoError(f"{path}: got {error}, expected a run written by Run.save") from None
-    arrays |= {name: arrays[name].astype(np.uint8) for name in _BYTES if name in arrays}
-    require_digest(given, text, arrays, str(path))
-    return document, arrays
+    return xr.Dataset(variables, _coordinates(run, lengths), told)

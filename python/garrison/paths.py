@@ -52,7 +52,7 @@ def whole_file(where: Path) -> Iterator[Path]:
 
     Devices and pipes are written to as they are.
     """
-    with _told(where):
+    with told(where):
         target = where.resolve()
         if target.is_dir():
             raise _core.IoError(f"{_named(where)}: got a folder, expected the name of a file to write")
@@ -76,22 +76,30 @@ def whole_folder(where: Path, ours: Callable[[Path], bool]) -> Iterator[Path]:
 
     What is there already is replaced only if it is empty or `ours`.
     """
-    with _told(where):
+    with told(where), growing_folder(where, ours) as new:
+        yield new
+
+
+@contextlib.contextmanager
+def growing_folder(where: Path, ours: Callable[[Path], bool]) -> Iterator[Path]:
+    """The same for work that writes to it now and then: what else goes wrong meanwhile passes as it is."""
+    with told(where):
         target = where.resolve()
         _require_ours(where, target, ours)
         temporary = Path(tempfile.mkdtemp(prefix=f".{target.stem[:40]}.", suffix=target.suffix, dir=target.parent))
-        old = temporary / "old"
-        try:
-            new = temporary / "new"
-            yield new
+    old = temporary / "old"
+    try:
+        new = temporary / "new"
+        yield new
+        with told(where):
             _require_ours(where, target, ours)  # once more: it may have taken long
             if target.exists():
                 target.rename(old)
             new.rename(target)
-        finally:
-            if old.exists() and not target.exists():
-                old.rename(target)
-            shutil.rmtree(temporary, ignore_errors=True)
+    finally:
+        if old.exists() and not target.exists():
+            old.rename(target)
+        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _require_ours(where: Path, target: Path, ours: Callable[[Path], bool]) -> None:
@@ -104,7 +112,7 @@ def _require_ours(where: Path, target: Path, ours: Callable[[Path], bool]) -> No
 
 
 @contextlib.contextmanager
-def _told(where: Path) -> Iterator[None]:
+def told(where: Path) -> Iterator[None]:
     """Errors of the system as those of garrison."""
     try:
         yield

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -188,19 +189,22 @@ class Run(metaclass=Hinting):
 
     @staticmethod
     def load(path: str | Path) -> Run:
-        """The run that `save` wrote. Raises IoError when the file cannot be read or holds no run."""
-        return run_file.load(path_of("path", path), _made_of)
+        """The run that `save` wrote, or that was written as it went, all of it.
+
+        Raises IoError when the file cannot be read or holds no run, InvalidInput when it is too large for memory.
+        """
+        return run_file.load(path_of("path", path), partial(assembled, Run))
 
     def __reduce__(self) -> Any:
         parts = self.model, self.network, self.filter, self.made
-        return _made_of, (*parts, run_file.lists_of(self), run_file.arrays_of(self))
+        return assembled, (Run, *parts, run_file.lists_of(self), run_file.arrays_of(self))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Run):
             return NotImplemented
         parts = ("model", "network", "filter", *run_file.LISTS)
         alike = all(same(getattr(self, k), getattr(other, k)) for k in parts)
-        return alike and same(run_file.arrays_of(self), run_file.arrays_of(other))
+        return alike and same(_in_memory(self), _in_memory(other))
 
     def __hash__(self) -> int:
         return hash((self.model, self.network, self.filter, self.shape))
@@ -282,7 +286,13 @@ class Run(metaclass=Hinting):
         return f"<Run of {self.filter.name}: {', '.join(sizes)}>"
 
 
-def _made_of(
+def _in_memory(run: Run) -> dict[str, NDArray[Any]]:
+    """Its arrays, read where they are in a store."""
+    return {name: np.asarray(value) for name, value in run_file.arrays_of(run).items()}
+
+
+def assembled(
+    kind: type[Run],
     model: _core.Model,
     network: _core.Network,
     filter: _core.Filter,
@@ -292,6 +302,6 @@ def _made_of(
 ) -> Run:
     """The run of what it was made of, its lists, and its arrays by the names of a saved run."""
     arrays = {key: found[key] for key in run_file.ARRAYS if key in found}
-    run = Run(lists | {"made": made} | arrays, model, network, filter, run_file.marked(found, run_file.VARYING))
+    run = kind(lists | {"made": made} | arrays, model, network, filter, run_file.marked(found, run_file.VARYING))
     run.signals = run_file.marked(found, run_file.SIGNAL)
     return run

@@ -79,45 +79,53 @@ def marked(arrays: dict[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[An
 
 def labelled(run: Run) -> dict[str, NDArray[Any]]:
     """Arrays as a dataset holds them: signals by their own names where these are free."""
-    return {_label(name): value for name, value in arrays_of(run).items()}
+    return {label(name): value for name, value in arrays_of(run).items()}
 
 
 def save(run: Run, to: Path) -> None:
     """Write all of a run, in the format that the name's ending says."""
     if to.suffix == ".nc":
-        from garrison.labelled import to_netcdf
+        from garrison.labelled_files import to_netcdf
 
-        to_netcdf(run, to, _document(run), labelled(run))
+        to_netcdf(run, to, document(run), labelled(run))
     elif to.suffix == ".zarr":
-        from garrison.labelled import to_zarr
+        from garrison.labelled_files import to_zarr
 
-        to_zarr(run, to, _document(run), labelled(run))
+        to_zarr(run, to, document(run), labelled(run))
     else:
         from garrison.storage import pack
 
-        write("path", to, pack(_document(run), arrays_of(run)))
+        write("path", to, pack(document(run), arrays_of(run)))
 
 
 def load(path: Path, make: Callable[..., Run]) -> Run:
     """The run that `save` wrote; `make` takes model, network, filter, what made it, its lists, and its arrays."""
     if path.suffix in (".nc", ".zarr"):
-        from garrison.labelled import from_netcdf, from_zarr
+        from garrison.labelled_files import from_netcdf, from_zarr
 
-        document, found = (from_netcdf if path.suffix == ".nc" else from_zarr)(path)
+        said, found = (from_netcdf if path.suffix == ".nc" else from_zarr)(path)
         found = {_unlabelled(name): value for name, value in found.items()}
     else:
         from garrison.storage import unpack
 
-        document, found = unpack(read("path", path, "a run written by Run.save"), str(path))
-    return _assembled(document, found, str(path), make)
+        said, found = unpack(read("path", path, "a run written by Run.save"), str(path))
+    return _assembled(said, found, str(path), make)
 
 
-def _document(run: Run) -> dict[str, Any]:
+def opened(path: Path, make: Callable[..., Run]) -> Run:
+    """The run in a folder of zarr that was written as it went; its arrays are read where they are indexed."""
+    from garrison.labelled_files import opened as opened_zarr
+
+    said, found = opened_zarr(path)
+    return _assembled(said, {_unlabelled(name): value for name, value in found.items()}, str(path), make)
+
+
+def document(run: Run) -> dict[str, Any]:
     """Everything but the arrays, as plain data."""
     return {"objects": described(run.model, run.network, run.filter), "made": run.made} | lists_of(run)
 
 
-def _label(name: str) -> str:
+def label(name: str) -> str:
     """What a dataset calls an array of a saved run."""
     own = name.removeprefix(SIGNAL)
     first = own[:1]
@@ -143,7 +151,7 @@ def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: s
         content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
         parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
         run = make(*parts, made, content, found)
-        require_arrays(found, dimensions(run), run.network.agents)
+        require_arrays(found, dimensions(run.filter), run.network.agents)
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         raise _core.IoError(f"{name}: got {error!r}, expected a run written by Run.save") from None
     return run

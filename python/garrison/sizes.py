@@ -20,15 +20,18 @@ def limit_bytes() -> float:
         raise refusal(VARIABLE, repr(given), "a number of gigabytes") from None
 
 
-def require_memory(which: str, got: str, doubles: float) -> None:
-    """Refuse what would take more memory than the limit. doubles: how many numbers it would hold."""
+def require_memory(which: str, got: str, doubles: float, advice: str = "") -> None:
+    """Refuse what would take more memory than the limit. doubles: how many numbers it would hold.
+
+    advice: what to do instead.
+    """
     size, limit = 8.0 * doubles, limit_bytes()
     if size > limit:
         raise refusal(
             which,
             f"{got}, which would take {size / 1e9:.3g} GB",
             f"at most {limit / 1e9:g} GB",
-            f"set {VARIABLE} if this machine has more",
+            f"{advice}{', or ' if advice else ''}set {VARIABLE} if this machine has more",
         )
 
 

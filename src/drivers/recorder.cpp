@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "garrison/kernel/magnitude.hpp"
 
@@ -10,11 +11,13 @@ namespace garrison::detail {
 
 Recorder::Recorder(const Prepared& prepared, int steps, bool truth_known, const RunOptions& options)
     : keep_(options.keep),
+      truth_known_(truth_known),
+      certified_(prepared.certificate() != nullptr),
       vouch_(options.message_attacks.empty()),
-      direct_(prepared.certificate() != nullptr &&
-              prepared.certificate()->wanted.spread == certificate::Spread::direct),
+      direct_(certified_ && prepared.certificate()->wanted.spread == certificate::Spread::direct),
       outputs_(static_cast<std::size_t>(prepared.model().total_outputs())),
-      remembers_(prepared.certificate() != nullptr && prepared.certificate()->wanted.memory) {
+      remembers_(certified_ && prepared.certificate()->wanted.memory),
+      sink_(options.sink) {
   const Model& model = prepared.model();
   const AnyFilter& filter = prepared.filter();
   Record& r = record_;
@@ -22,65 +25,123 @@ Recorder::Recorder(const Prepared& prepared, int steps, bool truth_known, const 
   r.steps = steps;
   r.agents = model.agents();
   r.states = model.states();
+  r.outputs = model.total_outputs();
   r.first_sample = filter.first_sample();
   r.own_states = filter.own_states();
+  if (keep_.signals) r.signal_names = filter.signal_names();
+  if (keep_.details) r.detail_names = filter.detail_names();
   const auto trials = static_cast<std::size_t>(r.trials);
-  const auto rows = trials * static_cast<std::size_t>(steps + 1);
-  const auto N = static_cast<std::size_t>(r.agents);
-  const auto n = static_cast<std::size_t>(r.states);
-  if (truth_known) {
-    r.truth.resize(rows * (r.own_states ? N * n : n));
-    r.error.resize(rows * N);
+  const auto times = static_cast<std::size_t>(steps + 1);
+  if (sink_) {
+    std::size_t bytes = 0;  // of one time
+    arrays(r, [&](auto& array, std::size_t width) { bytes += width * sizeof(array[0]); });
+    block_ = static_cast<int>(
+        std::clamp<std::size_t>(options.block_bytes / std::max<std::size_t>(bytes, 1), 1, times));
+    open_.resize(trials);
+  } else {
+    lay_out(r, trials * times, trials * (times - static_cast<std::size_t>(r.first_sample)));
   }
-  if (keep_.measurements)
-    r.measurements.resize(trials * static_cast<std::size_t>(steps + 1 - r.first_sample) * outputs_);
-  if (keep_.estimate)
-    r.estimate.resize(rows * N * n);
-  else
-    estimates_.assign(trials, std::vector<double>(N * n));
-  if (keep_.report) {
-    r.bound.resize(rows * N);
-    r.bound_kind.resize(rows * N);
-    if (keep_.box) r.box.resize(rows * N * n);
-    if (prepared.certificate() != nullptr) r.published.resize(rows * N);
-    r.statistic.resize(rows * N);
-    r.threshold.resize(rows * N);
-    r.verdict.resize(rows * N);
-  }
-  if (keep_.signals) {
-    r.signal_names = filter.signal_names();
-    r.signals.resize(rows * N * r.signal_names.size());
-  }
-  if (keep_.details) {
-    r.detail_names = filter.detail_names();
-    lists_.resize(trials);
-  }
+  estimates_.resize(trials);
+  if (keep_.details) lists_.resize(trials);
   last_.resize(trials);
-  proved_.assign(trials, std::vector<std::vector<int>>(N));
+  proved_.resize(trials);
   counts_.resize(trials);
 }
 
+template <class F>
+void Recorder::arrays(Record& r, const F& f) const {
+  const auto N = static_cast<std::size_t>(r.agents);
+  const auto n = static_cast<std::size_t>(r.states);
+  const std::size_t reported = keep_.report ? N : 0;
+  f(r.truth, truth_known_ && keep_.truth ? (r.own_states ? N * n : n) : 0);
+  f(r.error, truth_known_ && keep_.error ? N : 0);
+  f(r.measurements, keep_.measurements ? outputs_ : 0);
+  f(r.estimate, keep_.estimate ? N * n : 0);
+  f(r.bound, reported);
+  f(r.bound_kind, reported);
+  f(r.box, keep_.box ? reported * n : 0);
+  f(r.published, certified_ ? reported : 0);
+  f(r.statistic, reported);
+  f(r.threshold, reported);
+  f(r.verdict, reported);
+  f(r.signals, N * r.signal_names.size());
+}
+
+void Recorder::lay_out(Record& record, std::size_t times, std::size_t samples) const {
+  arrays(record, [&](auto& array, std::size_t width) {
+    const bool sampled = static_cast<const void*>(&array) == &record.measurements;
+    array.resize((sampled ? samples : times) * width);
+  });
+}
+
+/// With room for all its times, so that a run allocates nothing from sample to sample.
+std::unique_ptr<Record> Recorder::new_block() {
+  auto block = std::make_unique<Record>();
+  block->trials = 1;
+  block->agents = record_.agents;
+  block->states = record_.states;
+  block->outputs = record_.outputs;
+  block->first_sample = record_.first_sample;
+  block->own_states = record_.own_states;
+  block->signal_names = record_.signal_names;
+  const auto times = static_cast<std::size_t>(block_);
+  lay_out(*block, times, times);
+  return block;
+}
+
+void Recorder::begin(int trial) {
+  const auto k = static_cast<std::size_t>(trial);
+  counts_[k] = {};
+  if (!sink_) return;
+  const std::lock_guard lock(mutex_);
+  if (spare_.empty()) spare_.push_back(new_block());
+  open_[k] = std::move(spare_.back());
+  spare_.pop_back();
+}
+
+void Recorder::end(int trial) {
+  const auto k = static_cast<std::size_t>(trial);
+  last_[k] = {};
+  proved_[k] = {};
+  estimates_[k] = {};
+  if (keep_.details) lists_[k] = {};
+  if (!sink_) return;
+  const std::lock_guard lock(mutex_);
+  spare_.push_back(std::move(open_[k]));
+}
+
+void Recorder::start_block(int trial, int t) {
+  Record& block = page(trial);
+  const int last = t + std::min(block_ - 1, record_.steps - t);
+  block.steps = last - t;
+  const int samples = last - std::max(t, record_.first_sample) + 1;
+  lay_out(block, static_cast<std::size_t>(last - t + 1), static_cast<std::size_t>(std::max(samples, 0)));
+}
+
 std::size_t Recorder::row(int trial, int t) const {
+  if (sink_) return static_cast<std::size_t>(t - first_of(t));
   return static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps + 1) +
          static_cast<std::size_t>(t);
 }
 
 double* Recorder::estimate(int trial, int t) {
-  return keep_.estimate ? record_.estimate.data() + row(trial, t) * size()
-                        : estimates_[static_cast<std::size_t>(trial)].data();
+  if (keep_.estimate) return page(trial).estimate.data() + row(trial, t) * size();
+  auto& scratch = estimates_[static_cast<std::size_t>(trial)];
+  scratch.resize(size());
+  return scratch.data();
 }
 
-bool Recorder::errors(std::size_t row, const double* estimate, const double* truth) {
+bool Recorder::errors(Record& record, std::size_t row, const double* estimate, const double* truth) const {
   const auto n = static_cast<std::size_t>(record_.states);
   const auto N = static_cast<std::size_t>(record_.agents);
   const std::size_t width = record_.own_states ? N * n : n;
-  std::copy_n(truth, width, record_.truth.data() + row * width);
+  if (keep_.truth) std::copy_n(truth, width, record.truth.data() + row * width);
   bool usable = all_below(truth, width, kSurelyUsable / 2.0);
   for (std::size_t i = 0; i < N; ++i, truth += record_.own_states ? n : 0) {
     double square = 0.0;
     for (std::size_t k = 0; k < n; ++k)
       square += (estimate[i * n + k] - truth[k]) * (estimate[i * n + k] - truth[k]);
-    record_.error[row * N + i] = std::sqrt(square);
+    if (keep_.error) record.error[row * N + i] = std::sqrt(square);
     usable = usable && square < kSurelyUsable * kSurelyUsable / 4.0;
   }
   return usable;
@@ -96,9 +157,12 @@ void Recorder::count(int trial, int t, std::span<const double> y) {
   }
   if (!keep_.measurements) return;
   const int first = record_.first_sample;
-  const auto at = static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps + 1 - first) +
+  const auto at =
+      sink_ ? static_cast<std::size_t>(t - std::max(first_of(t), first))
+            : static_cast<std::size_t>(trial) * static_cast<std::size_t>(record_.steps + 1 - first) +
                   static_cast<std::size_t>(t - first);
-  std::copy(y.begin(), y.end(), record_.measurements.begin() + static_cast<std::ptrdiff_t>(at * outputs_));
+  std::copy(y.begin(), y.end(),
+            page(trial).measurements.begin() + static_cast<std::ptrdiff_t>(at * outputs_));
 }
 
 void Recorder::move(double* estimates, const double* shift) const {
@@ -109,29 +173,34 @@ void Recorder::move(double* estimates, const double* shift) const {
 
 void Recorder::take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y,
                     const double* shift) {
+  if (sink_ && t == first_of(t)) start_block(trial, t);
   const std::size_t at = row(trial, t);
   const auto N = static_cast<std::size_t>(record_.agents);
+  Record& r = page(trial);
   Frame frame;
   frame.estimate = estimate(trial, t);
   if (keep_.report) {
-    frame.bound = record_.bound.data() + at * N;
-    frame.bound_kind = record_.bound_kind.data() + at * N;
-    if (!record_.box.empty()) frame.box = record_.box.data() + at * size();
-    if (!record_.published.empty()) frame.published = record_.published.data() + at * N;
-    frame.statistic = record_.statistic.data() + at * N;
-    frame.threshold = record_.threshold.data() + at * N;
-    frame.verdict = record_.verdict.data() + at * N;
+    frame.bound = r.bound.data() + at * N;
+    frame.bound_kind = r.bound_kind.data() + at * N;
+    if (!r.box.empty()) frame.box = r.box.data() + at * size();
+    if (!r.published.empty()) frame.published = r.published.data() + at * N;
+    frame.statistic = r.statistic.data() + at * N;
+    frame.threshold = r.threshold.data() + at * N;
+    frame.verdict = r.verdict.data() + at * N;
   }
-  if (keep_.signals) frame.signals = record_.signals.data() + at * N * record_.signal_names.size();
+  if (keep_.signals) frame.signals = r.signals.data() + at * N * r.signal_names.size();
   frame.believed = vouch_;
   runner.read(frame);
   move(frame.estimate, shift);
   if (!vouch_ && frame.bound != nullptr) disown(frame);
-  if (truth != nullptr) errors(at, frame.estimate, truth);
+  if (truth != nullptr && (keep_.error || keep_.truth)) errors(r, at, frame.estimate, truth);
   if (keep_.report) accusations(trial, t, runner);
   if (keep_.report && remembers_ && (vouch_ || direct_)) proofs(trial, t, runner);
   if (keep_.details) details(trial, t, runner);
   if (t >= record_.first_sample) count(trial, t, y);
+  if (!sink_ || t != first_of(t) + r.steps) return;
+  const std::lock_guard lock(sink_mutex_);
+  sink_(r, trial, first_of(t));
 }
 
 /// Agents lie: what rests on their word is no bound. A direct certificate does not.
@@ -176,6 +245,7 @@ void Recorder::accusations(int trial, int t, const Runner& runner) {
 
 void Recorder::proofs(int trial, int t, const Runner& runner) {
   auto& last = proved_[static_cast<std::size_t>(trial)];
+  last.resize(static_cast<std::size_t>(record_.agents));
   bool changed = t == 0;
   for (std::size_t i = 0; i < last.size(); ++i) {
     const std::span<const int> now = runner.proved(static_cast<int>(i));

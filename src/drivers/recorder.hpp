@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes one trial after the other into a Record. Internal to the drivers.
+// Writes one trial after the other into a Record, or block by block into a sink. Internal to the drivers.
 #pragma once
 
 #include <array>
+#include <memory>
 #include <mutex>
 #include <span>
 
@@ -11,7 +12,8 @@
 
 namespace garrison::detail {
 
-/// Trials write to disjoint parts of the arrays, so threads need no lock except for the counters.
+/// Trials write to disjoint parts of the arrays, or to blocks of their own, so threads need no lock except
+/// for the counters and the sink.
 class Recorder {
  public:
   Recorder(const Prepared& prepared, int steps, bool truth_known, const RunOptions& options);
@@ -21,7 +23,8 @@ class Recorder {
   /// what is added to every estimate (n numbers; null = nothing).
   void take(int trial, int t, const Runner& runner, const double* truth, std::span<const double> y,
             const double* shift);
-  /// The same of the trials first .. first + used - 1, which run side by side: estimates and errors.
+  /// The same of the trials first .. first + used - 1, which run side by side: estimates and errors. Not into
+  /// a sink, which cannot take back what it was given.
   /// `truth(lane)`: null when it is not known. False: an estimate is so large that it may not have been of
   /// use.
   template <class Truth>
@@ -37,7 +40,7 @@ class Recorder {
       fine = fine && (shift == nullptr || all_below(estimates, size(), kSurelyUsable));
       move(estimates, shift);
       if (const double* x = truth(l))
-        fine = errors(row(first + l, t), estimates, x) && fine;
+        fine = errors(record_, row(first + l, t), estimates, x) && fine;
       else
         fine = fine && all_below(estimates, size(), kSurelyUsable);
     }
@@ -45,8 +48,10 @@ class Recorder {
   }
   /// Counts and keeps the measurements of time t >= 1.
   void count(int trial, int t, std::span<const double> y);
-  /// Forgets what was counted of a trial that is about to be run (again).
-  void begin(int trial) { counts_[static_cast<std::size_t>(trial)] = {}; }
+  /// Forgets what was counted of a trial that is about to be run (again), and gives it a block.
+  void begin(int trial);
+  /// Frees what only a trial that runs needs.
+  void end(int trial);
   void finish(const LinkCounters& link, const Runner& runner);
   Record release();
 
@@ -61,13 +66,24 @@ class Recorder {
   std::size_t size() const {
     return static_cast<std::size_t>(record_.agents) * static_cast<std::size_t>(record_.states);
   }
+  /// f(array, numbers of it at one time) of every array; 0 where it is not kept.
+  template <class F>
+  void arrays(Record& record, const F& f) const;
+  /// Makes the arrays that are kept as large as times and samples.
+  void lay_out(Record& record, std::size_t times, std::size_t samples) const;
+  std::unique_ptr<Record> new_block();
+  /// Where a trial is written to, and which of the times there is t.
+  Record& page(int trial) { return sink_ ? *open_[static_cast<std::size_t>(trial)] : record_; }
   std::size_t row(int trial, int t) const;
+  /// First time of the block that t is in.
+  int first_of(int t) const { return t - t % block_; }
+  void start_block(int trial, int t);
   /// Adds what known inputs add to every estimate.
   void move(double* estimates, const double* shift) const;
   /// Where estimates of that time go.
   double* estimate(int trial, int t);
   /// True: truth and errors are so small that the estimates are, too.
-  bool errors(std::size_t row, const double* estimate, const double* truth);
+  bool errors(Record& record, std::size_t row, const double* estimate, const double* truth) const;
   void disown(const Frame& frame) const;
   void accusations(int trial, int t, const Runner& runner);
   void proofs(int trial, int t, const Runner& runner);
@@ -77,6 +93,8 @@ class Recorder {
   std::int64_t bytes_ = 0;  // of a step, summed over what has finished
   std::int64_t finished_ = 0;
   Keep keep_;
+  bool truth_known_;
+  bool certified_;
   bool vouch_;   // no agent lies in its messages: only then a family's bounds are covered
   bool direct_;  // the certificate does not rest on what agents say of others
   std::size_t outputs_;
@@ -87,6 +105,11 @@ class Recorder {
   std::vector<std::vector<std::vector<double>>> lists_;  // per trial, [agent * details + detail]
   std::vector<std::vector<double>> estimates_;           // per trial, when estimates are not kept
   std::mutex mutex_;
+  const std::function<void(const Record&, int, int)>& sink_;
+  int block_ = 0;                               // times of a block; without a sink not used
+  std::vector<std::unique_ptr<Record>> open_;   // per trial: its block while it runs
+  std::vector<std::unique_ptr<Record>> spare_;  // blocks of trials that have ended
+  std::mutex sink_mutex_;
 };
 
 }  // namespace garrison::detail

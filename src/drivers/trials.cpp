@@ -84,6 +84,7 @@ void run_trial(const Prepared& prepared, const RunOptions& options, Runner& runn
     recorder.take(trial, t, runner, source.truth(), y, course.shift());
     if (!progress.advance()) return;
   }
+  recorder.end(trial);
   recorder.finish(link.counters, runner);
   doubt = course.doubt();
 }
@@ -131,11 +132,13 @@ bool run_side_by_side(const Model& model, const RunOptions& options, TrialsRunne
     fine = recorder.take_side_by_side(first, used, t, runner, truth, course.shift()) && fine;
     if (!progress.advance(used)) return true;
   }
+  for (int l = 0; l < used; ++l) recorder.end(first + l);
   return fine;
 }
 
 bool fit_side_by_side(const RunOptions& options) {
   if (options.trials < 2 || options.keep.report || options.keep.signals || options.keep.details) return false;
+  if (options.sink) return false;  // trials that are run again would be written twice
   if (!options.message_attacks.empty() || options.link.drop > 0.0 || options.link.delay > 0.0) return false;
   for (const Attack& attack : options.attacks)
     if (attack->closed_loop()) return false;

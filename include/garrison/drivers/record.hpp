@@ -18,6 +18,7 @@ struct GARRISON_EXPORT Record {
   int steps = 0;
   int agents = 0;
   int states = 0;
+  int outputs = 0;          ///< measurements of one sample
   int first_sample = 1;     ///< 0 for families that have a sample at the start too
   bool own_states = false;  ///< every agent has a state of its own
   std::vector<std::string> signal_names;

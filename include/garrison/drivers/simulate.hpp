@@ -17,7 +17,7 @@ namespace garrison {
 /// Trials have numbers below this one: their random streams are apart from each other.
 inline constexpr int kMostTrials = 1 << 24;
 
-/// What to keep of a run. Errors are always kept when the truth is known.
+/// What to keep of a run.
 struct GARRISON_EXPORT Keep {
   bool estimate = true;
   bool report = true;    ///< bound, statistic, threshold, verdict, accusations
@@ -25,6 +25,8 @@ struct GARRISON_EXPORT Keep {
   bool measurements = true;
   bool details = false;  ///< the family's lists (sets, gains), whenever one changes
   bool box = false;      ///< with `report`: the bound of each coordinate
+  bool error = true;     ///< where the truth is known
+  bool truth = true;     ///< the same
 };
 
 /// Settings that simulation and replay share.
@@ -47,6 +49,14 @@ struct GARRISON_EXPORT RunOptions {
   Keep keep;
   /// Called now and then with the number of finished samples and their total; false stops the run.
   std::function<bool(std::int64_t, std::int64_t)> progress;
+  /// Takes the arrays of the run in blocks as it goes, so that memory holds one block per running trial,
+  /// however long the run is: those of trial `trial` at times `first` .. `first` + Record::steps, as the only
+  /// trial of a record that is valid during the call. Called from the threads of the run, once at a time, for
+  /// each trial in order of time; what it throws is thrown by the run. The record that the run returns has
+  /// lists, counters and warnings, but no arrays.
+  std::function<void(const Record& block, int trial, int first)> sink;
+  std::size_t block_bytes = std::size_t{16}
+                            << 20;  ///< at most, of all arrays of a block; or one time of them
 };
 
 /// How the simulated plant starts and is disturbed.

@@ -60,11 +60,11 @@ def do(args: argparse.Namespace) -> int:
     doubt: Exception | None = None
     where = "nothing was written; -o FOLDER keeps summary, estimates, pictures and a report"
     if args.output is None:
-        rows = _run_with_progress(scenario, console, not args.no_conditions)
+        rows = _run_with_progress(scenario, console, args)
         summary = _summary(scenario, rows, given)
     else:
         with output_folder(Path(args.output), args.force) as folder:
-            rows = _run_with_progress(scenario, console, not args.no_conditions)
+            rows = _run_with_progress(scenario, console, args)
             summary = _summary(scenario, rows, given)
             doubt = _write(folder, scenario, rows, summary, args)
             written = sorted(p.name for p in folder.iterdir())
@@ -122,7 +122,7 @@ def _summary(scenario: Scenario, rows: list[Row], given: dict[str, Any]) -> dict
     }
 
 
-def _run_with_progress(scenario: Scenario, console: Console, conditions: bool) -> list[Row]:
+def _run_with_progress(scenario: Scenario, console: Console, args: argparse.Namespace) -> list[Row]:
     from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
     columns = (
@@ -145,7 +145,7 @@ def _run_with_progress(scenario: Scenario, console: Console, conditions: bool) -
         def working(label: str, seconds: float) -> None:
             bar.update(designs, description=f"{label}, {seconds:.0f} s", visible=True)
 
-        return run_scenario(scenario, progress, conditions, working)
+        return run_scenario(scenario, progress, not args.no_conditions, working, whole=args.all_estimates)
 
 
 def _estimate_names(rows: list[Row]) -> dict[str, Row]:

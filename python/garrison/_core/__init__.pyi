@@ -1359,6 +1359,8 @@ def replay(
     inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     series: dict,
     progress: typing.Any,
+    sink: typing.Any = None,
+    block_bytes: typing.SupportsInt | typing.SupportsIndex = 16777216,
 ) -> dict:
     """
     Arrays of a replayed run; use garrison.replay.
@@ -1400,6 +1402,8 @@ def simulate(
     inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     series: dict,
     progress: typing.Any,
+    sink: typing.Any = None,
+    block_bytes: typing.SupportsInt | typing.SupportsIndex = 16777216,
 ) -> dict:
     """
     Arrays of a simulated run; use garrison.simulate.

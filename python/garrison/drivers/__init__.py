@@ -1,8 +1,9 @@
 """Drivers: simulate a plant, replay a recording."""
 
-from garrison.drivers.common import KEEP, require_room
+from garrison.drivers.common import require_room
+from garrison.drivers.keeping import KEEP, every, kept
 from garrison.drivers.repeating import again
 from garrison.drivers.replaying import replay
 from garrison.drivers.simulating import simulate
 
-__all__ = ["KEEP", "again", "replay", "require_room", "simulate"]
+__all__ = ["KEEP", "again", "every", "kept", "replay", "require_room", "simulate"]

@@ -3,40 +3,67 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, doubts, refuted, run_options
 from garrison.certifying.plant import sources_of
+from garrison.drivers.keeping import Kept
 from garrison.families import family_of
-from garrison.objects import described_attack, plain_data, plain_lists
+from garrison.objects import described, described_attack, plain_data, plain_lists
 from garrison.record import Run
 from garrison.sizes import require_memory
+from garrison.store import UNSEEN, Store, place
 from garrison.words import count, refusal
 
 Progress = Callable[[int, int], None]
 Attacks = _core.Attack | Iterable[_core.Attack]
 
-#: what a run keeps when nothing else is asked for, and everything that it can keep
-KEEP = ("estimate", "report", "measurements")
-KEEPABLE = (*KEEP, "signals", "details", "box")
 #: trials have numbers below this one
 MOST_TRIALS = 2**24
+#: of the blocks in which a run is written as it goes, one per trial that runs
+BLOCK_BYTES = 16 * 2**20
 
 
-def require_room(model: _core.Model, filter: _core.Filter, keep: Iterable[str], trials: int, steps: int) -> None:
+#: bytes of one agent in the arrays of "report", and in that of the family's own bound with a certificate
+_REPORT, _PUBLISHED = 3 * 8 + 2, 8
+_ADVICE = 'keep less (keep=...), write it as it goes (to="run.zarr")'
+
+
+def require_room(
+    model: _core.Model, filter: _core.Filter, keep: Kept, trials: int, steps: int, certified: bool = False
+) -> None:
     """Refuse a run whose arrays would not fit into the memory limit, before anything is computed."""
     n, N = model.states, model.agents
     row = {
-        "estimate": N * n,
-        "report": 6 * N,
-        "measurements": model.outputs,
-        "signals": len(filter.signal_names) * N,
-        "box": N * n,
+        "truth": 8 * n * (N if family_of(filter).own_plants else 1),
+        "error": 8 * N,
+        "estimate": 8 * N * n,
+        "report": (_REPORT + _PUBLISHED * certified) * N,
+        "measurements": 8 * model.outputs,
+        "signals": 8 * len(filter.signal_names) * N,
+        "box": 8 * N * n,
     }
-    doubles = trials * (steps + 1.0) * (n + sum(row.get(name, 0) for name in keep))
-    require_memory("steps, trials", f"{count(steps, 'sample')} in {count(trials, 'trial')}", doubles)
+    bytes_of_one = sum(row.get(name, 0) for name in keep.names)
+    got = f"{count(steps, 'sample')} in {count(trials, 'trial')} of {count(N, 'agent')}, {bytes_of_one} bytes a sample"
+    require_memory("steps, trials", got, trials * (steps + 1.0) * bytes_of_one / 8.0, _ADVICE)
+
+
+def destination(
+    to: str | Path | None, keep: Kept, model: _core.Model, network: _core.Network, filter: _core.Filter
+) -> Path | None:
+    """Where the run is written as it goes; None: nowhere, it stays in memory."""
+    if to is not None:
+        described(model, network, filter)  # refuses before the run what no file can hold
+        return place(to)
+    for name, step in keep.every.items():
+        advice = 'to="run.zarr"; in memory slices do it: run.estimate[:, ::100]'
+        raise refusal(
+            f"keep[{name!r}]", f"garrison.every({step}) without to", "a run that is written as it goes", advice
+        )
+    return None
 
 
 def designed(
@@ -74,6 +101,7 @@ def recorded(
     attacks: list[_core.Attack],
     conditions: bool,
     known: dict[str, Any],
+    steps: int,
 ) -> Run:
     """The run of what a driver recorded, with warnings of all that speaks against it."""
     series = known["series"]
@@ -88,8 +116,8 @@ def recorded(
     driven = "C" in series or family_of(filter).own_plants  # where rows of zeros are meant
     run.warnings += [] if driven else doubts.of_blind(model)
     run.warnings += refuted.of_sources(model, filter)
-    run.warnings += doubts.of_attacks(attacks, run.shape[1] - 1)
-    run.warnings += doubts.of_alarms(filter, run.shape[1] - 1)
+    run.warnings += doubts.of_attacks(attacks, steps)
+    run.warnings += doubts.of_alarms(filter, steps)
     run.warnings += doubts.of_losses(run.bound, run.verdict, run.counters)
     quiet = max((a.start for a in attacks), default=0)
     if "C" not in series:
@@ -107,11 +135,14 @@ def recorded(
     return run
 
 
-def with_recipe(run: Run, made: dict[str, Any]) -> Run:
-    """The run with what made it, and the doubts that depend on that."""
+def with_recipe(run: Run, made: dict[str, Any], store: Store | None) -> Run:
+    """The run with what made it, and the doubts that depend on that; the rest of what its store is to hold, too."""
     run.made = plain_lists(made)
     run.warnings += refuted.of_memory(run.proved)
     run.warnings += refuted.of_certificates(run.bound_kind, made.get("failure", 0.0))
+    if store is not None:
+        run.warnings.append(UNSEEN)
+        store.finish(run)
     return run
 
 
@@ -122,11 +153,11 @@ def made_of(
     start: ArrayLike | None,
     attacks: list[_core.Attack],
     links: dict[str, Any],
-    kept: list[str],
+    kept: Kept,
     design: _core.Design,
     conditions: bool,
 ) -> dict[str, Any]:
     """Arguments of both drivers as plain data, for `again`."""
     made = {"trials": trials, "first_trial": first_trial, "seed": int(seed), "start": plain_data(start), "link": links}
     made["conditions"] = conditions
-    return made | {"keep": kept, "attack": [described_attack(a) for a in attacks]} | dict(design.certificate or {})
+    return made | {"keep": kept.said, "attack": [described_attack(a) for a in attacks]} | dict(design.certificate or {})

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,20 +11,23 @@ from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, doubts, run_options
 from garrison.drivers.common import (
-    KEEP,
-    KEEPABLE,
+    BLOCK_BYTES,
     MOST_TRIALS,
     Attacks,
     Progress,
     designed,
+    destination,
     made_of,
     recorded,
     require_room,
     threads_of,
     with_recipe,
 )
+from garrison.drivers.keeping import KEEP, Keep, kept
 from garrison.numeric import matched, numbers, output_names
 from garrison.record import Run
+from garrison.store import written
+from garrison.stored import stored
 from garrison.varying import Inputs, VaryingModel, inputs_of, parted
 from garrison.varying_network import VaryingNetwork, links_of
 from garrison.words import hinted, require_order
@@ -44,7 +48,8 @@ def replay(
     first_trial: int = 0,
     seed: int = 0,
     link: Mapping[str, float] | None = None,
-    keep: Iterable[str] = KEEP,
+    keep: Keep = KEEP,
+    to: str | Path | None = None,
     threads: int = 0,
     progress: Progress | None = None,
     conditions: bool = True,
@@ -88,10 +93,18 @@ def replay(
         drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says); cuts:
         a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
         (sample, round, sender, receiver).
-    keep : iterable of str
-        Which arrays of the run are filled: "estimate" (with the error), "report" (bounds, test statistics, thresholds
-        and verdicts), "measurements", "signals" (what the family says of itself, by name), "details" (lists such as
-        sets), "box" (the bound of each coordinate, with "report").
+    keep : iterable of str, or mapping
+        Which arrays of the run are filled: "estimate", "report" (bounds, test statistics, thresholds and verdicts),
+        "measurements", "signals" (what the family says of itself, by name), "details" (lists such as sets), "box"
+        (the bound of each coordinate, with "report"); beside them errors and truth. A mapping says it of each of these
+        and of "error" and "truth", "all" or `garrison.every(k)`, and what it does not name is not kept: {} keeps
+        counters alone.
+    to : str or Path, optional
+        A folder that ends in .zarr (extra: store): the run is written there as it goes, and memory holds a block of
+        samples (16 MB) and open chunks per trial that runs, however long the run is. The run that is returned reads
+        its arrays where they are indexed (garrison.StoredRun). It has the bits of a run in memory, but no warning that
+        looks at whole arrays. Lists (accusations, details) stay in memory until the end. The folder appears when the
+        run is over: one that fails or is interrupted leaves what was there.
     threads : int
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
         (garrison.Filter, garrison.attacks.custom) always run in one.
@@ -133,30 +146,36 @@ def replay(
     y = numbers("measurements", matched("measurements", measurements, names))
     trials = (len(y) if y.ndim == 3 else 1) if trials is None else arguments.whole("trials", trials, 1)
     wanted = arguments.flag("conditions", conditions)
-    attacks, kept = run_options.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
+    attacks, keeping = run_options.attacks(attack), kept(keep)
     samples = y.shape[-2] if y.ndim >= 2 else 0
     ground, links = links_of(network, run_options.link(link), samples)
+    path = destination(to, keeping, base, ground, filter)
     known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
-    require_room(base, filter, kept, trials, samples)
-    design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
-    data = _core.replay(
-        design,
-        measurements=y,
-        truth=None if truth is None else numbers("truth", truth),
-        trials=trials,
-        first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
-        seed=arguments.whole("seed", seed, 0, 2**64 - 1),
-        threads=threads_of(filter, attacks, threads),
-        start=None if start is None else arguments.table("start", start),
-        attacks=attacks,
-        link=links,
-        keep=kept,
-        **known,
-        progress=arguments.callback("progress", progress),
-    )
-    run = recorded(data, base, ground, filter, design, attacks, wanted, known)
-    run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
-    if run.measurements is not None and any(a.target == "measurement" for a in attacks):
-        run.log = np.array(y if y.ndim == 3 else y[None])
-    both = made_of(trials, first_trial, seed, start, attacks, links, kept, design, wanted)
-    return with_recipe(run, {"driver": "replay"} | both)
+    if path is None:
+        require_room(base, filter, keeping, trials, samples, certificate != "none" or design is not None)
+    with written(path, base, filter, trials, keeping.every) as store:
+        design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
+        data = _core.replay(
+            design,
+            measurements=y,
+            truth=None if truth is None else numbers("truth", truth),
+            trials=trials,
+            first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
+            seed=arguments.whole("seed", seed, 0, 2**64 - 1),
+            threads=threads_of(filter, attacks, threads),
+            start=None if start is None else arguments.table("start", start),
+            attacks=attacks,
+            link=links,
+            keep=keeping.names,
+            **known,
+            progress=arguments.callback("progress", progress),
+            sink=store and store.take,
+            block_bytes=BLOCK_BYTES,
+        )
+        run = recorded(data, base, ground, filter, design, attacks, wanted, known, data["steps"])
+        run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
+        if keeping.logs and any(a.target == "measurement" for a in attacks):
+            run.log = np.array(y if y.ndim == 3 else y[None])
+        both = made_of(trials, first_trial, seed, start, attacks, links, keeping, design, wanted)
+        run = with_recipe(run, {"driver": "replay"} | both, store)
+    return run if path is None else stored(path)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,21 +11,24 @@ from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, run_options
 from garrison.drivers.common import (
-    KEEP,
-    KEEPABLE,
+    BLOCK_BYTES,
     MOST_TRIALS,
     Attacks,
     Progress,
     designed,
+    destination,
     made_of,
     recorded,
     require_room,
     threads_of,
     with_recipe,
 )
+from garrison.drivers.keeping import KEEP, Keep, kept
 from garrison.numeric import numbers
 from garrison.objects import plain_data
 from garrison.record import Run
+from garrison.store import written
+from garrison.stored import stored
 from garrison.varying import Inputs, VaryingModel, inputs_of, parted
 from garrison.varying_network import VaryingNetwork, links_of
 from garrison.words import hinted, require_order
@@ -47,7 +51,8 @@ def simulate(
     start_error: float = 0.0,
     noise: str | ArrayLike = "auto",
     link: Mapping[str, float] | None = None,
-    keep: Iterable[str] = KEEP,
+    keep: Keep = KEEP,
+    to: str | Path | None = None,
     threads: int = 0,
     progress: Progress | None = None,
     conditions: bool = True,
@@ -98,10 +103,18 @@ def simulate(
         drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says); cuts:
         a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
         (sample, round, sender, receiver).
-    keep : iterable of str
-        Which arrays of the run are filled: "estimate" (with the error), "report" (bounds, test statistics, thresholds
-        and verdicts), "measurements", "signals" (what the family says of itself, by name), "details" (lists such as
-        sets), "box" (the bound of each coordinate, with "report").
+    keep : iterable of str, or mapping
+        Which arrays of the run are filled: "estimate", "report" (bounds, test statistics, thresholds and verdicts),
+        "measurements", "signals" (what the family says of itself, by name), "details" (lists such as sets), "box"
+        (the bound of each coordinate, with "report"); beside them errors and truth. A mapping says it of each of these
+        and of "error" and "truth", "all" or `garrison.every(k)`, and what it does not name is not kept: {} keeps
+        counters alone.
+    to : str or Path, optional
+        A folder that ends in .zarr (extra: store): the run is written there as it goes, and memory holds a block of
+        samples (16 MB) and open chunks per trial that runs, however long the run is. The run that is returned reads
+        its arrays where they are indexed (garrison.StoredRun). It has the bits of a run in memory, but no warning that
+        looks at whole arrays. Lists (accusations, details) stay in memory until the end. The folder appears when the
+        run is over: one that fails or is interrupted leaves what was there.
     threads : int
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
         (garrison.Filter, garrison.attacks.custom) always run in one.
@@ -142,35 +155,41 @@ def simulate(
     require_order("simulate", base, ground, filter)
     known: dict[str, Any] = {"inputs": inputs_of(base, inputs, steps), "series": series}
     wanted = arguments.flag("conditions", conditions)
-    attacks, kept = run_options.attacks(attack), arguments.choices("keep", keep, KEEPABLE)
-    require_room(base, filter, kept, trials, steps)
-    design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
-    data = _core.simulate(
-        design,
-        steps=steps,
-        x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
-        start_error=arguments.moderate("start_error", start_error),
-        noise=noise if isinstance(noise, str) else "auto",
-        disturbances=np.zeros((0, 0)) if isinstance(noise, str) else arguments.table("noise", noise),
-        trials=trials,
-        first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
-        seed=arguments.whole("seed", seed, 0, 2**64 - 1),
-        threads=threads_of(filter, attacks, threads),
-        start=None if start is None else arguments.table("start", start),
-        attacks=attacks,
-        link=links,
-        keep=kept,
-        **known,
-        progress=arguments.callback("progress", progress),
-    )
-    run = recorded(data, base, ground, filter, design, attacks, wanted, known)
-    drawn = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
-    own = {
-        "driver": "simulate",
-        "steps": steps,
-        "x0": plain_data(x0),
-        "start_error": float(start_error),
-        "noise": drawn,
-    }
-    both = made_of(trials, first_trial, seed, start, attacks, links, kept, design, wanted)
-    return with_recipe(run, own | both)
+    attacks, keeping = run_options.attacks(attack), kept(keep)
+    path = destination(to, keeping, base, ground, filter)
+    if path is None:
+        require_room(base, filter, keeping, trials, steps, certificate != "none" or design is not None)
+    with written(path, base, filter, trials, keeping.every) as store:
+        design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
+        data = _core.simulate(
+            design,
+            steps=steps,
+            x0=np.zeros(0) if x0 is None else numbers("x0", x0).ravel(),
+            start_error=arguments.moderate("start_error", start_error),
+            noise=noise if isinstance(noise, str) else "auto",
+            disturbances=np.zeros((0, 0)) if isinstance(noise, str) else arguments.table("noise", noise),
+            trials=trials,
+            first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
+            seed=arguments.whole("seed", seed, 0, 2**64 - 1),
+            threads=threads_of(filter, attacks, threads),
+            start=None if start is None else arguments.table("start", start),
+            attacks=attacks,
+            link=links,
+            keep=keeping.names,
+            **known,
+            progress=arguments.callback("progress", progress),
+            sink=store and store.take,
+            block_bytes=BLOCK_BYTES,
+        )
+        run = recorded(data, base, ground, filter, design, attacks, wanted, known, data["steps"])
+        drawn = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))
+        own = {
+            "driver": "simulate",
+            "steps": steps,
+            "x0": plain_data(x0),
+            "start_error": float(start_error),
+            "noise": drawn,
+        }
+        both = made_of(trials, first_trial, seed, start, attacks, links, keeping, design, wanted)
+        run = with_recipe(run, own | both, store)
+    return run if path is None else stored(path)

@@ -1,0 +1,118 @@
+"""An array of a folder of zarr that is written while a run goes on, and one that is read where it is indexed."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from garrison.sizes import require_room
+
+#: bytes of a chunk, about, and the most of one: programs read whole chunks
+_CHUNK, _MOST = 4e6, 64e6
+
+
+def chunks(shape: tuple[int, ...], itemsize: int) -> tuple[int, ...]:
+    """Lengths of the chunks of an array (trial, time, ..): many times of one trial, or many short trials."""
+    trials, times, *row = shape
+    size = max(1, math.prod(row) * itemsize)
+    length = max(1, min(times, int(_CHUNK // size)))
+    together = 1 if length < times else min(trials, max(1, int(_CHUNK // (times * size))))
+    parts = math.ceil(size / _MOST)
+    return (together, length, -(-row[0] // parts), *row[1:])
+
+
+class Growing:
+    """An array (trial, time, ..) of a store, written chunk by whole chunk as its rows come.
+
+    Of each trial they come in order of time; of several trials in any order. Memory holds the chunks that are not whole
+    yet: one per trial that runs.
+    """
+
+    def __init__(self, array: Any, axes: tuple[str, ...]) -> None:
+        self.array, self.axes = array, axes
+        self._open: dict[tuple[int, int], tuple[NDArray[Any], int]] = {}
+        self._spare: list[NDArray[Any]] = []
+
+    def put(self, trial: int, start: int, rows: NDArray[Any]) -> None:
+        """Take rows from time `start` on."""
+        together, length = self.array.chunks[:2]
+        while len(rows):
+            whole = start // length
+            here = rows[: (whole + 1) * length - start]
+            self._add(trial, (trial // together, whole), start, here)
+            start, rows = start + len(here), rows[len(here) :]
+
+    def _add(self, trial: int, key: tuple[int, int], start: int, rows: NDArray[Any]) -> None:
+        trials, times = (
+            slice(k * n, min((k + 1) * n, most))
+            for k, n, most in zip(key, self.array.chunks, self.array.shape, strict=False)
+        )
+        shape = (trials.stop - trials.start, times.stop - times.start)
+        buffer, missing = self._open.pop(key, None) or (self._buffer(), shape[0] * shape[1])
+        at = start - times.start
+        buffer[trial - trials.start, at : at + len(rows)] = rows
+        missing -= len(rows)
+        if missing:
+            self._open[key] = buffer, missing
+        else:
+            self.array[trials, times] = buffer[: shape[0], : shape[1]]
+            self._spare.append(buffer)
+
+    def _buffer(self) -> NDArray[Any]:
+        """Memory of a chunk, of an earlier one where there is one."""
+        if self._spare:
+            return self._spare.pop()
+        return np.empty((*self.array.chunks[:2], *self.array.shape[2:]), self.array.dtype)
+
+
+class StoredArray(np.lib.mixins.NDArrayOperatorsMixin):
+    """An array in a store: what is indexed is read, and nothing else; in a computation all of it."""
+
+    def __init__(self, array: Any, name: str) -> None:
+        self._array, self._name = array, name
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Lengths of its axes."""
+        return tuple(self._array.shape)
+
+    @property
+    def ndim(self) -> int:
+        """How many axes it has."""
+        return len(self.shape)
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Of its numbers."""
+        found: np.dtype[Any] = self._array.dtype
+        return found
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, key: Any) -> Any:
+        parts = key if isinstance(key, tuple) else (key,)
+        if all(map(_plain, parts)):
+            return self._array[key]
+        return np.asarray(self)[key]
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        require_room(self._name, self._array, self.dtype.itemsize / 8.0)
+        return np.asarray(self._array[...], dtype=dtype)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *given: Any, **more: Any) -> Any:
+        given = tuple(np.asarray(one) if isinstance(one, StoredArray) else one for one in given)
+        return getattr(ufunc, method)(*given, **more)
+
+    def __repr__(self) -> str:
+        return f"<{self._name}: {self.dtype} {self.shape}, in a store; np.asarray reads it>"
+
+
+def _plain(key: Any) -> bool:
+    """Whether an index is one that every store knows: a number, a range forwards, or `...`."""
+    if isinstance(key, slice):
+        return key.step is None or key.step > 0
+    return key is Ellipsis or (isinstance(key, (int, np.integer)) and not isinstance(key, bool))
