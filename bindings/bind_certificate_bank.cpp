@@ -67,6 +67,16 @@ void bind_bank(py::module_& m) {
           "merge", [](Bank& b, int most, double z2) { b.merge(most, {0.0, z2, 0.0, kNaN}); }, py::arg("most"),
           py::arg("z2"), "At most `most` members from now on, each leaving out more. Raises InvalidInput.")
       .def_property_readonly(
+          "dependence",
+          [](const Bank& b) {
+            const Dependence found = b.dependence();
+            return py::make_tuple(found.evidence, found.source, found.correlation, found.pairs);
+          },
+          "(evidence, source, correlation, pairs): what the innovations of all living members say against "
+          "white noise, of\nwhich evidence ever exceeds e with probability at most exp(-e); -inf where "
+          "nothing "
+          "was compared.")
+      .def_property_readonly(
           "count", [](const Bank& b) { return b.members().size(); }, "living members")
       .def_property_readonly(
           "left_out",

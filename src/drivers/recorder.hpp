@@ -47,6 +47,8 @@ class Recorder {
   void count(int trial, int t, std::span<const double> y);
   /// Forgets what was counted of a trial that is about to be run (again).
   void begin(int trial) { counts_[static_cast<std::size_t>(trial)] = {}; }
+  /// What the data of a trial say against certificates with memory, at its end.
+  void doubts(int trial, const Runner& runner);
   void finish(const LinkCounters& link, const Runner& runner);
   Record release();
 

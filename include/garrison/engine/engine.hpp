@@ -141,6 +141,9 @@ class Engine final : public Runner {
   std::span<const int> proved(int agent) const override {
     return certified_ ? certified_->of(agent)->proved() : std::span<const int>();
   }
+  certificate::Doubts doubts(int agent) const override {
+    return certified_ ? certified_->of(agent)->doubts() : certificate::Doubts();
+  }
   std::int64_t overflows() const override { return overflows_; }
   std::int64_t resets() const override { return resets_; }
   unsigned refuted() const override {

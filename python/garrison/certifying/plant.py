@@ -32,6 +32,8 @@ class Plant:
         self.factors = _factors([np.atleast_2d(r) for r in R], self.source)
         rows = [np.asarray(C, dtype=float).reshape(-1, self.n) for C in model.C]
         self.rows = np.concatenate([np.linalg.solve(L, C) for L, C in zip(self.factors, rows, strict=True)])
+        #: whether all measurements of one sample determine the state
+        self.seen_at_once = bool(np.linalg.matrix_rank(self.rows) == self.n)
         #: outputs in the order of their sources, as a bank takes them
         self.order = np.argsort(self.source, kind="stable")
 

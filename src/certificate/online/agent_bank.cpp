@@ -51,7 +51,13 @@ AgentBank::AgentBank(std::shared_ptr<const Plan> plan, std::span<const std::size
 }
 
 void AgentBank::reset(std::int64_t t) noexcept {
-  bank_.forget();
+  restart(t, true);
+  doubts_ = {};
+}
+
+/// From now on alone; everything: nothing was doubted before, either.
+void AgentBank::restart(std::int64_t t, bool everything) noexcept {
+  bank_.forget(everything);
   t_ = t;
   tests_ = 0;
   proofs_ = 0;
@@ -69,19 +75,49 @@ WindowLevels AgentBank::levels() const noexcept {
 }
 
 void AgentBank::take(std::int64_t t, std::span<const double> y) noexcept {
-  if (t - t_ > kMostAge) reset(t - 1);
+  if (t - t_ > kMostAge) restart(t - 1, false);
   BankStep step;
   step.ellipsoid = false;
   for (; t_ + 1 < t; ++t_) bank_.update(nothing_, levels(), step);
-  if (bank_.overflows()) reset(t - 1);
+  if (bank_.overflows()) restart(t - 1, false);
   for (std::size_t k = 0; k < order_.size(); ++k) y_(static_cast<Eigen::Index>(k)) = y[order_[k]];
   learn(bank_.update(y_, levels(), step));
   t_ = t;
   ++tests_;
-  const bool refuted = std::isnan(radius_);
-  if (!refuted && !bank_.overflows()) return;
-  reset(t);
-  if (refuted) radius_ = kNaN;
+  if (std::isnan(radius_)) {
+    if (doubts_.refuted++ == 0) doubts_.refuted_at = t;
+    refute();
+  } else if (bank_.overflows()) {
+    restart(t, false);
+  }
+}
+
+/// Says no more of this sample than that; later ones count alone.
+void AgentBank::refute() noexcept {
+  restart(t_, false);
+  radius_ = kNaN;
+}
+
+void AgentBank::compare(std::span<const double> center, std::span<const double> box) noexcept {
+  if (!std::isfinite(radius_)) return;
+  for (std::size_t k = 0; k < center.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const double rounding = kAgeingRounding * (std::abs(center[k]) + std::abs(center_(i)));
+    if (!(std::abs(center[k] - center_(i)) > kSums * (box[k] + box_(i)) + rounding)) continue;
+    if (doubts_.apart++ == 0) {
+      doubts_.apart_at = t_;
+      doubts_.apart_in = static_cast<int>(k);
+    }
+    return refute();
+  }
+}
+
+Doubts AgentBank::doubts() const noexcept {
+  Doubts found = doubts_;
+  found.dependence = bank_.dependence();
+  int& source = found.dependence.source;
+  if (source >= 0) source = source_[static_cast<std::size_t>(source)];
+  return found;
 }
 
 void AgentBank::learn(const WindowWitness& found) noexcept {
@@ -130,6 +166,7 @@ void AgentBank::visit(wire::Archive& archive) {
   archive("box", box_);
   archive.range("proofs", proofs_, 0, static_cast<std::int64_t>(proved_.size()));
   archive("proved", proved_);
+  archive("doubts", doubts_);
 }
 
 bool AgentBank::resume() noexcept {

@@ -237,6 +237,11 @@ void AgentCertifier::remember() noexcept {
   if (bank_) bank_->take(memory_.t, y_);
 }
 
+/// What this sample says alone, against what all say together.
+void AgentCertifier::compare() noexcept {
+  if (bank_ && std::isfinite(memory_.radius)) bank_->compare(memory_.center, memory_.box);
+}
+
 std::span<const int> AgentCertifier::proved() const noexcept {
   return bank_ ? bank_->proved() : std::span<const int>();
 }
@@ -255,6 +260,7 @@ void AgentCertifier::witness() noexcept {
       !a.bounded && plan_->wanted.subsets > 0 && subsets_to_try(rows_, a) <= plan_->wanted.subsets;
   keep((few ? witness_subsets(rows_, a, kNaN, subsets_) : leverage_ball(rows_, a, leverage_)).region);
   if (a.bounded && n == 1 && one_row_each_ && !std::isnan(memory_.radius)) interval_rule();
+  compare();
   relay_own();
 }
 
@@ -362,6 +368,7 @@ void AgentCertifier::adopt(const AgentCertifier& other) noexcept {
   memory_.radius = other.memory_.radius;
   memory_.center = other.memory_.center;
   memory_.box = other.memory_.box;
+  compare();
   relay_own();
 }
 

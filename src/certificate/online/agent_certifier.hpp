@@ -27,6 +27,7 @@ class AgentCertifier final : public Certifier {
   void visit(wire::Archive& archive) override;
   bool resume(std::int64_t t) noexcept override;
   std::span<const int> proved() const noexcept override;
+  Doubts doubts() const noexcept override { return bank_ ? bank_->doubts() : Doubts(); }
   bool counts_family() const noexcept override { return plan_->family; }
 
   /// The last step of a sample in two, for drivers of whole networks: `witness`, or the one of an agent that
@@ -59,6 +60,7 @@ class AgentCertifier final : public Certifier {
   void keep(const Region& region) noexcept;
   void relay_own() noexcept;
   void remember() noexcept;
+  void compare() noexcept;
   bool usable() const noexcept;
   bool eligible(int age, int fresh) const;
   void offer(const double* center, double radius, int age, int fresh) noexcept;
