@@ -21,7 +21,7 @@ std::map<int, std::vector<std::size_t>> entries_of(const Plan& plan, std::span<c
   return entries;
 }
 
-Bank make_bank(const Plan& plan, std::span<const std::size_t> rows) {
+std::vector<BankSource> sources_of(const Plan& plan, std::span<const std::size_t> rows) {
   std::vector<BankSource> sources;
   for (const auto& [source, entries] : entries_of(plan, rows)) {
     const auto count = static_cast<Eigen::Index>(entries.size());
@@ -32,16 +32,19 @@ Bank make_bank(const Plan& plan, std::span<const std::size_t> rows) {
       one.R(k) = plan.variance(row);
     }
   }
-  return {plan.A, plan.bank.Q, sources, plan.wanted.attacked, kMostBankMembers};
+  return sources;
 }
 
 }  // namespace
 
 AgentBank::AgentBank(std::shared_ptr<const Plan> plan, std::span<const std::size_t> rows)
-    : plan_(std::move(plan)), bank_(make_bank(*plan_, rows)) {
+    : plan_(std::move(plan)),
+      bank_(plan_->A, plan_->bank.Q, sources_of(*plan_, rows), plan_->wanted.attacked, kMostBankMembers),
+      now_(sources_of(*plan_, rows)) {
   for (const auto& [source, entries] : entries_of(*plan_, rows)) {
     source_.push_back(source);
     order_.insert(order_.end(), entries.begin(), entries.end());
+    for (const std::size_t entry : entries) row_.push_back(rows[entry]);
   }
   y_.resize(bank_.outputs());
   nothing_ = Vector::Constant(bank_.outputs(), kNaN);
@@ -74,6 +77,15 @@ WindowLevels AgentBank::levels() const noexcept {
   return {b.z1[std::min(epoch, b.z1.size() - 1)], b.z2, b.zc, kNaN};
 }
 
+void AgentBank::vary(const Matrix* rows) noexcept {
+  varied_ = rows != nullptr;
+  if (!varied_) return;
+  std::size_t at = 0;
+  for (BankSource& source : now_)
+    for (Eigen::Index k = 0; k < source.C.rows(); ++k, ++at)
+      source.C.row(k) = rows->col(static_cast<Eigen::Index>(row_[at])).transpose();
+}
+
 void AgentBank::take(std::int64_t t, std::span<const double> y) noexcept {
   if (t - t_ > kMostAge) restart(t - 1, false);
   BankStep step;
@@ -81,6 +93,13 @@ void AgentBank::take(std::int64_t t, std::span<const double> y) noexcept {
   for (; t_ + 1 < t; ++t_) bank_.update(nothing_, levels(), step);
   if (bank_.overflows()) restart(t - 1, false);
   for (std::size_t k = 0; k < order_.size(); ++k) y_(static_cast<Eigen::Index>(k)) = y[order_[k]];
+  if (varied_) {
+    step.sources = &now_;
+    Eigen::Index at = 0;
+    for (const BankSource& source : now_)
+      for (Eigen::Index k = 0; k < source.C.rows(); ++k, ++at)
+        if (source.C.row(k).isZero(0.0)) y_(at) = kNaN;  // it says nothing
+  }
   learn(bank_.update(y_, levels(), step));
   t_ = t;
   ++tests_;

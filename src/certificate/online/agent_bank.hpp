@@ -30,6 +30,9 @@ class AgentBank {
   /// What has become known of sample t, later than the last one by any number; NaN = missing.
   void take(std::int64_t t, std::span<const double> y) noexcept;
 
+  /// From the next sample on; rows: those of the whole network, each a column; null = the plan's. What the
+  /// plan has as a row of zeros is not used.
+  void vary(const Matrix* rows) noexcept;
   /// What the last sample says alone: its box, which assumes less. Where no state is in both, this bank's
   /// region was wrong.
   void compare(std::span<const double> center, std::span<const double> box) noexcept;
@@ -56,7 +59,10 @@ class AgentBank {
   std::shared_ptr<const Plan> plan_;
   std::vector<std::size_t> order_;  // entry of what `take` is given, of each output of the bank
   std::vector<int> source_;         // of the whole network, of each source of the bank
+  std::vector<std::size_t> row_;    // in the plan, of each output of the bank
   Bank bank_;
+  std::vector<BankSource> now_;  // its sources where rows are not the plan's
+  bool varied_ = false;
   Vector y_, nothing_;
   std::int64_t t_ = 0;
   std::int64_t tests_ = 0;  // samples that the bank has seen since it started

@@ -133,6 +133,12 @@ void AgentCertifier::move_to(std::int64_t t) noexcept {
   if (bank_) bank_->wait();
 }
 
+void AgentCertifier::vary(const Matrix* rows) noexcept {
+  now_ = rows;
+  gathered_ = false;
+  if (bank_) bank_->vary(rows);
+}
+
 void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
   move_to(t);
   const auto me = std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin();
@@ -209,9 +215,11 @@ void AgentCertifier::end_sample() noexcept {
   if (!judged_) witness();
 }
 
-/// Writes what is known into rows_, anew only where other measurements are missing than the last time.
+/// Writes what is known into rows_, anew only where other measurements are missing than the last time, or
+/// rows are others.
 void AgentCertifier::gather() noexcept {
-  bool same = true;
+  bool same = gathered_;
+  gathered_ = true;
   for (std::size_t k = 0; k < y_.size(); ++k) {
     const char present = std::isnan(y_[k]) ? 0 : 1;
     same = same && present == present_[k];
@@ -225,11 +233,12 @@ void AgentCertifier::gather() noexcept {
   }
   rows_.clear();
   const std::size_t n = memory_.center.size();
+  const Matrix& rows = now_ != nullptr ? *now_ : plan_->rows;
   for (std::size_t k = 0; k < y_.size(); ++k) {
     const auto r = static_cast<Eigen::Index>(row_[k]);
     used_[k] = static_cast<char>(
-        present_[k] != 0 && rows_.add(source_[k], {plan_->rows.data() + row_[k] * n, n}, y_[k],
-                                      plan_->variance(r), plan_->deterministic() ? plan_->width(r) : 0.0));
+        present_[k] != 0 && rows_.add(source_[k], {rows.data() + row_[k] * n, n}, y_[k], plan_->variance(r),
+                                      plan_->deterministic() ? plan_->width(r) : 0.0));
   }
 }
 
