@@ -40,8 +40,9 @@ class Certified(Result):
     window : int
         Samples of a regression.
     steady : (n,) array or None
-        Half widths that the bank never exceeds once its start has decayed, inf where no certificate stays bounded; None
-        with windows, or where there are too many sets to tell.
+        Half widths that the bank never exceeds once its start has decayed (theorem B2), or a full window with all
+        measurements (W3D), whatever the liars say; inf where no certificate stays bounded; None with moving liars, or
+        where there are too many sets to tell.
     warnings : list of str
         What the measurements say against the model: innovations of the bank that depend on those before them (of white
         noise at most one record in 1000 is said to), regions with and without memory that exclude each other.

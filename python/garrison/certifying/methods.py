@@ -17,6 +17,10 @@ Levels = tuple[float, float, float]
 
 #: sets of sources left out up to which a window goes through all of them; beyond, leverages bound what they do
 MOST_SETS = 500
+#: pairs of sets, times states cubed, up to which the bank's half widths for ever are worked out: about a second
+_MOST_PAIRS = 2e6
+#: pairs of sets, times unknowns times unknowns and rows, up to which those of a window are: likewise
+_MOST_WINDOW = 5e8
 
 
 class Record:
@@ -134,14 +138,17 @@ def by_bank(
     return record
 
 
-def steady(plant: Plant, s: int, failure: float, samples: int, most_pairs: float) -> Array | None:
+def _pairs(m: int, s: int) -> int:
+    """Sets of s of m sources, times sets of s of the others; 0 where there are none."""
+    return comb(m, s) * comb(m - s, s) if m >= 2 * s else 0
+
+
+def steady(plant: Plant, s: int, failure: float, samples: int) -> Array | None:
     """Theorem B2; None where too many pairs of sets would have to be gone through."""
-    m = len(plant.names)
-    members = comb(m, s)
-    pairs = members * comb(m - s, s) if m >= 2 * s else 0
+    members, pairs = comb(len(plant.names), s), _pairs(len(plant.names), s)
     if pairs == 0:
         return np.full(plant.n, np.inf)
-    if pairs * plant.n**3 > most_pairs:
+    if pairs * plant.n**3 > _MOST_PAIRS:
         return None
     z1, _, _ = bank_levels(failure, samples, len(plant.rows), plant.n)
     z2 = certificate.chi(failure / 8.0 / members, plant.n)
@@ -150,3 +157,17 @@ def steady(plant: Plant, s: int, failure: float, samples: int, most_pairs: float
         return plant.steady(s, (z1, z2, zc), pairs)
     except _core.InvalidInput:
         return None
+
+
+def steady_window(plant: Plant, s: int, failure: float, length: int) -> Array | None:
+    """Theorem W3D, of windows that go through all sets; None where they do not, or where there are too many pairs."""
+    members, pairs = comb(len(plant.names), s), _pairs(len(plant.names), s)
+    if pairs == 0:
+        return np.full(plant.n, np.inf)
+    window = plant.window(np.zeros((length, len(plant.rows))))
+    unknowns = plant.n + (length - 1) * plant.root.shape[1]
+    if members > MOST_SETS or pairs * unknowns**2 * (unknowns + window.rows) > _MOST_WINDOW:
+        return None
+    z1, _, _ = certificate.window_levels(failure, length * len(plant.rows), plant.n)
+    zc = certificate.two_sided(failure / 3.0 / plant.n / members)
+    return np.asarray(certificate.subsets_window_width(window, s, z1, zc, limit=pairs))

@@ -54,7 +54,7 @@ class Plant:
 
     def steady(self, s: int, levels: tuple[float, float, float], limit: int) -> Array:
         """Half widths that a bank never exceeds (theorem B2)."""
-        return certificate.bank_steady(self.A, self.Q, self._sources(), s, *levels, limit)[: self.n]
+        return certificate.bank_steady_width(self.A, self.Q, self._sources(), s, *levels, limit)
 
     def window(self, y: Array) -> certificate.Window:
         """One regression over these samples (whitened)."""

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core, arguments
 from garrison.certifying.certified import Certified
 from garrison.certifying.contradiction import of_apart, of_dependence
-from garrison.certifying.methods import Record, by_bank, by_window, steady
+from garrison.certifying.methods import Record, by_bank, by_window, steady, steady_window
 from garrison.certifying.plant import Plant
 from garrison.numeric import matched, numbers, output_names
 from garrison.varying import Inputs, inputs_of
@@ -23,8 +23,6 @@ Array = NDArray[np.float64]
 #: filters of a bank up to which "auto" takes one
 _MOST_MEMBERS = 3000
 _LONGEST_WINDOW = 1000
-#: pairs of sets, times states cubed, up to which the bank's half widths for ever are worked out
-_MOST_PAIRS = 2e6
 METHODS = ("auto", "bank", "window")
 
 
@@ -105,8 +103,10 @@ def certify(
     white = plant.whitened(y - driven @ np.concatenate([np.asarray(C) for C in model.C]).T)
     if chosen == "bank":
         record = by_bank(plant, white, s, failure, length, first, _MOST_MEMBERS, told)
+        for_ever = steady(plant, s, failure, len(y))
     else:
         record = by_window(plant, white, s, failure, length, moving, told)
+        for_ever = None if moving else steady_window(plant, s, failure, length)
     return Certified(
         center=record.center + driven,
         box=record.box,
@@ -117,7 +117,7 @@ def certify(
         failure=failure,
         method=chosen,
         window=length,
-        steady=steady(plant, s, failure, len(y), _MOST_PAIRS) if chosen == "bank" else None,
+        steady=for_ever,
         warnings=_warnings(record, plant, model, failure),
     )
 

@@ -152,5 +152,9 @@ class GARRISON_EXPORT Bank {
 GARRISON_EXPORT Vector bank_steady(const MatrixRef& A, const MatrixRef& Q,
                                    const std::vector<BankSource>& sources, int s, const WindowLevels& z,
                                    int limit = 100000);
+/// The same of the half widths (n) of the box around all living members: each reaches zc deviations further.
+GARRISON_EXPORT Vector bank_steady_width(const MatrixRef& A, const MatrixRef& Q,
+                                         const std::vector<BankSource>& sources, int s, const WindowLevels& z,
+                                         int limit = 100000);
 
 }  // namespace garrison::certificate
