@@ -52,7 +52,11 @@ def expected_certificate(design: _core.Design) -> list[dict[str, Any]]:
     elif "levels" in wanted:
         law = f"at levels that clean records exceed at the rate {failure:g}"
     else:
-        law = f"at {failure:g} per agent and sample"
+        run = min(1.0, failure * _SAMPLES * design.model.agents)
+        law = (
+            f"at {failure:g} per agent and sample: that some bound of all agents over {_SAMPLES} samples is wrong has "
+            f"a chance of at most {run:.2g}"
+        )
     who = f"with any {wanted['attacked']} sources lying"
     when = "on a sample" if samples == 1 else f"after {samples} samples"
     return [
