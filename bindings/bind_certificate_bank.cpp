@@ -67,6 +67,16 @@ void bind_bank(py::module_& m) {
           "merge", [](Bank& b, int most, double z2) { b.merge(most, {0.0, z2, 0.0, kNaN}); }, py::arg("most"),
           py::arg("z2"), "At most `most` members from now on, each leaving out more. Raises InvalidInput.")
       .def_property_readonly(
+          "dependence",
+          [](const Bank& b) {
+            const Dependence found = b.dependence();
+            return py::make_tuple(found.evidence, found.source, found.correlation, found.pairs);
+          },
+          "(evidence, source, correlation, pairs): what the innovations of all living members say against "
+          "white noise, of\nwhich evidence ever exceeds e with probability at most exp(-e); -inf where "
+          "nothing "
+          "was compared.")
+      .def_property_readonly(
           "count", [](const Bank& b) { return b.members().size(); }, "living members")
       .def_property_readonly(
           "left_out",
@@ -85,6 +95,13 @@ void bind_bank(py::module_& m) {
       "B2, design time: (n + 1,): per coordinate and in the 2-norm (last), what a living member's error "
       "never exceeds;\n"
       "inf: not detectable without some 2s sources. z2, zc at delta / C(sources, s). Raises InvalidInput.");
+  m.def(
+      "bank_steady_width",
+      [](const MatrixRef& A, const MatrixRef& Q, const Given& sources, int s, double z1, double z2, double zc,
+         int limit) { return bank_steady_width(A, Q, sources_of(sources), s, {z1, z2, zc, kNaN}, limit); },
+      py::arg("A"), py::arg("Q"), py::arg("sources"), py::arg("s"), py::arg("z1"), py::arg("z2"),
+      py::arg("zc"), py::arg("limit") = 100000,
+      "B2, design time: (n,): half widths that the box of a bank never exceeds; the rest as in bank_steady.");
 }
 
 void bind_rules(py::module_& m) {

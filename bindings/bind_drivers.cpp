@@ -158,6 +158,19 @@ std::function<void(const Record&, int, int)> sink_of(const py::object& sink, int
   };
 }
 
+/// What the data say against certificates with memory: a dict per trial and agent.
+py::list doubts_of(const Record& r) {
+  py::list all;
+  for (const auto& [trial, agent, doubts] : r.doubted)
+    all.append(py::dict(
+        py::arg("trial") = trial, py::arg("agent") = agent, py::arg("refuted") = doubts.refuted,
+        py::arg("refuted_at") = doubts.refuted_at, py::arg("apart") = doubts.apart,
+        py::arg("apart_at") = doubts.apart_at, py::arg("apart_in") = doubts.apart_in,
+        py::arg("evidence") = doubts.dependence.evidence, py::arg("source") = doubts.dependence.source,
+        py::arg("correlation") = doubts.dependence.correlation, py::arg("pairs") = doubts.dependence.pairs));
+  return all;
+}
+
 py::dict from_record(Record&& r) {
   if (r.interrupted) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
@@ -176,6 +189,7 @@ py::dict from_record(Record&& r) {
   py::list proved;
   for (const auto& a : r.proved) proved.append(py::make_tuple(a.trial, a.time, a.sets));
   d["proved"] = proved;
+  d["doubted"] = doubts_of(r);
   d["warnings"] = r.warnings;
   py::list details;
   for (const auto& entry : r.details)

@@ -185,6 +185,7 @@ class OwnRunner final : public Runner {
   void detail(int, std::size_t, std::vector<double>&) const override {}
   const AgentSet& accused(int agent) const override { return engine_.accused(agent); }
   std::span<const int> proved(int agent) const override { return engine_.proved(agent); }
+  certificate::Doubts doubts(int agent) const override { return engine_.doubts(agent); }
   std::int64_t overflows() const override { return engine_.overflows(); }
   std::int64_t resets() const override { return engine_.resets(); }
   unsigned refuted() const override { return 0; }

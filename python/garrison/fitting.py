@@ -51,7 +51,10 @@ class Whiteness(Result):
         )
         if self.p_value >= _LEVEL:
             return f"{about}: no dependence on the past was found"
-        return f"{about}: not white, so false-alarm rates on records differ from what is asked; calibrate the filter"
+        return (
+            f"{about}: not white, so false-alarm rates on records differ from what is asked (calibrate the filter), "
+            "and certificates with memory do not hold, which take noise for white"
+        )
 
 
 @hinted_methods

@@ -1,13 +1,15 @@
 """Noise that is larger than the model says: what the data of a run themselves say against the assumptions."""
 
 import math
-from itertools import pairwise
+from collections import Counter
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.bound_kind import BoundKind
+from garrison.certifying.contradiction import beyond, of_apart, of_dependence
 from garrison.families import accuses, family_of
 from garrison.words import count
 
@@ -20,6 +22,19 @@ _SENSORS = 3
 _EQUAL = 64
 #: part of measurements that rounding may change
 _ROUNDING = 1e-12
+
+
+class Names(NamedTuple):
+    """What agents, sources and states of a run are called."""
+
+    agents: list[str]  # [] = by their numbers
+    sources: list[str]
+    states: list[str]
+
+    def agent(self, doubted: dict[str, Any]) -> str:
+        """Who doubts, in which trial."""
+        k, trial = doubted["agent"], doubted["trial"]
+        return (self.agents[k] if self.agents else f"agent {k}") + (f", trial {trial}" if trial else "")
 
 
 def of_rate(filter: _core.Filter, statistic: Array | None, threshold: Array | None) -> list[str]:
@@ -56,7 +71,7 @@ def of_certificates(kind: NDArray[np.generic] | None, failure: float) -> list[st
     if not refuted.any():  # a mean over long runs takes longer than everything else here
         return []
     samples = refuted[..., 0].size
-    if not float(refuted.mean(axis=(0, 1)).max()) > failure + _SURE * math.sqrt(failure / samples):
+    if not beyond(float(refuted.mean(axis=(0, 1)).max()), samples, failure):
         return []
     first = int(np.flatnonzero(refuted.any(axis=(0, 2)))[0])
     return [
@@ -66,15 +81,32 @@ def of_certificates(kind: NDArray[np.generic] | None, failure: float) -> list[st
     ]
 
 
-def of_memory(proved: list[tuple[int, int, list[list[str]]]]) -> list[str]:
-    """A line when a certificate with memory has forgotten what it had proved: nothing but a refutation makes it."""
-    for (one, _, before), (two, time, after) in pairwise(proved):
-        if one == two and any(set(old) - set(new) for old, new in zip(before, after, strict=True)):
-            return [
-                f"measurements contradict what a certificate with memory assumes, first at sample {time}: other "
-                "sources lie than before, or noise is not white, or larger than modelled; it has started anew"
-            ]
-    return []
+def of_memory(doubted: list[dict[str, Any]], shape: tuple[int, int, int], failure: float, names: Names) -> list[str]:
+    """Lines where data contradict what certificates with memory assume; shape: trials, times, agents of the run."""
+    trials, times, agents = shape
+    lines: list[str] = []
+    if beaten := [d for d in doubted if d["refuted"]]:
+        most = max(Counter(d["agent"] for d in beaten).values())
+        first = min(beaten, key=lambda d: int(d["refuted_at"]))
+        if beyond(most / trials, trials, failure):
+            lines.append(
+                f"measurements contradict what a certificate with memory assumes, first at sample "
+                f"{first['refuted_at']} ({names.agent(first)}): other sources lie than before, or noise is not white, "
+                "or larger than modelled; it has started anew"
+            )
+    if apart := [d for d in doubted if d["apart"]]:
+        counted: Counter[int] = Counter()
+        for d in apart:
+            counted[d["agent"]] += d["apart"]
+        worst, most = counted.most_common(1)[0]
+        first = min((d for d in apart if d["agent"] == worst), key=lambda d: int(d["apart_at"]))
+        where = f"{names.agent(first)}, {names.states[first['apart_in']]}"
+        lines += of_apart(most, trials * (times - 1), first["apart_at"], where, failure)
+    if doubted:
+        d = max(doubted, key=lambda d: float(d["evidence"]))
+        where = f"{names.agent(d)}, source {names.sources[d['source']]}"
+        lines += of_dependence(d["evidence"], agents * trials, where, d["correlation"], d["pairs"])
+    return lines
 
 
 def of_sources(model: _core.Model, filter: _core.Filter) -> list[str]:

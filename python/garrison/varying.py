@@ -27,9 +27,10 @@ class VaryingModel(metaclass=Hinting):
 
     Taken by `simulate`, `replay`, `central_kalman` and `local_kalman`. Filters: `ScalarGain`, `Saturation` without
     detector, adaptive and table, and filters of your own (`agent.A`, `agent.C` are those of the sample); the others are
-    designed for one A and C and refuse it. No theorem covers it, so bounds are absent (`BoundKind.VARYING`). Where only
-    C changes, between finitely many rows (sightings), give a constant Model all rows and measure nan where there is no
-    sighting: everything holds then, bounds and certificates too. Immutable; compares by value, copies and pickles.
+    designed for one A and C and refuse it. No theorem of theirs covers it, so their bounds are absent
+    (`BoundKind.VARYING`); a certificate holds where A and process_covariance stay as they are. Where only C changes,
+    between finitely many rows (sightings), give a constant Model all rows and measure nan where there is no sighting:
+    everything holds then. Immutable; compares by value, copies and pickles.
 
     Parameters
     ----------

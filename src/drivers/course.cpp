@@ -4,6 +4,26 @@
 #include <algorithm>
 
 namespace garrison::detail {
+namespace {
+
+/// A certificate takes the rows of every sample as they are; what is carried from sample to sample rests on A
+/// and the process noise, and the levels on how many rows may be wrong.
+void require_certifiable(const certificate::Plan& plan, const Series& series) {
+  if (!series.A.empty() || !series.process_covariance.empty())
+    refuse("certificate", "a plant whose A or process_covariance changes in time",
+           "one of which C alone changes", "see docs/how-to/changing-plants.md");
+  for (std::size_t t = 0; t < series.C.size(); ++t) {
+    const auto rows = (series.C[t].array() != 0.0).rowwise().any().count();
+    if (rows > plan.all_rows)
+      refuse("certificate",
+             "C of sample " + std::to_string(t + 1) + " with " + std::to_string(rows) +
+                 " rows that are not zero",
+             "at most " + std::to_string(plan.all_rows) + ", as in the C of the model",
+             "give the model rows that are not zero where a sensor ever sees something");
+  }
+}
+
+}  // namespace
 
 void require_course(const Prepared& prepared, const RunOptions& options, int steps) {
   const Model& model = prepared.model();
@@ -21,11 +41,9 @@ void require_course(const Prepared& prepared, const RunOptions& options, int ste
            "row t is u(t), which leads from time t to t + 1");
   if (options.series == nullptr) return;
   require_series(*options.series, model, steps);
+  if (prepared.certificate() != nullptr) require_certifiable(*prepared.certificate(), *options.series);
   if (options.series->A.empty() && options.series->C.empty()) return;
   prepared.require_varying();
-  if (prepared.certificate() != nullptr)
-    refuse("certificate", "a plant whose A or C changes in time", "a constant plant",
-           "rows that come and go can be constant outputs with nan; see docs/how-to/changing-plants.md");
 }
 
 Course::Course(const Model& model, const RunOptions& options) : model_(model), options_(options) {

@@ -258,6 +258,16 @@ void Recorder::proofs(int trial, int t, const Runner& runner) {
   record_.proved.push_back({trial, t, last});
 }
 
+void Recorder::doubts(int trial, const Runner& runner) {
+  if (!remembers_ || !(vouch_ || direct_)) return;  // agents that lie may have said anything
+  for (int i = 0; i < record_.agents; ++i) {
+    const certificate::Doubts found = runner.doubts(i);
+    if (!found.any()) continue;
+    const std::lock_guard lock(mutex_);
+    record_.doubted.push_back({trial, i, found});
+  }
+}
+
 void Recorder::details(int trial, int t, const Runner& runner) {
   auto& last = lists_[static_cast<std::size_t>(trial)];
   const auto names = static_cast<int>(record_.detail_names.size());
@@ -297,6 +307,9 @@ Record Recorder::release() {
     std::sort(sets->begin(), sets->end(), [](const auto& a, const auto& b) {
       return std::tie(a.trial, a.time) < std::tie(b.trial, b.time);
     });
+  std::sort(record_.doubted.begin(), record_.doubted.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.trial, a.agent) < std::tie(b.trial, b.agent);
+  });
   std::sort(record_.details.begin(), record_.details.end(), [](const auto& a, const auto& b) {
     return std::tie(a.trial, a.time, a.agent, a.name) < std::tie(b.trial, b.time, b.agent, b.name);
   });

@@ -52,6 +52,8 @@ class Recorder {
   void begin(int trial);
   /// Frees what only a trial that runs needs.
   void end(int trial);
+  /// What the data of a trial say against certificates with memory, at its end.
+  void doubts(int trial, const Runner& runner);
   void finish(const LinkCounters& link, const Runner& runner);
   Record release();
 

@@ -84,6 +84,7 @@ void run_trial(const Prepared& prepared, const RunOptions& options, Runner& runn
     recorder.take(trial, t, runner, source.truth(), y, course.shift());
     if (!progress.advance()) return;
   }
+  recorder.doubts(trial, runner);
   recorder.end(trial);
   recorder.finish(link.counters, runner);
   doubt = course.doubt();

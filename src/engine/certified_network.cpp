@@ -107,7 +107,11 @@ void CertifiedNetwork::reset(std::int64_t t) {
   bytes_ = samples_ = 0;
 }
 
-void CertifiedNetwork::begin(std::int64_t t, const double* y) {
+void CertifiedNetwork::begin(std::int64_t t, const double* y, const Matrix* C) {
+  if (C != nullptr) rows_ = C->transpose();
+  if (C != nullptr || varied_)
+    for (const auto& one : all_->certifiers) one->vary(C != nullptr ? &rows_ : nullptr);
+  varied_ = C != nullptr;
   t_ = t;
   y_ = y;
   round_ = 0;

@@ -261,6 +261,11 @@ def test_check_says_what_to_expect() -> None:
     assert len(found.quantities) == len(plain.quantities) + 2 + parts()[0].states
     assert all(0 < found[f"certify_{name}"] < np.inf for name in parts()[0].state_names)  # theorem B2
     assert 0 < found["certificate_expected"] < 0.2 and found["certificate_agents"] == 1
+    law = next(q["meaning"] for q in found.quantities if q["name"] == "certificate_expected")
+    chance = 1e-6 * 1000 * parts()[0].agents
+    assert "1e-06 per agent and sample" in law and law.endswith(
+        f"over 1000 samples is wrong has a chance of at most {chance:.2g}"
+    )
     wider = gr.check(*parts(), certificate="flooded", attacked=2)
     assert wider["certificate_expected"] > found["certificate_expected"]
     assert (

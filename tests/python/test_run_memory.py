@@ -107,6 +107,40 @@ def test_check_says_what_memory_will_certify() -> None:
     assert with_memory["certificate_agents"] == 1.0 and 0.5 < with_memory["certificate_expected"] < 20.0
     without = gr.check(body(), gr.Network.complete(6), gr.filters.Lfre(), **(WANTED | {"memory": False}))
     assert without["certificate_agents"] == 0.0
+    # Steady widths: of a bank in any case, of a window where memory is asked for.
+    for name in ("x1", "x2"):
+        assert 0.0 < with_memory[f"certify_{name}"] == without[f"certify_{name}"] < np.inf
+        assert 0.0 < with_memory[f"window_{name}"] < np.inf
+    assert not any(q["name"].startswith("window_") for q in without.quantities)
+    assert "half width of x1" in next(q["meaning"] for q in with_memory.quantities if q["name"] == "certify_x1")
+    three = gr.check(body(), gr.Network.complete(6), gr.filters.Lfre(), **(WANTED | {"attacked": 3}))
+    assert three["certify_x1"] == three["window_x1"] == np.inf  # three against three
+
+
+def test_steady_widths_are_never_exceeded_whatever_hides() -> None:
+    rng = np.random.default_rng(12)
+    checked = {"bank": 0, "window": 0}
+    for k in range(24):
+        method = ("bank", "window")[k % 2]
+        n, agents = int(rng.integers(1, 3)), int(rng.integers(4, 7))
+        model = gr.Model(
+            np.eye(n) + 0.1 * rng.normal(size=(n, n)),
+            rng.normal(size=(agents, n)),
+            process_covariance=0.01 * np.eye(n),
+            measurement_covariance=1.0,
+        )
+        run = gr.simulate(
+            model, gr.Network.complete(agents), gr.filters.ScalarGain(), steps=80, noise="normal", seed=k,
+            conditions=False,
+        )  # fmt: skip
+        y = run.measurements[0]
+        y[20:, 0] += rng.choice([1.0, 3.0, 6.0]) * np.linspace(0, 1, 60)
+        found = gr.certify(model, y, attacked=1, method=method, window=8)
+        assert found.steady is not None
+        late = found.box[60:]
+        assert (late[np.isfinite(late).all(axis=1)] <= found.steady).all()
+        checked[method] += int(np.isfinite(found.steady).all() and np.isfinite(late).all())
+    assert min(checked.values()) > 8
 
 
 def test_scenarios_say_memory(tmp_path: Path) -> None:

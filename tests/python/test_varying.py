@@ -78,8 +78,26 @@ def test_families_for_constant_plants_refuse_by_name() -> None:
         filt = gr.filters.Saturation(threshold=0.5, rounds=30, attacked=1, initial_error=1.0, **extra)
         with pytest.raises(gr.InvalidInput, match=r"rest on theorems for constant plants|expected"):
             gr.simulate(bounded, NETWORK, filt, steps=T)
-    with pytest.raises(gr.InvalidInput, match="certificate: got a plant whose A or C changes in time"):
-        gr.simulate(bounded, NETWORK, gr.filters.ScalarGain(), steps=T, certificate="local", failure=0, attacked=1)
+    moving = gr.VaryingModel(MODEL, A=A_T, C=C_T)
+    with pytest.raises(gr.InvalidInput, match="certificate: got a plant whose A or process_covariance changes in time"):
+        gr.simulate(moving, NETWORK, gr.filters.ScalarGain(), steps=T, certificate="local", failure=0, attacked=1)
+
+
+def test_certificates_hold_where_rows_turn() -> None:
+    turning = gr.VaryingModel(MODEL, C=C_T)
+    lies = gr.attacks.Bias(agents=[2], value=3.0, start=5)
+    given: dict[str, Any] = {"steps": T, "attack": lies, "certificate": "flooded", "attacked": 1, "x0": [3.0, 1.0]}
+    run = gr.simulate(turning, NETWORK, gr.filters.ScalarGain(rounds=3), failure=0, seed=1, **given)
+    assert (run.bound_kind[0, 1:] == gr.BoundKind.WITNESS).any()
+    assert np.isfinite(run.bound[0, 1:]).all() and (run.error[0, 1:] <= run.bound[0, 1:]).all()
+    noisy = gr.Model(np.eye(2), C_T[0], process_covariance=1e-4, measurement_covariance=1e-2)
+    given |= {"memory": True, "noise": "normal", "seed": 2}
+    run = gr.simulate(gr.VaryingModel(noisy, C=C_T), NETWORK, gr.filters.ScalarGain(rounds=3), **given)
+    assert (run.bound_kind[0, 5:] == gr.BoundKind.MEMORY).any()
+    assert np.isfinite(run.bound[0, 2:]).all() and (run.error[0, 2:] <= run.bound[0, 2:]).all()
+    assert run.proved[-1][2] == [["agent 2"]] * 4
+    assert not any("memory" in line for line in run.warnings)
+    assert gr.again(run) == run
 
 
 def test_own_filters_get_the_matrices_of_the_sample() -> None:

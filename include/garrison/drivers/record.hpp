@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "garrison/certificate/online/doubts.hpp"
 #include "garrison/engine/link.hpp"
 #include "garrison/kernel/pages.hpp"
 
@@ -47,6 +48,13 @@ struct GARRISON_EXPORT Record {
   /// The same of the sources (Plan::source) that each agent's certificate with memory has shown to be
   /// attacked.
   std::vector<Accusation> proved;
+  /// What an agent's data of a trial say against its certificate with memory; where they say nothing, none.
+  struct Doubted {
+    int trial;
+    int agent;
+    certificate::Doubts doubts;
+  };
+  std::vector<Doubted> doubted;
 
   /// Lists that the family tells of its agents (sets, gains), whenever one of them changed.
   struct Detail {

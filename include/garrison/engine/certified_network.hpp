@@ -24,8 +24,9 @@ class GARRISON_EXPORT CertifiedNetwork {
   ~CertifiedNetwork();
 
   void reset(std::int64_t t);
-  /// Sample t; y: all measurements, agent by agent, that stay there until `finish`.
-  void begin(std::int64_t t, const double* y);
+  /// Sample t; y: all measurements, agent by agent, that stay there until `finish`. C: the rows of this
+  /// sample, of all agents on top of each other; null = the plan's.
+  void begin(std::int64_t t, const double* y, const Matrix* C = nullptr);
   /// Keeps places for so many messages in which agents lie. At least one, to look at.
   void keep_lies(std::size_t places);
   /// One round: everybody says what is new. Either all rounds of a sample are told so and heard, or none:
@@ -60,6 +61,8 @@ class GARRISON_EXPORT CertifiedNetwork {
   std::vector<int> first_;     // output of each agent in y
   const double* y_ = nullptr;  // of sample t_, while it has not started
   std::int64_t t_ = 0;
+  Matrix rows_;  // of sample t_, each a column, where they are not the plan's
+  bool varied_ = false;
   std::unique_ptr<Agents> all_;
   std::vector<certificate::Evidence> lies_;  // in the order of the places of Routes
   std::int64_t bytes_ = 0;

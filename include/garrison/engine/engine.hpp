@@ -54,6 +54,7 @@ class Engine final : public Runner {
     mail_.connect(link);
     batch_.release();
     places_.constant();
+    rows_ = nullptr;
     for (std::size_t k = 0; k < states_.size(); ++k) {
       const Vec<n> start = x0.col(places_.id(k));
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
@@ -67,10 +68,13 @@ class Engine final : public Runner {
     if (certified_) certified_->reset(first_sample<F>() - 1);
   }
 
-  void vary(const Matrix* A, const Matrix* C) override { places_.vary(A, C); }
+  void vary(const Matrix* A, const Matrix* C) override {
+    places_.vary(A, C);
+    rows_ = C;
+  }
 
   void step(std::int64_t t, const double* y) override {
-    if (certified_) certified_->begin(t, y);
+    if (certified_) certified_->begin(t, y, rows_);
     if constexpr (requires { F::most_missing(*gains_); }) notice_missing(F::most_missing(*gains_), y);
     filter(t, y);
     if (certified_) certified_->finish(workers_);
@@ -96,7 +100,8 @@ class Engine final : public Runner {
       for (std::size_t s = 0; s < F::signal_count; ++s) f.signals[s * N + i] = signals[s];
     }
     if (places_.varying())
-      return disclaim(f, N, static_cast<std::size_t>(F::template estimate<n>(states_.front()).size()));
+      disclaim(f, N, static_cast<std::size_t>(F::template estimate<n>(states_.front()).size()));
+    if (places_.varying() && !certified_) return;
     if (f.bound == nullptr || f.bound_kind == nullptr) return;
     if (!f.believed) std::fill_n(f.bound, N, kNaN);
     if (f.published != nullptr) std::copy_n(f.bound, N, f.published);
@@ -140,6 +145,9 @@ class Engine final : public Runner {
   }
   std::span<const int> proved(int agent) const override {
     return certified_ ? certified_->of(agent)->proved() : std::span<const int>();
+  }
+  certificate::Doubts doubts(int agent) const override {
+    return certified_ ? certified_->of(agent)->doubts() : certificate::Doubts();
   }
   std::int64_t overflows() const override { return overflows_; }
   std::int64_t resets() const override { return resets_; }
@@ -257,6 +265,7 @@ class Engine final : public Runner {
   std::shared_ptr<const typename F::Gains> gains_;
   ConsensusPlan plan_;
   Places places_;
+  const Matrix* rows_ = nullptr;  // C of the sample where it is not the model's
   Mailroom<Message> mail_;
   Workers workers_;
   Aligned<State> states_;

@@ -61,6 +61,8 @@ class GARRISON_EXPORT Runner {
   virtual const AgentSet& accused(int agent) const = 0;
   /// Sources that the certificate of `agent` has shown to be attacked (Agent::proved), ascending.
   virtual std::span<const int> proved(int agent) const = 0;
+  /// What the data of `agent` say against its certificate with memory.
+  virtual certificate::Doubts doubts(int agent) const = 0;
   /// Samples at which some estimate was not finite, or beyond kHuge (its messages are then withheld).
   virtual std::int64_t overflows() const = 0;
   /// Agents that rejoined because of that, summed over samples.

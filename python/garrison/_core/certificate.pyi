@@ -29,6 +29,7 @@ __all__: list[str] = [
     "anytime_window",
     "averaged",
     "bank_steady",
+    "bank_steady_width",
     "calibrated_levels",
     "cells",
     "chi",
@@ -641,6 +642,12 @@ class Bank:
         living members
         """
     @property
+    def dependence(self) -> tuple[float, int, float, float]:
+        """
+        (evidence, source, correlation, pairs): what the innovations of all living members say against white noise, of
+        which evidence ever exceeds e with probability at most exp(-e); -inf where nothing was compared.
+        """
+    @property
     def left_out(self) -> list[list[int]]:
         """
         per living member: the sources it does not read
@@ -778,6 +785,25 @@ def bank_steady(
     """
     B2, design time: (n + 1,): per coordinate and in the 2-norm (last), what a living member's error never exceeds;
     inf: not detectable without some 2s sources. z2, zc at delta / C(sources, s). Raises InvalidInput.
+    """
+
+def bank_steady_width(
+    A: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    Q: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    sources: collections.abc.Sequence[
+        tuple[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        ]
+    ],
+    s: typing.SupportsInt | typing.SupportsIndex,
+    z1: typing.SupportsFloat | typing.SupportsIndex,
+    z2: typing.SupportsFloat | typing.SupportsIndex,
+    zc: typing.SupportsFloat | typing.SupportsIndex,
+    limit: typing.SupportsInt | typing.SupportsIndex = 100000,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    B2, design time: (n,): half widths that the box of a bank never exceeds; the rest as in bank_steady.
     """
 
 def calibrated_levels(

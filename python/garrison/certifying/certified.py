@@ -23,7 +23,7 @@ class Certified(Result):
     ----------
     center, box : (samples, n) array
         inf where the measurements so far cannot answer, nan where they refute that at most `attacked` sources lie, or
-        the model.
+        the model: also where the region with memory and that of the sample alone have no point in common.
     radius : (samples,) array
         The same of the ball.
     proved : list of list of str
@@ -40,8 +40,12 @@ class Certified(Result):
     window : int
         Samples of a regression.
     steady : (n,) array or None
-        Half widths that the bank never exceeds once its start has decayed, inf where no certificate stays bounded; None
-        with windows, or where there are too many sets to tell.
+        Half widths that the bank never exceeds once its start has decayed (theorem B2), or a full window with all
+        measurements (W3D), whatever the liars say; inf where no certificate stays bounded; None with moving liars, or
+        where there are too many sets to tell.
+    warnings : list of str
+        What the measurements say against the model: innovations of the bank that depend on those before them (of white
+        noise at most one record in 1000 is said to), regions with and without memory that exclude each other.
     """
 
     center: Array
@@ -54,6 +58,7 @@ class Certified(Result):
     method: str
     window: int
     steady: Array | None
+    warnings: list[str]
 
     @property
     def answered(self) -> NDArray[np.bool_]:
@@ -85,7 +90,7 @@ class Certified(Result):
         if self.steady is not None:
             lines.append(f"half widths for ever, whatever they say: {_listed(self.steady)}")
         lines.append(f"proved to lie: {', '.join(names) or 'nobody'}")
-        return "\n".join(lines)
+        return "\n".join([*lines, *(f"warning: {words}" for words in self.warnings)])
 
 
 def _listed(values: Array) -> str:

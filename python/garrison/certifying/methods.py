@@ -17,6 +17,10 @@ Levels = tuple[float, float, float]
 
 #: sets of sources left out up to which a window goes through all of them; beyond, leverages bound what they do
 MOST_SETS = 500
+#: pairs of sets, times states cubed, up to which the bank's half widths for ever are worked out: about a second
+_MOST_PAIRS = 2e6
+#: pairs of sets, times unknowns times unknowns and rows, up to which those of a window are: likewise
+_MOST_WINDOW = 5e8
 
 
 class Record:
@@ -27,6 +31,10 @@ class Record:
         self.box = np.full((samples, n), np.inf)
         self.radius = np.full(samples, np.inf)
         self.proved: list[list[int]] = [[] for _ in range(samples)]
+        #: (sample, state) where the region and that of the sample alone had no point in common
+        self.apart: list[tuple[int, int]] = []
+        #: what innovations of a bank say against white noise: evidence, source, correlation, pairs
+        self.dependence = (-np.inf, -1, 0.0, 0.0)
 
     def take(self, t: int, found: certificate.WindowWitness, last: int = -1) -> bool:
         """Whether there is a region. last: the step of a window that is sample t."""
@@ -38,6 +46,17 @@ class Record:
         self.center[t], self.box[t] = found.center, found.box
         return True
 
+    def agrees(self, t: int, found: certificate.Region, alone: certificate.Region) -> bool:
+        """Whether the region of sample t and that of the sample alone have a point in common; else there is none."""
+        if not (found.answered and alone.answered) or not certificate.intersection([found, alone]).refuted:
+            return True
+        assert alone.center is not None and alone.box is not None  # it has answered
+        gap = np.abs(alone.center - self.center[t]) - alone.box - self.box[t]
+        self.apart.append((t, int(np.argmax(gap))))
+        self.center[t] = self.box[t] = self.radius[t] = np.nan
+        self.proved[t] = []
+        return False
+
 
 def in_window(plant: Plant, y: Array, s: int, levels: Levels, *, moving: bool) -> certificate.WindowWitness:
     """W2M or W3M (docs/certificates.md, section 8) over these samples."""
@@ -45,6 +64,12 @@ def in_window(plant: Plant, y: Array, s: int, levels: Levels, *, moving: bool) -
     if moving or comb(len(plant.names), s) > MOST_SETS:
         return certificate.leverage_window(window, s, *levels, moving=moving)
     return certificate.subsets_window(window, s, *levels, limit=MOST_SETS)
+
+
+def alone(plant: Plant, y: Array, s: int, failure: float) -> certificate.Region:
+    """What one sample (1, outputs) says: it assumes less than any memory."""
+    levels = certificate.window_levels(failure, max(y.size, 1), plant.n)
+    return in_window(plant, y, s, levels, moving=False).region
 
 
 def by_window(
@@ -55,7 +80,9 @@ def by_window(
     for t in range(len(y)):
         part = y[max(0, t + 1 - length) : t + 1]
         levels = certificate.window_levels(failure, max(part.size, 1), plant.n)
-        record.take(t, in_window(plant, part, s, levels, moving=moving), last=len(part) - 1)
+        found = in_window(plant, part, s, levels, moving=moving)
+        if record.take(t, found, last=len(part) - 1) and plant.seen_at_once and len(part) > 1:
+            record.agrees(t, found.region, alone(plant, y[t : t + 1], s, failure))
         tell(t + 1)
     return record
 
@@ -79,7 +106,8 @@ def by_bank(
     """A bank over all samples, started from `start` or from the first window that answers; anew once it is refuted.
 
     At most `failure` for the region of a sample: a quarter for the tests of the member that is right, over all samples;
-    a quarter for its region now; a quarter for the windows that a bank may start from, one a sample.
+    a quarter for its region now; a quarter for the windows that a bank may start from, one a sample; the last one for
+    what all samples say alone, with which it is compared.
     """
     record = Record(len(y), plant.n)
     bank = plant.bank(s, limit)
@@ -92,6 +120,9 @@ def by_bank(
         if running:
             found = bank.update(ordered[t], *levels, predict=not (t == 0 and start is not None))
             running = record.take(t, found)
+            if running and plant.seen_at_once:
+                one = alone(plant, y[t : t + 1], s, failure / 4.0 / len(y))
+                running = record.agrees(t, found.region, one)
             first = t + 1
         else:
             part = y[max(first, t + 1 - length) : t + 1]
@@ -103,17 +134,21 @@ def by_bank(
             elif np.isnan(found.radius):
                 first = t + 1
         tell(t + 1)
+    record.dependence = bank.dependence
     return record
 
 
-def steady(plant: Plant, s: int, failure: float, samples: int, most_pairs: float) -> Array | None:
+def _pairs(m: int, s: int) -> int:
+    """Sets of s of m sources, times sets of s of the others; 0 where there are none."""
+    return comb(m, s) * comb(m - s, s) if m >= 2 * s else 0
+
+
+def steady(plant: Plant, s: int, failure: float, samples: int) -> Array | None:
     """Theorem B2; None where too many pairs of sets would have to be gone through."""
-    m = len(plant.names)
-    members = comb(m, s)
-    pairs = members * comb(m - s, s) if m >= 2 * s else 0
+    members, pairs = comb(len(plant.names), s), _pairs(len(plant.names), s)
     if pairs == 0:
         return np.full(plant.n, np.inf)
-    if pairs * plant.n**3 > most_pairs:
+    if pairs * plant.n**3 > _MOST_PAIRS:
         return None
     z1, _, _ = bank_levels(failure, samples, len(plant.rows), plant.n)
     z2 = certificate.chi(failure / 8.0 / members, plant.n)
@@ -122,3 +157,17 @@ def steady(plant: Plant, s: int, failure: float, samples: int, most_pairs: float
         return plant.steady(s, (z1, z2, zc), pairs)
     except _core.InvalidInput:
         return None
+
+
+def steady_window(plant: Plant, s: int, failure: float, length: int) -> Array | None:
+    """Theorem W3D, of windows that go through all sets; None where they do not, or where there are too many pairs."""
+    members, pairs = comb(len(plant.names), s), _pairs(len(plant.names), s)
+    if pairs == 0:
+        return np.full(plant.n, np.inf)
+    window = plant.window(np.zeros((length, len(plant.rows))))
+    unknowns = plant.n + (length - 1) * plant.root.shape[1]
+    if members > MOST_SETS or pairs * unknowns**2 * (unknowns + window.rows) > _MOST_WINDOW:
+        return None
+    z1, _, _ = certificate.window_levels(failure, length * len(plant.rows), plant.n)
+    zc = certificate.two_sided(failure / 3.0 / plant.n / members)
+    return np.asarray(certificate.subsets_window_width(window, s, z1, zc, limit=pairs))

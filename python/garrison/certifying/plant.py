@@ -32,6 +32,8 @@ class Plant:
         self.factors = _factors([np.atleast_2d(r) for r in R], self.source)
         rows = [np.asarray(C, dtype=float).reshape(-1, self.n) for C in model.C]
         self.rows = np.concatenate([np.linalg.solve(L, C) for L, C in zip(self.factors, rows, strict=True)])
+        #: whether all measurements of one sample determine the state
+        self.seen_at_once = bool(np.linalg.matrix_rank(self.rows) == self.n)
         #: outputs in the order of their sources, as a bank takes them
         self.order = np.argsort(self.source, kind="stable")
 
@@ -52,7 +54,7 @@ class Plant:
 
     def steady(self, s: int, levels: tuple[float, float, float], limit: int) -> Array:
         """Half widths that a bank never exceeds (theorem B2)."""
-        return certificate.bank_steady(self.A, self.Q, self._sources(), s, *levels, limit)[: self.n]
+        return certificate.bank_steady_width(self.A, self.Q, self._sources(), s, *levels, limit)
 
     def window(self, y: Array) -> certificate.Window:
         """One regression over these samples (whitened)."""

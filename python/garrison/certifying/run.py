@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, arguments
 from garrison.certifying.certified import Certified
-from garrison.certifying.methods import by_bank, by_window, steady
+from garrison.certifying.contradiction import of_apart, of_dependence
+from garrison.certifying.methods import Record, by_bank, by_window, steady, steady_window
 from garrison.certifying.plant import Plant
 from garrison.numeric import matched, numbers, output_names
 from garrison.varying import Inputs, inputs_of
@@ -22,8 +23,6 @@ Array = NDArray[np.float64]
 #: filters of a bank up to which "auto" takes one
 _MOST_MEMBERS = 3000
 _LONGEST_WINDOW = 1000
-#: pairs of sets, times states cubed, up to which the bank's half widths for ever are worked out
-_MOST_PAIRS = 2e6
 METHODS = ("auto", "bank", "window")
 
 
@@ -52,7 +51,7 @@ def certify(
     ----------
     model : Model
         With process_covariance and measurement_covariance of white Gaussian noise: noise that remembers its past
-        voids the certificate.
+        voids the certificate. `Certified.warnings` tell where the measurements show it.
     measurements : (samples, outputs) array
         nan or masked = missing. A pandas table with columns named as the model's outputs is matched by name.
     attacked : int
@@ -104,8 +103,10 @@ def certify(
     white = plant.whitened(y - driven @ np.concatenate([np.asarray(C) for C in model.C]).T)
     if chosen == "bank":
         record = by_bank(plant, white, s, failure, length, first, _MOST_MEMBERS, told)
+        for_ever = steady(plant, s, failure, len(y))
     else:
         record = by_window(plant, white, s, failure, length, moving, told)
+        for_ever = None if moving else steady_window(plant, s, failure, length)
     return Certified(
         center=record.center + driven,
         box=record.box,
@@ -116,8 +117,20 @@ def certify(
         failure=failure,
         method=chosen,
         window=length,
-        steady=steady(plant, s, failure, len(y), _MOST_PAIRS) if chosen == "bank" else None,
+        steady=for_ever,
+        warnings=_warnings(record, plant, model, failure),
     )
+
+
+def _warnings(record: Record, plant: Plant, model: _core.Model, failure: float) -> list[str]:
+    """What the measurements say against the model."""
+    lines = []
+    if record.apart:
+        first, state = record.apart[0]
+        where = list(model.state_names)[state]
+        lines += of_apart(len(record.apart), len(record.radius), first, where, failure)
+    evidence, source, correlation, pairs = record.dependence
+    return lines + of_dependence(evidence, 1, f"source {plant.names[source]}", correlation, pairs)
 
 
 def _driven(model: _core.Model, inputs: Array, samples: int) -> Array:

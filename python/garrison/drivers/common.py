@@ -107,7 +107,8 @@ def recorded(
     series = known["series"]
     sources = list(dict.fromkeys(sources_of(model)))
     named = [(k, t, [[sources[j] for j in some] for some in sets]) for k, t, sets in data["proved"]]
-    data = data | {"proved": named}
+    doubted = data["doubted"]
+    data = {key: value for key, value in data.items() if key != "doubted"} | {"proved": named}
     run = Run(data | ({"inputs": known["inputs"]} if model.inputs else {}), model, network, filter, series)
     if conditions and not series:
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
@@ -130,6 +131,8 @@ def recorded(
             inputs=u if len(u) else None,
             constant=not series and bool(not model.inputs or len(u)),
         )
+    names = refuted.Names(list(network.names), sources, list(model.state_names))
+    run.warnings += refuted.of_memory(doubted, run.shape, (design.certificate or {}).get("failure", 0.0), names)
     run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
     run.warnings += [] if "A" in series else doubts.of_divergence(model, run.estimate, run.error, quiet)
     return run
@@ -138,7 +141,6 @@ def recorded(
 def with_recipe(run: Run, made: dict[str, Any], store: Store | None) -> Run:
     """The run with what made it, and the doubts that depend on that; the rest of what its store is to hold, too."""
     run.made = plain_lists(made)
-    run.warnings += refuted.of_memory(run.proved)
     run.warnings += refuted.of_certificates(run.bound_kind, made.get("failure", 0.0))
     if store is not None:
         run.warnings.append(UNSEEN)

@@ -18,6 +18,8 @@ namespace {
 /// and that squared has to stay clear of rounding. A row that sees less, but more than rounding, is left out.
 constexpr double kSees = 1e-5;
 constexpr double kSeesNothing = 1e-12;
+/// Standard deviations of an innovation below which what is left of a set prior is not felt in it.
+constexpr double kFeltNoMore = 0.01;
 
 /// What the rows of n steps say of each coordinate alone: makes free directions independent of units.
 Vector weights(const MatrixRef& A, const std::vector<BankSource>& sources) {
@@ -65,8 +67,8 @@ Bank::Bank(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>
   const double count = detail::choices(m, s);
   if (!(count <= limit))
     refuse("members", text(count), "at most limit = " + std::to_string(limit), "raise it, or use cells()");
-  detail::require_room("members", count * static_cast<double>(n * (2 * n + 1)));
   for (const BankSource& source : sources) outputs_ += static_cast<int>(source.R.size());
+  detail::require_room("members", count * (static_cast<double>(n * (2 * n + 1)) + detail::kHeard * outputs_));
   for (Matrix* M : {&room_, &shape_, &sum_}) M->resize(n, n);
   for (Vector* v : {&h_, &Ph_, &k_, &Psih_, &v_, &seen_}) v->resize(n);
   weight_ = weights(A, sources);
@@ -82,6 +84,7 @@ Bank::Bank(Bank&&) noexcept = default;
 Bank& Bank::operator=(Bank&&) noexcept = default;
 
 void Bank::all_members(const VectorRef& c0, const MatrixRef& P, const MatrixRef& Psi) {
+  past_ = detail::with_start(past_, dependence());
   members_.clear();
   std::vector<char> out(sources_.size(), 0);
   std::vector<int> ids(sources_.size());
@@ -92,6 +95,7 @@ void Bank::all_members(const VectorRef& c0, const MatrixRef& P, const MatrixRef&
       if (out[static_cast<std::size_t>(id)] != 0) member.left_out.push_back(id);
     member.accused = member.left_out;
     member.number = static_cast<int>(members_.size());
+    member.heard = detail::nothing_heard(outputs_);
     members_.push_back(std::move(member));
     return true;
   });
@@ -123,11 +127,14 @@ void Bank::restart(const Region& region) {
 
 void Bank::start_unknown() {
   all_members(Vector::Zero(states()), Matrix::Zero(states(), states()), Matrix(states(), 0));
-  for (BankMember& member : members_) member.free.resize(states());
-  forget();
+  for (BankMember& member : members_) {
+    member.free.resize(states());
+    member.free.all(weight_);
+  }
 }
 
-void Bank::forget() noexcept {
+void Bank::forget(bool everything) noexcept {
+  past_ = everything ? PastDependence{} : detail::with_start(past_, dependence());
   alive_ = members_.size();
   for (std::size_t k = 0; k < members_.size(); ++k) {
     BankMember& member = members_[k];
@@ -135,6 +142,7 @@ void Bank::forget() noexcept {
     member.P.setZero();
     member.free.all(weight_);
     member.number = static_cast<int>(k);
+    detail::hear_nothing(member.heard);
     leave_out(member);
   }
 }
@@ -154,7 +162,7 @@ bool Bank::overflows() const noexcept {
 }
 
 bool Bank::resume() noexcept {
-  if (overflows()) return false;
+  if (overflows() || past_.most.source >= static_cast<int>(sources_.size())) return false;
   std::fill(taken_.begin(), taken_.end(), char{0});
   for (BankMember& member : members_) {
     const auto at = static_cast<std::size_t>(member.number);
@@ -166,8 +174,9 @@ bool Bank::resume() noexcept {
   return true;
 }
 
-/// One row y = h'x + v. False when the innovation is not noise.
-bool Bank::take(BankMember& m, const VectorRef& h, double R, double y, double z1) noexcept {
+/// One row y = h'x + v, h = h_. False when the innovation is not noise.
+bool Bank::take(BankMember& m, Eigen::Index row, double R, double y, double z1) noexcept {
+  const Vector& h = h_;
   Ph_ = m.P.lazyProduct(h);
   auto Psih = Psih_.head(m.Psi.cols());
   Psih = m.Psi.transpose().lazyProduct(h);
@@ -178,6 +187,7 @@ bool Bank::take(BankMember& m, const VectorRef& h, double R, double y, double z1
     seen = m.free.U.leftCols(m.free.count).transpose().lazyProduct(h);
     const double most = std::sqrt((h.array().square() / weight_.array()).sum());
     const double sees = seen.norm();
+    if (sees > kSeesNothing * most) detail::hear(m.heard, row, kNaN);
     if (sees > kSees * most) {  // nothing to compare with: the row fixes this direction
       k_ = m.free.U.leftCols(m.free.count).lazyProduct(seen) / (sees * sees);
       m.free.fix(seen);
@@ -186,8 +196,11 @@ bool Bank::take(BankMember& m, const VectorRef& h, double R, double y, double z1
     }
     if (sees > kSeesNothing * most) return true;
   }
-  const double room = z1 * std::sqrt(std::max(variance, 0.0)) + Psih.norm();
+  const double deviation = std::sqrt(std::max(variance, 0.0));
+  const double set = Psih.norm();
+  const double room = z1 * deviation + set;
   if (!(std::abs(innovation) <= room + 1e-12 * (room + std::abs(y)))) return false;
+  detail::hear(m.heard, row, set <= kFeltNoMore * deviation ? innovation / deviation : kNaN);
   // The gain of P + Psi Psi': any gain is valid, P and Psi are carried by the one that is used.
   k_ = (Ph_ + m.Psi.lazyProduct(Psih)) / (variance + Psih.squaredNorm());
   move(m, innovation, variance);
@@ -227,9 +240,13 @@ bool Bank::advance(BankMember& m, const VectorRef& y, const WindowLevels& z, con
     const bool skipped = out != m.left_out.end() && *out == static_cast<int>(j);
     if (skipped) ++out;
     for (Eigen::Index i = 0; i < source.R.size(); ++i, ++at) {
-      if (skipped || !(std::abs(y(at)) <= kHuge)) continue;
+      if (skipped) continue;
+      if (!(std::abs(y(at)) <= kHuge)) {
+        detail::hear(m.heard, at, kNaN);
+        continue;
+      }
       h_ = source.C.row(i).transpose();
-      if (!take(m, h_, source.R(i), y(at), z.z1)) return false;
+      if (!take(m, at, source.R(i), y(at), z.z1)) return false;
     }
   }
   return true;
@@ -239,6 +256,7 @@ const WindowWitness& Bank::update(const VectorRef& y, const WindowLevels& z, con
   witness_.proofs.clear();
   witness_.region.radius = witness_.region.stretch = started_ ? kNaN : kInfinity;
   std::size_t alive = 0;
+  alive_before_ = alive_;
   for (std::size_t k = 0; k < alive_; ++k) {
     if (!advance(members_[k], y, z, step)) continue;
     if (alive != k) std::swap(members_[alive], members_[k]);

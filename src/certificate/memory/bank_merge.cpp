@@ -57,6 +57,7 @@ void Bank::merge(int most, const WindowLevels& z) {
     other.left_out = sources;
     other.accused = accused;
     other.P.setZero();
+    detail::hear_nothing(other.heard);
     if (unknown) {
       other.free.resize(n);
       other.free.all(weight_);

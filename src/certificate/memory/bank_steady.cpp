@@ -63,9 +63,11 @@ Vector impulse_sums(const Matrix& F, const Matrix& B) {
   return Vector::Constant(n + 1, kInfinity);
 }
 
-/// Theorem B2 for one member K and the honest part H of it.
-Vector width(const MatrixRef& A, const Settled& K, const Settled& H, const std::vector<char>& out_H,
-             const WindowLevels& z) {
+Matrix after_rows(const Settled& f) { return f.P - f.L * f.C * f.P; }
+
+/// Theorem B2 for one member K and the honest part H of it: how far its centre ever is from x.
+Vector distance(const MatrixRef& A, const Settled& K, const Settled& H, const std::vector<char>& out_H,
+                const WindowLevels& z) {
   const Eigen::Index n = A.rows();
   const Matrix T = Eigen::LLT<Matrix>(K.S).matrixL();
   Matrix T_H(H.C.rows(), T.cols());
@@ -74,7 +76,7 @@ Vector width(const MatrixRef& A, const Settled& K, const Settled& H, const std::
     if (out_H[static_cast<std::size_t>(K.source[r])] == 0)
       T_H.row(at++) = T.row(static_cast<Eigen::Index>(r));
   const Matrix F = (Matrix::Identity(n, n) - H.L * H.C) * A;
-  const Matrix P_H = H.P - H.L * H.C * H.P;
+  const Matrix P_H = after_rows(H);
   Vector bound = z.z1 * impulse_sums(F, K.L * T - H.L * T_H);
   bound.head(n) += z.zc * P_H.diagonal().cwiseMax(0.0).cwiseSqrt();
   bound(n) += z.z2 * std::sqrt(spectral_norm(P_H));
@@ -82,10 +84,11 @@ Vector width(const MatrixRef& A, const Settled& K, const Settled& H, const std::
   return bound;
 }
 
-}  // namespace
-
-Vector bank_steady(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources, int s,
-                   const WindowLevels& z, int limit) {
+/// The largest of `of`(distances, K) over all members K and honest parts; infinite where some set does not
+/// detect.
+template <class Of>
+Vector worst_member(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources, int s,
+                    const WindowLevels& z, int limit, const Of& of) {
   const Eigen::Index n = A.rows();
   if (n < 1) refuse("A", detail::shape(A), "at least 1 x 1");
   detail::require_shape("A", A, n, n);
@@ -114,11 +117,30 @@ Vector bank_steady(const MatrixRef& A, const MatrixRef& Q, const std::vector<Ban
       require_time("the bank's steady error");
       const auto H = settle(A, Q, sources, out);
       if (!H) return false;
-      worst = worst.cwiseMax(width(A, *K, *H, out, z));
+      worst = worst.cwiseMax(of(distance(A, *K, *H, out, z), *K));
       return true;
     });
   });
   return bounded ? worst : Vector::Constant(n + 1, kInfinity);
+}
+
+}  // namespace
+
+Vector bank_steady(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources, int s,
+                   const WindowLevels& z, int limit) {
+  return worst_member(A, Q, sources, s, z, limit, [](const Vector& far, const Settled&) { return far; });
+}
+
+Vector bank_steady_width(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources,
+                         int s, const WindowLevels& z, int limit) {
+  const Eigen::Index n = A.rows();
+  return worst_member(A, Q, sources, s, z, limit,
+                      [&](const Vector& far, const Settled& K) {
+                        Vector reach = far;
+                        reach.head(n) += z.zc * after_rows(K).diagonal().cwiseMax(0.0).cwiseSqrt();
+                        return reach;
+                      })
+      .head(n);
 }
 
 }  // namespace garrison::certificate

@@ -21,7 +21,7 @@ std::map<int, std::vector<std::size_t>> entries_of(const Plan& plan, std::span<c
   return entries;
 }
 
-Bank make_bank(const Plan& plan, std::span<const std::size_t> rows) {
+std::vector<BankSource> sources_of(const Plan& plan, std::span<const std::size_t> rows) {
   std::vector<BankSource> sources;
   for (const auto& [source, entries] : entries_of(plan, rows)) {
     const auto count = static_cast<Eigen::Index>(entries.size());
@@ -32,16 +32,19 @@ Bank make_bank(const Plan& plan, std::span<const std::size_t> rows) {
       one.R(k) = plan.variance(row);
     }
   }
-  return {plan.A, plan.bank.Q, sources, plan.wanted.attacked, kMostBankMembers};
+  return sources;
 }
 
 }  // namespace
 
 AgentBank::AgentBank(std::shared_ptr<const Plan> plan, std::span<const std::size_t> rows)
-    : plan_(std::move(plan)), bank_(make_bank(*plan_, rows)) {
+    : plan_(std::move(plan)),
+      bank_(plan_->A, plan_->bank.Q, sources_of(*plan_, rows), plan_->wanted.attacked, kMostBankMembers),
+      now_(sources_of(*plan_, rows)) {
   for (const auto& [source, entries] : entries_of(*plan_, rows)) {
     source_.push_back(source);
     order_.insert(order_.end(), entries.begin(), entries.end());
+    for (const std::size_t entry : entries) row_.push_back(rows[entry]);
   }
   y_.resize(bank_.outputs());
   nothing_ = Vector::Constant(bank_.outputs(), kNaN);
@@ -51,7 +54,13 @@ AgentBank::AgentBank(std::shared_ptr<const Plan> plan, std::span<const std::size
 }
 
 void AgentBank::reset(std::int64_t t) noexcept {
-  bank_.forget();
+  restart(t, true);
+  doubts_ = {};
+}
+
+/// From now on alone; everything: nothing was doubted before, either.
+void AgentBank::restart(std::int64_t t, bool everything) noexcept {
+  bank_.forget(everything);
   t_ = t;
   tests_ = 0;
   proofs_ = 0;
@@ -68,20 +77,66 @@ WindowLevels AgentBank::levels() const noexcept {
   return {b.z1[std::min(epoch, b.z1.size() - 1)], b.z2, b.zc, kNaN};
 }
 
+void AgentBank::vary(const Matrix* rows) noexcept {
+  varied_ = rows != nullptr;
+  if (!varied_) return;
+  std::size_t at = 0;
+  for (BankSource& source : now_)
+    for (Eigen::Index k = 0; k < source.C.rows(); ++k, ++at)
+      source.C.row(k) = rows->col(static_cast<Eigen::Index>(row_[at])).transpose();
+}
+
 void AgentBank::take(std::int64_t t, std::span<const double> y) noexcept {
-  if (t - t_ > kMostAge) reset(t - 1);
+  if (t - t_ > kMostAge) restart(t - 1, false);
   BankStep step;
   step.ellipsoid = false;
   for (; t_ + 1 < t; ++t_) bank_.update(nothing_, levels(), step);
-  if (bank_.overflows()) reset(t - 1);
+  if (bank_.overflows()) restart(t - 1, false);
   for (std::size_t k = 0; k < order_.size(); ++k) y_(static_cast<Eigen::Index>(k)) = y[order_[k]];
+  if (varied_) {
+    step.sources = &now_;
+    Eigen::Index at = 0;
+    for (const BankSource& source : now_)
+      for (Eigen::Index k = 0; k < source.C.rows(); ++k, ++at)
+        if (source.C.row(k).isZero(0.0)) y_(at) = kNaN;  // it says nothing
+  }
   learn(bank_.update(y_, levels(), step));
   t_ = t;
   ++tests_;
-  const bool refuted = std::isnan(radius_);
-  if (!refuted && !bank_.overflows()) return;
-  reset(t);
-  if (refuted) radius_ = kNaN;
+  if (std::isnan(radius_)) {
+    if (doubts_.refuted++ == 0) doubts_.refuted_at = t;
+    refute();
+  } else if (bank_.overflows()) {
+    restart(t, false);
+  }
+}
+
+/// Says no more of this sample than that; later ones count alone.
+void AgentBank::refute() noexcept {
+  restart(t_, false);
+  radius_ = kNaN;
+}
+
+void AgentBank::compare(std::span<const double> center, std::span<const double> box) noexcept {
+  if (!std::isfinite(radius_)) return;
+  for (std::size_t k = 0; k < center.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const double rounding = kAgeingRounding * (std::abs(center[k]) + std::abs(center_(i)));
+    if (!(std::abs(center[k] - center_(i)) > kSums * (box[k] + box_(i)) + rounding)) continue;
+    if (doubts_.apart++ == 0) {
+      doubts_.apart_at = t_;
+      doubts_.apart_in = static_cast<int>(k);
+    }
+    return refute();
+  }
+}
+
+Doubts AgentBank::doubts() const noexcept {
+  Doubts found = doubts_;
+  found.dependence = bank_.dependence();
+  int& source = found.dependence.source;
+  if (source >= 0) source = source_[static_cast<std::size_t>(source)];
+  return found;
 }
 
 void AgentBank::learn(const WindowWitness& found) noexcept {
@@ -130,6 +185,7 @@ void AgentBank::visit(wire::Archive& archive) {
   archive("box", box_);
   archive.range("proofs", proofs_, 0, static_cast<std::int64_t>(proved_.size()));
   archive("proved", proved_);
+  archive("doubts", doubts_);
 }
 
 bool AgentBank::resume() noexcept {

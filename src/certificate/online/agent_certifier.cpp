@@ -133,6 +133,12 @@ void AgentCertifier::move_to(std::int64_t t) noexcept {
   if (bank_) bank_->wait();
 }
 
+void AgentCertifier::vary(const Matrix* rows) noexcept {
+  now_ = rows;
+  gathered_ = false;
+  if (bank_) bank_->vary(rows);
+}
+
 void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
   move_to(t);
   const auto me = std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin();
@@ -209,9 +215,11 @@ void AgentCertifier::end_sample() noexcept {
   if (!judged_) witness();
 }
 
-/// Writes what is known into rows_, anew only where other measurements are missing than the last time.
+/// Writes what is known into rows_, anew only where other measurements are missing than the last time, or
+/// rows are others.
 void AgentCertifier::gather() noexcept {
-  bool same = true;
+  bool same = gathered_;
+  gathered_ = true;
   for (std::size_t k = 0; k < y_.size(); ++k) {
     const char present = std::isnan(y_[k]) ? 0 : 1;
     same = same && present == present_[k];
@@ -225,16 +233,22 @@ void AgentCertifier::gather() noexcept {
   }
   rows_.clear();
   const std::size_t n = memory_.center.size();
+  const Matrix& rows = now_ != nullptr ? *now_ : plan_->rows;
   for (std::size_t k = 0; k < y_.size(); ++k) {
     const auto r = static_cast<Eigen::Index>(row_[k]);
     used_[k] = static_cast<char>(
-        present_[k] != 0 && rows_.add(source_[k], {plan_->rows.data() + row_[k] * n, n}, y_[k],
-                                      plan_->variance(r), plan_->deterministic() ? plan_->width(r) : 0.0));
+        present_[k] != 0 && rows_.add(source_[k], {rows.data() + row_[k] * n, n}, y_[k], plan_->variance(r),
+                                      plan_->deterministic() ? plan_->width(r) : 0.0));
   }
 }
 
 void AgentCertifier::remember() noexcept {
   if (bank_) bank_->take(memory_.t, y_);
+}
+
+/// What this sample says alone, against what all say together.
+void AgentCertifier::compare() noexcept {
+  if (bank_ && std::isfinite(memory_.radius)) bank_->compare(memory_.center, memory_.box);
 }
 
 std::span<const int> AgentCertifier::proved() const noexcept {
@@ -255,6 +269,7 @@ void AgentCertifier::witness() noexcept {
       !a.bounded && plan_->wanted.subsets > 0 && subsets_to_try(rows_, a) <= plan_->wanted.subsets;
   keep((few ? witness_subsets(rows_, a, kNaN, subsets_) : leverage_ball(rows_, a, leverage_)).region);
   if (a.bounded && n == 1 && one_row_each_ && !std::isnan(memory_.radius)) interval_rule();
+  compare();
   relay_own();
 }
 
@@ -362,6 +377,7 @@ void AgentCertifier::adopt(const AgentCertifier& other) noexcept {
   memory_.radius = other.memory_.radius;
   memory_.center = other.memory_.center;
   memory_.box = other.memory_.box;
+  compare();
   relay_own();
 }
 

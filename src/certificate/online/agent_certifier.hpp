@@ -27,6 +27,7 @@ class AgentCertifier final : public Certifier {
   void visit(wire::Archive& archive) override;
   bool resume(std::int64_t t) noexcept override;
   std::span<const int> proved() const noexcept override;
+  Doubts doubts() const noexcept override { return bank_ ? bank_->doubts() : Doubts(); }
   bool counts_family() const noexcept override { return plan_->family; }
 
   /// The last step of a sample in two, for drivers of whole networks: `witness`, or the one of an agent that
@@ -45,6 +46,8 @@ class AgentCertifier final : public Certifier {
   void hear_relayed(const AgentCertifier& other) noexcept;
   bool relays_the_same(const AgentCertifier& other) const;
   bool found_the_same(const AgentCertifier& other) const;
+  /// From the next sample on; rows: those of the whole network, each a column; null = the plan's.
+  void vary(const Matrix* rows) noexcept;
   /// Takes over all that lasts to the next sample.
   void copy(const AgentCertifier& other) noexcept { memory_ = other.memory_; }
   bool has_bank() const { return bank_ != nullptr; }
@@ -59,6 +62,7 @@ class AgentCertifier final : public Certifier {
   void keep(const Region& region) noexcept;
   void relay_own() noexcept;
   void remember() noexcept;
+  void compare() noexcept;
   bool usable() const noexcept;
   bool eligible(int age, int fresh) const;
   void offer(const double* center, double radius, int age, int fresh) noexcept;
@@ -81,6 +85,8 @@ class AgentCertifier final : public Certifier {
   int next_round_ = 0;            // in which what is heard now can be passed on
   int known_ = 0;
   bool one_row_each_ = true;          // no source has several rows
+  const Matrix* now_ = nullptr;       // rows of the sample where they are not the plan's
+  bool gathered_ = false;             // rows_ are those of now_
   std::vector<char> present_, used_;  // of each entry of y_: it was known, and is a row, in rows_
   Rows rows_;
   LeverageWorkspace leverage_;

@@ -173,6 +173,7 @@ TEST_CASE("banks in runs hold at the edge of their promise, whoever lies, whatev
         const Certifier& one = *agents.of(i);
         const Bound bound = one.bound({x.data(), static_cast<std::size_t>(x.size())});
         CHECK(bound.kind != CertificateKind::refuted);
+        CHECK(one.doubts().apart == 0);  // both regions contain x
         for (const int source : one.proved()) {
           CHECK(test::contains(d.attacked, source));
           ++proved;
@@ -305,6 +306,9 @@ TEST_CASE(
         bounds += report.kind == CertificateKind::memory ? 1 : 0;
       }
     }
+    CHECK(std::none_of(record.doubted.begin(), record.doubted.end(), [](const Record::Doubted& one) {
+      return one.doubts.refuted > 0 || one.doubts.apart > 0;
+    }));
     for (int i = 0; i < d.model.agents(); ++i) {
       CHECK(record.proved.back().sets[static_cast<std::size_t>(i)] == agents[i].proved());
       for (const int source : agents[i].proved()) CHECK(test::contains(d.attacked, source));
@@ -318,6 +322,56 @@ TEST_CASE(
   std::cout << "banks with lost messages: " << bounds << " bounds, " << proved << " proofs at the end\n";
   CHECK(bounds > 10 * kSystems);
   if (kSystems >= 200) CHECK(proved > 10);  // the few of the sanitizers prove nothing
+}
+
+TEST_CASE("process noise ten times as large as modelled puts regions with and without memory apart") {
+  test::Rng rng(kSeed + 5);
+  std::normal_distribution<double> normal;
+  Workers workers(1);
+  constexpr int kRuns = 40;
+  int apart = 0;
+  for (int k = 0; k < kRuns; ++k) {
+    CAPTURE(k);
+    const int n = 1;
+    const int N = test::whole(rng, 12, 16);
+    const int s = test::whole(rng, 0, 1);
+    const double size = test::uniform(rng, 0.1, 0.15);  // deviation of the process noise that is modelled
+    Noise noise;
+    noise.process_covariance = size * size * Matrix::Identity(n, n);
+    noise.measurement_covariance.assign(static_cast<std::size_t>(N), Matrix::Identity(n, n));
+    const Model model(0.95 * Matrix::Identity(n, n),
+                      std::vector<Matrix>(static_cast<std::size_t>(N), Matrix::Identity(n, n)), noise);
+    const Network network = Network::complete(N);
+    const auto plan =
+        std::make_shared<const certificate::Plan>(make_plan(remembering(Spread::direct, s), model, network));
+    for (const double times : {1.0, 10.0}) {
+      CertifiedNetwork agents(plan, network, 1);
+      agents.reset(0);
+      Vector x = Vector::Zero(n);
+      for (int t = 1; t <= 100; ++t) {
+        x = 0.95 * x + times * size * test::normal_matrix(rng, n, 1);
+        Vector y(N * n);
+        for (Eigen::Index r = 0; r < y.size(); ++r) y(r) = x(r % n) + normal(rng);
+        agents.begin(t, y.data());
+        agents.finish(workers);
+        const Bound bound = agents.of(0)->bound({x.data(), static_cast<std::size_t>(n)});
+        CHECK(std::isfinite(bound.value));  // the sample alone says something, also where memory is refuted
+      }
+      const certificate::Doubts found = agents.of(0)->doubts();
+      if (times == 1.0) {
+        CHECK(found.apart + found.refuted == 0);
+        continue;
+      }
+      if (found.apart == 0) continue;
+      ++apart;
+      CHECK(found.apart_at >= 1);
+      CHECK(found.apart_in < n);
+      agents.reset(0);
+      CHECK_FALSE(agents.of(0)->doubts().any());
+    }
+  }
+  std::cout << "process noise ten times as large: regions apart in " << apart << " of " << kRuns << " runs\n";
+  CHECK(apart > kRuns / 2);
 }
 
 TEST_CASE("six position sensors of a double integrator, two lying: agents that hear all prove both") {
@@ -406,6 +460,8 @@ TEST_CASE("a bank goes on through gaps, and starts anew after long ones and afte
   // Another one lies from now on: that no source lied before is false now. W holds all the same.
   const std::vector<double> moved{0.0, 0.0, 0.0, 90.0};
   CHECK(at(1951, moved).kind == CertificateKind::witness);
+  CHECK(certifier->doubts().refuted == 1);
+  CHECK(certifier->doubts().refuted_at == 1951);
   CHECK(certifier->proved().empty());
   for (int t = 1952; t <= 2000; ++t) CHECK(std::isfinite(at(t, moved).value));
   CHECK(std::vector<int>(certifier->proved().begin(), certifier->proved().end()) == std::vector<int>{3});

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "garrison/certificate/memory/dependence.hpp"
 #include "garrison/certificate/memory/free_directions.hpp"
 #include "garrison/certificate/memory/levels.hpp"
 #include "garrison/core/error.hpp"
@@ -30,6 +31,7 @@ struct BankMember {
   std::vector<int> accused;   ///< those of them that are attacked if this member is right: fewer once merged
   detail::FreeDirections free{};
   int number = 0;  ///< of its set, in lexicographic order
+  Matrix heard{};  ///< what is kept of the innovations of each output, in standard deviations
 
   /// What changes from step to step, in a bank that nothing was merged in.
   template <class V>
@@ -39,6 +41,7 @@ struct BankMember {
     v("Psi", Psi);
     v("free", free);
     v("number", number);
+    v("heard", heard);
   }
 };
 
@@ -72,8 +75,8 @@ class GARRISON_EXPORT Bank {
   /// All members anew, with nothing known of x: no bound before the rows of every living member, over the
   /// steps, have determined it. Rows that do are no test. The time may depend on all data so far.
   void start_unknown();
-  /// The same of a bank that began so; does not allocate.
-  void forget() noexcept;
+  /// The same of a bank that began so; does not allocate. everything: also what speaks against white noise.
+  void forget(bool everything = false) noexcept;
 
   /// Theorem B. y: outputs of all sources one below the other, NaN = missing. A member whose innovation is
   /// not noise dies; the region encloses those that live; a source that all of them accuse is proved (with at
@@ -94,6 +97,10 @@ class GARRISON_EXPORT Bank {
 
   int states() const { return static_cast<int>(A_.rows()); }
   int outputs() const { return outputs_; }
+  /// What the innovations of all living members say against white noise, since the first start; where one of
+  /// them does not say it, the sources that it leaves out may be the liars. Exact from an unknown or a
+  /// Gaussian start; where a set prior is felt, nothing is compared.
+  Dependence dependence() const noexcept;
   /// The living members.
   std::span<const BankMember> members() const { return {members_.data(), alive_}; }
   /// Whether some number of a living member is too large to go on with: an unstable plant, left alone.
@@ -104,12 +111,13 @@ class GARRISON_EXPORT Bank {
   template <class V>
   void visit(V& v) {
     v.range("alive", alive_, 0, static_cast<std::int64_t>(members_.size()));
+    v("past", past_);
     for (BankMember& member : members_) v("member", member);
   }
 
  private:
   bool advance(BankMember& member, const VectorRef& y, const WindowLevels& z, const BankStep& step) noexcept;
-  bool take(BankMember& member, const VectorRef& h, double R, double y, double z1) noexcept;
+  bool take(BankMember& member, Eigen::Index row, double R, double y, double z1) noexcept;
   void leave_out(BankMember& member) const noexcept;
   void move(BankMember& member, double innovation, double variance) noexcept;
   void enclose(const WindowLevels& z, bool ellipsoid) noexcept;
@@ -125,6 +133,8 @@ class GARRISON_EXPORT Bank {
   bool started_ = false;
   std::vector<BankMember> members_;  // the first alive_ live
   std::size_t alive_ = 0;
+  std::size_t alive_before_ = 0;  // the last update
+  PastDependence past_;
   std::vector<std::vector<int>> sets_;  // that members leave out, by their number
   std::unique_ptr<detail::ShapeFrame> frame_;
   std::vector<char> taken_;  // numbers that some member has
@@ -142,5 +152,9 @@ class GARRISON_EXPORT Bank {
 GARRISON_EXPORT Vector bank_steady(const MatrixRef& A, const MatrixRef& Q,
                                    const std::vector<BankSource>& sources, int s, const WindowLevels& z,
                                    int limit = 100000);
+/// The same of the half widths (n) of the box around all living members: each reaches zc deviations further.
+GARRISON_EXPORT Vector bank_steady_width(const MatrixRef& A, const MatrixRef& Q,
+                                         const std::vector<BankSource>& sources, int s, const WindowLevels& z,
+                                         int limit = 100000);
 
 }  // namespace garrison::certificate

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "garrison/certificate/online/doubts.hpp"
 #include "garrison/certificate/online/evidence.hpp"
 #include "garrison/core/certificate_kind.hpp"
 #include "garrison/core/error.hpp"
@@ -71,6 +72,8 @@ class Certifier {
   /// Sources (Plan::source) that are shown to be attacked, ascending: none without a bank. Wrong with at most
   /// `failure`, where the attacked are always the same.
   virtual std::span<const int> proved() const noexcept = 0;
+  /// What speaks against the assumptions of the bank: nothing without one.
+  virtual Doubts doubts() const noexcept = 0;
   /// Lists what lasts from sample to sample.
   virtual void visit(wire::Archive& archive) = 0;
   /// Goes on from what was read, of sample t; false where that cannot be worked with.

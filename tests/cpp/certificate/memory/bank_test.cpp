@@ -288,12 +288,16 @@ TEST_CASE("the width for ever holds for every living member, whatever hides amon
   int finite = 0;
   int comparisons = 0;
   double largest = 0.0;
+  double largest_box = 0.0;
   for (int k = 0; k < 60; ++k) {
     CAPTURE(k);
     BankCase d = draw(rng);
     d.root += 0.05 * Matrix::Identity(d.n, d.n);
     const Vector width = bank_steady(d.A, d.Q(), d.sources, d.s, z);
+    const Vector half = bank_steady_width(d.A, d.Q(), d.sources, d.s, z);
+    CHECK(half.allFinite() == width.allFinite());
     if (!width.allFinite()) continue;
+    CHECK((half.array() > width.head(d.n).array()).all());
     ++finite;
     Bank bank(d.A, d.Q(), d.sources, d.s);
     Vector x = Vector::Zero(d.n);
@@ -313,8 +317,11 @@ TEST_CASE("the width for ever holds for every living member, whatever hides amon
           const bool lies = test::contains(d.attacked, static_cast<int>(j));
           y(at) = d.sources[j].C.row(i).dot(lies ? predicted : x) + sigma * (lies ? push : normal(rng));
         }
-      CHECK_FALSE(bank.update(y, z).region.refuted());
+      const Region region = bank.update(y, z).region;
+      CHECK_FALSE(region.refuted());
       if (t < 150) continue;
+      CHECK((region.box.array() <= half.array()).all());
+      largest_box = std::max(largest_box, region.box.cwiseQuotient(half).maxCoeff());
       for (const BankMember& member : bank.members()) {
         const Vector error = (member.c - x).cwiseAbs();
         CHECK((error.array() <= width.head(d.n).array()).all());
@@ -325,7 +332,7 @@ TEST_CASE("the width for ever holds for every living member, whatever hides amon
     }
   }
   std::cout << "width for ever: " << finite << " systems, " << comparisons
-            << " comparisons, largest error/width " << largest << "\n";
+            << " comparisons, largest error/width " << largest << ", box/width " << largest_box << "\n";
   CHECK(finite > 20);
   CHECK(comparisons > 2000);
   CHECK(largest > 0.1);
