@@ -179,10 +179,13 @@ TEST_CASE("functions that do not fit are refused, and what they throw passes") {
   const auto angry = [](const Matrix&, int) -> Vector { throw Mine{}; };
   CHECK_THROWS_AS(run({Swing{}, angry}), Mine);
   CHECK_THROWS_WITH_AS(run({Swing{}, {}}), "nonlinear: got no h, expected both", InvalidInput);
+  test::Rng rng(1);
+  const Model linear = test::scalar_model(rng, 2, 4, 0.98, 0.02, 0.01);
   RunOptions o;
-  o.nonlinear = std::make_shared<const Nonlinear>(Nonlinear{Swing{}, Bob{}});
+  o.nonlinear = std::make_shared<const Nonlinear>(as_functions(linear));
+  const auto designed = make_filter("partial_sharing", {{"gain", 0.1}});
   CHECK_THROWS_WITH_AS(
-      simulate(pendulum_model(), network, *make_filter("partial_sharing", {{"gain", 0.1}}), plant, o),
+      simulate(linear, network, *designed, plant, o),
       doctest::Contains("got a plant by functions, expected a constant plant for partial_sharing"),
       InvalidInput);
 }
