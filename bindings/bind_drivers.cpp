@@ -2,6 +2,7 @@
 // Drivers: simulate, replay.
 #include "bindings.hpp"
 #include "budget.hpp"
+#include "functions.hpp"
 #include "garrison/drivers/contradiction.hpp"
 #include "garrison/drivers/exceedances.hpp"
 #include "garrison/drivers/simulate.hpp"
@@ -40,7 +41,8 @@ std::vector<Lost> lost_of(const py::handle& given) {
 RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int threads,
                        const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks,
                        const py::dict& link, const std::vector<std::string>& keep, const Matrix& inputs,
-                       const py::dict& series, const py::object& progress) {
+                       const py::dict& series, std::shared_ptr<const Nonlinear> nonlinear,
+                       const py::object& progress) {
   RunOptions o;
   o.trials = trials;
   o.first_trial = first_trial;
@@ -48,6 +50,7 @@ RunOptions run_options(int trials, int first_trial, std::uint64_t seed, int thre
   o.threads = threads;
   o.inputs = inputs;
   o.series = series_of(series);
+  o.nonlinear = std::move(nonlinear);
   if (start) o.start = start->transpose();  // Python has one row per agent
   for (const AnyAttack& attack : attacks) {
     if (attack.measurement) o.attacks.push_back(attack.measurement);
@@ -181,6 +184,7 @@ py::dict from_record(Record&& r) {
     auto shape = whole_shape(numbers.size(), r.trials, behind);
     d[name] = owned(std::move(numbers), std::move(shape));
   });
+  d["trials"] = r.trials;
   d["steps"] = r.steps;
   d["signal_names"] = r.signal_names;
   py::list accusations;
@@ -283,10 +287,11 @@ void bind_drivers(py::module_& m) {
          const std::string& noise, const Matrix& disturbances, int trials, int first_trial,
          std::uint64_t seed, int threads, const std::optional<Matrix>& start,
          const std::vector<AnyAttack>& attacks, const py::dict& link, const std::vector<std::string>& keep,
-         const Matrix& inputs, const py::dict& series, const py::object& progress, const py::object& sink,
-         std::size_t block_bytes) {
-        RunOptions options = run_options(trials, first_trial, seed, threads, start, attacks, link, keep,
-                                         inputs, series, progress);
+         const Matrix& inputs, const py::dict& series, const py::dict& functions, const py::object& progress,
+         const py::object& sink, std::size_t block_bytes) {
+        RunOptions options =
+            run_options(trials, first_trial, seed, threads, start, attacks, link, keep, inputs, series,
+                        functions_of(functions, prepared->model()), progress);
         options.sink = sink_of(sink, steps);
         options.block_bytes = block_bytes;
         Record record;
@@ -299,17 +304,20 @@ void bind_drivers(py::module_& m) {
       py::arg("design"), py::kw_only(), py::arg("steps"), py::arg("x0"), py::arg("start_error"),
       py::arg("noise"), py::arg("disturbances"), py::arg("trials"), py::arg("first_trial"), py::arg("seed"),
       py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"),
-      py::arg("inputs"), py::arg("series"), py::arg("progress"), py::arg("sink") = py::none(),
-      py::arg("block_bytes") = std::size_t{16} << 20, "Arrays of a simulated run; use garrison.simulate.");
+      py::arg("inputs"), py::arg("series"), py::arg("functions"), py::arg("progress"),
+      py::arg("sink") = py::none(), py::arg("block_bytes") = std::size_t{16} << 20,
+      "Arrays of a simulated run; use garrison.simulate.");
   m.def(
       "replay",
       [](const std::shared_ptr<Prepared>& prepared, const Array& measurements,
          const std::optional<Array>& truth, int trials, int first_trial, std::uint64_t seed, int threads,
          const std::optional<Matrix>& start, const std::vector<AnyAttack>& attacks, const py::dict& link,
          const std::vector<std::string>& keep, const Matrix& inputs, const py::dict& series,
-         const py::object& progress, const py::object& sink, std::size_t block_bytes) {
-        RunOptions options = run_options(trials, first_trial, seed, threads, start, attacks, link, keep,
-                                         inputs, series, progress);
+         const py::dict& functions, const py::object& progress, const py::object& sink,
+         std::size_t block_bytes) {
+        RunOptions options =
+            run_options(trials, first_trial, seed, threads, start, attacks, link, keep, inputs, series,
+                        functions_of(functions, prepared->model()), progress);
         const Log log = log_of(prepared->model(), prepared->filter(), measurements, truth);
         options.sink = sink_of(sink, log.steps);
         options.block_bytes = block_bytes;
@@ -322,7 +330,7 @@ void bind_drivers(py::module_& m) {
       },
       py::arg("design"), py::kw_only(), py::arg("measurements"), py::arg("truth"), py::arg("trials"),
       py::arg("first_trial"), py::arg("seed"), py::arg("threads"), py::arg("start"), py::arg("attacks"),
-      py::arg("link"), py::arg("keep"), py::arg("inputs"), py::arg("series"), py::arg("progress"),
-      py::arg("sink") = py::none(), py::arg("block_bytes") = std::size_t{16} << 20,
+      py::arg("link"), py::arg("keep"), py::arg("inputs"), py::arg("series"), py::arg("functions"),
+      py::arg("progress"), py::arg("sink") = py::none(), py::arg("block_bytes") = std::size_t{16} << 20,
       "Arrays of a replayed run; use garrison.replay.");
 }

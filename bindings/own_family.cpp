@@ -207,6 +207,10 @@ void Family::rejoin(Session& s, int id, const Letters& inbox, std::int64_t t, Ve
   });
 }
 
+void Family::place(Session& s, int id, const Vector& x) noexcept {
+  call(s, "estimate", id, [&] { put_estimate(s.agents[static_cast<std::size_t>(id)].state, x); });
+}
+
 Report Family::report(Session& s, int id, garrison::AgentSet& accused) noexcept {
   Report r;
   r.verdict = Verdict::not_tested;

@@ -109,6 +109,11 @@ struct Family {
   static const garrison::Vec<n>& estimate(const State<n>& s) noexcept {
     return s.x;
   }
+  /// The copy of it that the engine has; that of the user's state: `place`.
+  template <int n>
+  static double* averaged(State<n>& s) noexcept {
+    return s.x.data();
+  }
   template <int n>
   static const garrison::AgentSet* accused(const State<n>& s) noexcept {
     return &s.accused;
@@ -124,6 +129,9 @@ struct Family {
   }
   template <int n>
   static void signals(const garrison::Local&, const Gains&, const State<n>&, double*) noexcept {}
+
+  /// Gives the user's state of agent `id` another estimate.
+  static void place(Session& s, int id, const garrison::Vector& x) noexcept;
 
  private:
   using Vector = garrison::Vector;

@@ -157,6 +157,13 @@ class OwnRunner final : public Runner {
       first += static_cast<int>(rows);
     }
   }
+  void estimates(Matrix& out) const override { engine_.estimates(out); }
+  void place(const Matrix& estimates) override {
+    engine_.place(estimates);
+    for (Eigen::Index i = 0; i < estimates.cols(); ++i)
+      Family::place(*session_, static_cast<int>(i), estimates.col(i));
+    raise();
+  }
   void step(std::int64_t t, const double* y) override {
     engine_.step(t, y);
     raise();
@@ -247,7 +254,7 @@ class OwnPrepared final : public Prepared {
   }
   void check_start(const Matrix&) const override {}
   void check_log(std::span<const double>) const override {}
-  void require_varying() const override {}
+  void require_varying(const std::string&) const override {}
   std::unique_ptr<garrison::Agent> agent(int) const override { refuse_alone("an agent on its own"); }
   std::unique_ptr<TrialsRunner> trials() const override { return nullptr; }
   std::unique_ptr<World> world(const WorldOptions&) const override { return nullptr; }

@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from garrison.kalman import central_kalman, extended_kalman, local_kalman
     from garrison.lmi import lmi_gains
     from garrison.mitigation import Mitigated, replay_mitigated
+    from garrison.nonlinear import NonlinearModel
     from garrison.prepared import Prepared, prepare
     from garrison.record import Run
     from garrison.resilience import Resilience, resilience_per_byte
@@ -99,6 +100,7 @@ _LATER = {
     "central_kalman": "kalman",
     "extended_kalman": "kalman",
     "local_kalman": "kalman",
+    "NonlinearModel": "nonlinear",
     "VaryingModel": "varying",
     "VaryingNetwork": "varying_network",
     "Exposed": "exposing",
@@ -140,6 +142,7 @@ __all__ = [
     "Mitigated",
     "Model",
     "Network",
+    "NonlinearModel",
     "Prepared",
     "Resilience",
     "Response",

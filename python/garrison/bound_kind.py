@@ -19,7 +19,7 @@ class BoundKind(Word):
     TOO_FEW = 7  #: none (inf): too few measurements reached the agent, in this sample and all before
     REFUTED = 8  #: none (nan): the data contradict "at most so many are attacked"
     LIARS = 9  #: none (nan): agents lie in their messages, and bounds rest on what they say
-    VARYING = 10  #: none (nan): A or C changes in time, and the filter's theorem needs a constant plant
+    VARYING = 10  #: none (nan): A or C changes in time or the plant is nonlinear; theorems need a constant linear one
     MEMORY = 11  #: all measurements that reached the agent so far
 
     @property
@@ -37,8 +37,8 @@ _WHY = {
     "event happened that the failure probability allows)",
     BoundKind.LIARS: "agents lie in their messages, and this bound rests on what they say (those of "
     'certificate = "direct" do not)',
-    BoundKind.VARYING: "the plant changes in time, and the theorem behind the filter's bound needs a constant one "
-    "(rows that come and go can be constant outputs with nan: then it holds)",
+    BoundKind.VARYING: "the plant changes in time, or is nonlinear, and the theorem behind the filter's bound needs a "
+    "constant linear one (rows that come and go can be constant outputs with nan: then it holds)",
 }
 
 

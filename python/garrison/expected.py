@@ -42,6 +42,7 @@ def expected_certificate(design: _core.Design) -> list[dict[str, Any]]:
         keep=["report"],
         inputs=np.zeros((samples if design.model.inputs else 0, design.model.inputs)),
         series={},
+        functions={},
         progress=None,
     )
     bound, kind = made["bound"][0, -1], made["bound_kind"][0, -1]

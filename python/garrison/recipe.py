@@ -19,10 +19,13 @@ if TYPE_CHECKING:
 def recipe(run: Run) -> tuple[str, tuple[Any, ...], dict[str, Any]]:
     """Name of the driver, (model, network, filter), and the keyword arguments.
 
-    Raises InvalidInput where the measurements are missing, or an attack was written in Python.
+    Raises InvalidInput where the measurements are missing, or an attack or the plant was written in Python.
     """
     if not run.made:
         raise refusal("again", "a run that does not say what made it", "one of simulate or replay")
+    if run.made.get("functions"):
+        advice = "call simulate or replay with them"
+        raise refusal("again", "a run of a NonlinearModel, whose functions no run keeps", "one of matrices", advice)
     given = {key: value for key, value in run.made.items() if key not in ("driver", "attack")}
     attacks = [attack_of(plain) for plain in run.made["attack"]]
     changes: dict[str, Any] = run.varying

@@ -23,14 +23,28 @@ void require_certifiable(const certificate::Plan& plan, const Series& series) {
   }
 }
 
+void require_nonlinear(const Prepared& prepared, const RunOptions& options) {
+  if (!options.nonlinear->f || !options.nonlinear->h)
+    refuse("nonlinear", options.nonlinear->f ? "no h" : "no f", "both");
+  if (options.series != nullptr)
+    refuse("series", "matrices over time beside functions", "one of them", "the functions are told the time");
+  if (!options.inputs.allFinite())
+    refuse("inputs", "a number that is not finite", "known inputs at all times");
+  prepared.require_varying("a plant by functions");
+  if (prepared.certificate() != nullptr)
+    refuse("certificate", "a plant by functions", "a linear plant",
+           "certificates rest on A and C; see docs/how-to/changing-plants.md");
+}
+
 }  // namespace
 
 void require_course(const Prepared& prepared, const RunOptions& options, int steps) {
   const Model& model = prepared.model();
   const bool own = prepared.filter().own_states();
   const Matrix& u = options.inputs;
-  if (own && (model.inputs() > 0 || u.size() > 0 || options.series != nullptr))
-    refuse("inputs", "inputs or matrices over time with " + prepared.filter().name(),
+  if (own &&
+      (model.inputs() > 0 || u.size() > 0 || options.series != nullptr || options.nonlinear != nullptr))
+    refuse("inputs", "inputs, functions or matrices over time with " + prepared.filter().name(),
            "a constant plant without B", "its agents drive plants of their own");
   if (model.inputs() == 0 && u.size() > 0)
     refuse("inputs", std::to_string(u.rows()) + " x " + std::to_string(u.cols()) + " numbers",
@@ -39,16 +53,24 @@ void require_course(const Prepared& prepared, const RunOptions& options, int ste
     refuse("inputs", u.size() == 0 ? "none" : std::to_string(u.rows()) + " x " + std::to_string(u.cols()),
            std::to_string(steps) + " x " + std::to_string(model.inputs()) + ", because the model has B",
            "row t is u(t), which leads from time t to t + 1");
+  if (options.nonlinear != nullptr) return require_nonlinear(prepared, options);
   if (options.series == nullptr) return;
   require_series(*options.series, model, steps);
   if (prepared.certificate() != nullptr) require_certifiable(*prepared.certificate(), *options.series);
   if (options.series->A.empty() && options.series->C.empty()) return;
-  prepared.require_varying();
+  prepared.require_varying("A or C that change in time");
 }
 
 Course::Course(const Model& model, const RunOptions& options) : model_(model), options_(options) {
-  if (model.inputs() == 0) return;
-  response_.emplace(model);
+  if (options.nonlinear != nullptr) {
+    functions_.emplace(*options.nonlinear, model, "the estimate");
+    identity_ = Matrix::Identity(model.states(), model.states());
+    predictions_.resize(model.states(), model.agents());
+  } else if (model.inputs() == 0) {
+    return;
+  } else {
+    response_.emplace(model);
+  }
   stacked_ = model.stacked();
   added_ = Vector::Zero(model.total_outputs());
   rest_.resize(static_cast<std::size_t>(model.total_outputs()));
@@ -61,10 +83,27 @@ const Matrix& Course::rows() const {
 
 void Course::enter(int t, Runner& runner) {
   enter(t);
+  if (functions_) return linearise(runner);
   const Series* series = options_.series.get();
   if (series == nullptr || (series->A.empty() && series->C.empty())) return;
   const auto at = static_cast<std::size_t>(t - 1);
   runner.vary(series->A.empty() ? nullptr : &series->A[at], series->C.empty() ? nullptr : &series->C[at]);
+}
+
+void Course::linearise(Runner& runner) {
+  runner.estimates(predictions_);
+  predictions_ = functions_->moved(predictions_, options_.inputs, t_ - 1);
+  const Matrix C = functions_->rows(predictions_, t_);
+  added_ = functions_->measured(predictions_, t_);
+  runner.place(predictions_);
+  runner.vary(&identity_, &C);
+  for (int i = 0; i < model_.agents(); ++i)
+    for (int r = model_.offset(i); r < model_.offset(i) + model_.outputs(i); ++r) {
+      double seen = 0.0;  // in the order in which filters sum it: a linear h leaves no rounding
+      for (int k = 0; k < model_.states(); ++k) seen += C(r, k) * predictions_(k, i);
+      added_(r) -= seen;
+      longest_ = std::max(longest_, C.row(r).norm());
+    }
 }
 
 void Course::enter(int t) {
@@ -78,17 +117,23 @@ void Course::enter(int t) {
 }
 
 std::span<const double> Course::without(std::span<const double> y) {
-  if (!response_) return y;
+  if (rest_.empty()) return y;
   for (std::size_t k = 0; k < y.size(); ++k) rest_[k] = y[k] - added_(static_cast<Eigen::Index>(k));
   return rest_;
 }
 
 void Course::add(int agent, double* y) const {
-  if (!response_) return;
+  if (rest_.empty()) return;
   for (int r = 0; r < model_.outputs(agent); ++r) y[r] += added_(model_.offset(agent) + r);
 }
 
 std::string Course::doubt() const {
+  constexpr double kOvershoots = 1.5;  // x + c'(y - c x) moves away from where y = c x once |c|^2 > 2
+  if (longest_ > kOvershoots)
+    return "Rows of dh/dx are up to " + text(longest_) +
+           " long; an update with a row longer than 1.41 overshoots, and estimates may diverge: divide that "
+           "output "
+           "of h, its measurements and their noise by its length.";
   constexpr double kMuch = 1e9;  // leaves 1e-7 of double precision
   if (!(largest_ > kMuch)) return {};
   return "The response to the known inputs alone reaches " + text(largest_) +

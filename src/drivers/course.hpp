@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "functions.hpp"
 #include "garrison/core/response.hpp"
 #include "garrison/drivers/simulate.hpp"
 
@@ -20,30 +21,38 @@ class Course {
   Course(const Model& model, const RunOptions& options);
 
   /// Nothing is known but the model.
-  bool plain() const { return !response_ && options_.series == nullptr; }
+  bool plain() const { return !response_ && !functions_ && options_.series == nullptr; }
   /// Moves to sample t >= 1 and tells the network what has changed.
   void enter(int t, Runner& runner);
   /// Moves to sample t >= 1 where A and C do not change.
   void enter(int t);
   /// What the response to the inputs adds to every estimate at the present sample; null = nothing.
   const double* shift() const { return response_ ? response_->state().data() : nullptr; }
-  /// Measurements without what the inputs add to them; `y` itself where there are none.
+  /// Measurements without what the inputs add to them, or those that a linear plant would have given where
+  /// the plant is nonlinear; `y` itself where they are the same.
   std::span<const double> without(std::span<const double> y);
-  /// Adds to measurements of one agent, n_i numbers, what the inputs add to them.
+  /// Adds to measurements of one agent, n_i numbers, what `without` takes away.
   void add(int agent, double* y) const;
-  /// Digits that double precision leaves of a response of this size are told in words; empty = enough.
+  /// What is wrong with a response of this size, or with rows of this length, in words; empty = nothing.
   std::string doubt() const;
 
  private:
   const Matrix& rows() const;
+  /// Puts every agent at f of its own estimate, and tells it the rows of h there: with A = I its prediction
+  /// is f(xhat_i), and its innovation y_i - h_i(f(xhat_i)).
+  void linearise(Runner& runner);
 
   const Model& model_;
   const RunOptions& options_;
   std::optional<Response> response_;
   Matrix stacked_;
-  Vector added_;  // C s at the present sample
+  Vector added_;  // at the present sample: C s, or h_i(x_i) - C_i x_i of every agent
   std::vector<double> rest_;
   double largest_ = 0.0;
+  std::optional<Functions> functions_;
+  Matrix identity_;
+  Matrix predictions_;    // n x N
+  double longest_ = 0.0;  // row of h so far
   int t_ = 0;
 };
 

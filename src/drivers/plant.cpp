@@ -2,8 +2,10 @@
 #include "plant.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/solvers.hpp"
+#include "functions.hpp"
 #include "garrison/core/params.hpp"
 #include "garrison/core/response.hpp"
 
@@ -32,7 +34,9 @@ class Simulated final : public Source {
         C_(model.stacked()),
         x_(plant.x0.size() == 0 ? Vector::Zero(model.states()) : plant.x0),
         w_(Vector::Zero(model.states())),
-        next_(model.states()) {}
+        next_(model.states()) {
+    if (options.nonlinear != nullptr) functions_.emplace(*options.nonlinear, model, "the true state");
+  }
 
   Matrix start(const Matrix& given) const override {
     Vector shift(model_.states());
@@ -42,6 +46,7 @@ class Simulated final : public Source {
   const double* truth() const override { return x_.data(); }
   void next(std::int64_t t, std::span<double> y) override {
     law_.process(process_, t - 1, w_);
+    if (functions_) return by_functions(static_cast<int>(t), y);
     if (options_.series == nullptr && model_.inputs() == 0)
       next_.noalias() = model_.A() * x_;
     else
@@ -53,6 +58,12 @@ class Simulated final : public Source {
   }
 
  private:
+  void by_functions(int t, std::span<double> y) {
+    x_ = functions_->moved(x_, options_.inputs, t - 1) + w_;
+    const Vector seen = functions_->measured(x_.replicate(1, model_.agents()), t);
+    std::copy_n(seen.data(), y.size(), y.begin());
+    law_.measurement(measurement_, t, y);
+  }
   Vector moved(int t) const {
     static const Series constant;
     const Series& series = options_.series == nullptr ? constant : *options_.series;
@@ -75,6 +86,7 @@ class Simulated final : public Source {
   Vector x_;
   Vector w_;
   Vector next_;
+  std::optional<Functions> functions_;
 };
 
 class Recorded final : public Source {

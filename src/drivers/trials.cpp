@@ -143,7 +143,7 @@ bool fit_side_by_side(const RunOptions& options) {
   if (!options.message_attacks.empty() || options.link.drop > 0.0 || options.link.delay > 0.0) return false;
   for (const Attack& attack : options.attacks)
     if (attack->closed_loop()) return false;
-  return options.series == nullptr;
+  return options.series == nullptr && options.nonlinear == nullptr;
 }
 
 void require_run(const Prepared& prepared, const RunOptions& options) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/spectrum.hpp"
+#include "garrison/kernel/differences.hpp"
 #include "kalman_estimate.hpp"
 
 namespace garrison {
@@ -46,7 +47,7 @@ void require(const NonlinearPlant& plant, const MatrixRef& y, const VectorRef& x
 Matrix central_differences(const std::function<Vector(const Vector&)>& g, const Vector& x) {
   Matrix all;
   for (Index k = 0; k < x.size(); ++k) {
-    const double step = std::cbrt(0x1p-52) * std::max(1.0, std::abs(x(k)));
+    const double step = difference_step(x(k));
     Vector up = x;
     Vector down = x;
     up(k) += step;

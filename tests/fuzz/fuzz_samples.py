@@ -87,6 +87,9 @@ def samples() -> dict[str, list[Any]]:
         "weights": [weights],
         "AgentInfo": [_agent_info(model, network)],
         "VaryingModel": [gr.VaryingModel(model, A=np.repeat(np.asarray(model.A)[None], 3, axis=0))],
+        "NonlinearModel": [
+            gr.NonlinearModel(lambda X, u, t: 0.9 * X, lambda X, t: X[:, 0], states=2, outputs=[1] * model.agents)
+        ],
         "VaryingNetwork": [gr.VaryingNetwork([network] * 3)],
         "Response": [_core.Response(gr.Model([[0.5]], [[1.0]], B=[[1.0]]))],
         "Autoregression": [_core.autoregress(wind, np.zeros((900, 0)), order=1)],

@@ -9,6 +9,7 @@
 
 #include "garrison/attacks/measurement.hpp"
 #include "garrison/core/series.hpp"
+#include "garrison/drivers/nonlinear.hpp"
 #include "garrison/drivers/record.hpp"
 #include "garrison/engine/any_filter.hpp"
 
@@ -46,6 +47,9 @@ struct GARRISON_EXPORT RunOptions {
   /// docs/adr/0016.
   Matrix inputs;
   std::shared_ptr<const Series> series;  ///< what of the plant changes in time; null = nothing
+  /// The plant by functions, in place of the model's A, B and C; null = it is linear. Every agent works with
+  /// its own linearisation, of h about its own f(xhat_i): docs/adr/0016. No bound.
+  std::shared_ptr<const Nonlinear> nonlinear;
   Keep keep;
   /// Called now and then with the number of finished samples and their total; false stops the run.
   std::function<bool(std::int64_t, std::int64_t)> progress;

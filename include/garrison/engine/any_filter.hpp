@@ -38,9 +38,9 @@ class GARRISON_EXPORT Prepared {
   virtual void check_log(std::span<const double> measurements) const = 0;
   /// @throws InvalidInput when there is no such agent
   virtual std::unique_ptr<Agent> agent(int id) const = 0;
-  /// Refuses a plant whose A or C changes in time, where the family is designed for a constant one.
-  /// @throws InvalidInput
-  virtual void require_varying() const = 0;
+  /// Refuses a plant whose A or C changes in time, or that is nonlinear (`what` says which), where the family
+  /// is designed for a constant one. @throws InvalidInput
+  virtual void require_varying(const std::string& what) const = 0;
   /// Several trials side by side, with the same bits as `runner`; null where the family has no such path.
   virtual std::unique_ptr<TrialsRunner> trials() const = 0;
   /// The plants that the agents drive, for one trial; null for families that watch one common plant.

@@ -72,6 +72,18 @@ class Engine final : public Runner {
     places_.vary(A, C);
     rows_ = C;
   }
+  void estimates(Matrix& out) const override {
+    batch_.settle();
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      out.col(places_.id(k)) = F::template estimate<n>(states_[k]);
+  }
+  void place(const Matrix& estimates) override {
+    batch_.release();
+    if constexpr (requires(State& s) { F::template averaged<n>(s); })
+      for (std::size_t k = 0; k < states_.size(); ++k)
+        std::copy_n(estimates.col(places_.id(k)).data(), estimates.rows(),
+                    F::template averaged<n>(states_[k]));
+  }
 
   void step(std::int64_t t, const double* y) override {
     if (certified_) certified_->begin(t, y, rows_);

@@ -77,11 +77,11 @@ class PreparedOf final : public Prepared {
              "at most " + std::to_string(kMostRounds) + " for agents on their own");
     return agent_of<F>(part(id));
   }
-  void require_varying() const override {
+  void require_varying(const std::string& what) const override {
     std::string reason = "its gains are designed for one A and C";
     if constexpr (requires { F::needs_constant(*gains_); }) reason = F::needs_constant(*gains_);
     if (!reason.empty())
-      refuse("model", "A or C that change in time", "a constant plant for " + std::string(F::name),
+      refuse("model", what, "a constant plant for " + std::string(F::name),
              reason + "; see docs/how-to/changing-plants.md");
   }
   std::unique_ptr<TrialsRunner> trials() const override {

@@ -45,6 +45,10 @@ class GARRISON_EXPORT Runner {
   /// Whether the network is told, before a sample, of an A or C (stacked) that differ from the model's: for
   /// families that can (Prepared::require_varying). Null = as before; `reset` goes back to the model's.
   virtual void vary(const Matrix* A, const Matrix* C) = 0;
+  /// Estimates of all agents, n x N in the order of public ids.
+  virtual void estimates(Matrix& out) const = 0;
+  /// Before a sample: puts others in their place; for the families that `vary` is for.
+  virtual void place(const Matrix& estimates) = 0;
   /// One sample: every agent senses, then all rounds. `y` has Model::total_outputs() entries, NaN = missing.
   virtual void step(std::int64_t t, const double* y) = 0;
   virtual void read(const Frame& frame) const = 0;

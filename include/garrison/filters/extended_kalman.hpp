@@ -28,8 +28,7 @@ GARRISON_EXPORT Matrix extended_kalman(const NonlinearPlant& plant, const Matrix
                                        const VectorRef& x0, const MatrixRef& P0, const MatrixRef& inputs,
                                        const Screen& screen = {});
 
-/// Derivative of g at x by central differences, with steps of the cube root of the precision times max(1,
-/// |x_k|).
+/// Derivative of g at x by central differences (kernel/differences.hpp).
 GARRISON_EXPORT Matrix central_differences(const std::function<Vector(const Vector&)>& g, const Vector& x);
 
 }  // namespace garrison

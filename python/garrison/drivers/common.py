@@ -86,10 +86,10 @@ def designed(
     return design
 
 
-def threads_of(filter: _core.Filter, attacks: list[_core.Attack], threads: int) -> int:
-    """Python code runs in one thread: a filter or an attack of one's own need not be thread-safe."""
+def threads_of(filter: _core.Filter, attacks: list[_core.Attack], threads: int, changes: dict[str, Any]) -> int:
+    """Python code runs in one thread: a filter, an attack or a plant of one's own need not be thread-safe."""
     found = arguments.whole("threads", threads, 0)
-    return 1 if filter.own or any(attack.own for attack in attacks) else found
+    return 1 if filter.own or changes["functions"] or any(attack.own for attack in attacks) else found
 
 
 def recorded(
@@ -104,24 +104,26 @@ def recorded(
     steps: int,
 ) -> Run:
     """The run of what a driver recorded, with warnings of all that speaks against it."""
-    series = known["series"]
+    series, functions = known["series"], bool(known["functions"])
     sources = list(dict.fromkeys(sources_of(model)))
     named = [(k, t, [[sources[j] for j in some] for some in sets]) for k, t, sets in data["proved"]]
     doubted = data["doubted"]
     data = {key: value for key, value in data.items() if key != "doubted"} | {"proved": named}
     run = Run(data | ({"inputs": known["inputs"]} if model.inputs else {}), model, network, filter, series)
-    if conditions and not series:
+    if conditions and not series and not functions:
         run.warnings[:0] = doubts.of_conditions(model, network, filter)
     if "A" in series or "C" in series:
         run.warnings.append("the plant changes in time: no theorem and no condition of a filter covers it")
-    driven = "C" in series or family_of(filter).own_plants  # where rows of zeros are meant
+    if functions:
+        run.warnings.append("the plant is nonlinear: no theorem and no condition of a filter covers it")
+    driven = functions or "C" in series or family_of(filter).own_plants  # where rows of zeros are meant
     run.warnings += [] if driven else doubts.of_blind(model)
     run.warnings += refuted.of_sources(model, filter)
     run.warnings += doubts.of_attacks(attacks, steps)
     run.warnings += doubts.of_alarms(filter, steps)
     run.warnings += doubts.of_losses(run.bound, run.verdict, run.counters)
     quiet = max((a.start for a in attacks), default=0)
-    if "C" not in series:
+    if "C" not in series and not functions:
         u = known["inputs"]
         run.warnings += refuted.of_bounds(
             model,
@@ -132,9 +134,10 @@ def recorded(
             constant=not series and bool(not model.inputs or len(u)),
         )
     names = refuted.Names(list(network.names), sources, list(model.state_names))
-    run.warnings += refuted.of_memory(doubted, run.shape, (design.certificate or {}).get("failure", 0.0), names)
+    size = (data["trials"], steps + 1, model.agents)  # of the run, whatever of it is kept
+    run.warnings += refuted.of_memory(doubted, size, (design.certificate or {}).get("failure", 0.0), names)
     run.warnings += refuted.of_rate(filter, run.statistic, run.threshold)
-    run.warnings += [] if "A" in series else doubts.of_divergence(model, run.estimate, run.error, quiet)
+    run.warnings += [] if functions or "A" in series else doubts.of_divergence(model, run.estimate, run.error, quiet)
     return run
 
 
@@ -158,8 +161,10 @@ def made_of(
     kept: Kept,
     design: _core.Design,
     conditions: bool,
+    known: dict[str, Any],
 ) -> dict[str, Any]:
     """Arguments of both drivers as plain data, for `again`."""
     made = {"trials": trials, "first_trial": first_trial, "seed": int(seed), "start": plain_data(start), "link": links}
     made["conditions"] = conditions
+    made |= {"functions": True} if known["functions"] else {}
     return made | {"keep": kept.said, "attack": [described_attack(a) for a in attacks]} | dict(design.certificate or {})

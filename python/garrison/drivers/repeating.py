@@ -24,7 +24,7 @@ def again(run: Run) -> Run:
     Raises
     ------
     InvalidInput
-        The measurements are missing, or an attack was written in Python.
+        The measurements are missing, or an attack or the plant was written in Python.
     """
     if not isinstance(run, Run):
         raise refusal("again", f"a {type(run).__name__}", "a garrison.Run")

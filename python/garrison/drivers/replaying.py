@@ -24,18 +24,19 @@ from garrison.drivers.common import (
     with_recipe,
 )
 from garrison.drivers.keeping import KEEP, Keep, kept
+from garrison.nonlinear import NonlinearModel, require_taken, split
 from garrison.numeric import matched, numbers, output_names
 from garrison.record import Run
 from garrison.store import written
 from garrison.stored import stored
-from garrison.varying import Inputs, VaryingModel, inputs_of, parted
+from garrison.varying import Inputs, VaryingModel, inputs_of
 from garrison.varying_network import VaryingNetwork, links_of
 from garrison.words import hinted, require_order
 
 
 @hinted
 def replay(
-    model: _core.Model | VaryingModel,
+    model: _core.Model | VaryingModel | NonlinearModel,
     network: _core.Network | VaryingNetwork,
     filter: _core.Filter,
     *,
@@ -64,7 +65,7 @@ def replay(
 
     Parameters
     ----------
-    model : Model or VaryingModel
+    model : Model, VaryingModel or NonlinearModel
         The plant and its sensors.
     network : Network or VaryingNetwork
         Who hears whom.
@@ -107,7 +108,7 @@ def replay(
         run is over: one that fails or is interrupted leaves what was there.
     threads : int
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
-        (garrison.Filter, garrison.attacks.custom) always run in one.
+        (garrison.Filter, garrison.attacks.custom), and plants by functions, always run in one.
     progress : callable, optional
         progress(done, total) is called at most once per percent of the samples. The design before them tells of its own
         progress in `prepare`, whose result runs, too.
@@ -139,7 +140,7 @@ def replay(
     InvalidInput
         Something does not fit; the message says which, and what was expected.
     """
-    base, series = parted(model)
+    base, changes = split(model)
     plain = network.network if isinstance(network, VaryingNetwork) else network
     require_order("replay", base, plain, filter)
     names = output_names(base, plain)
@@ -149,8 +150,9 @@ def replay(
     attacks, keeping = run_options.attacks(attack), kept(keep)
     samples = y.shape[-2] if y.ndim >= 2 else 0
     ground, links = links_of(network, run_options.link(link), samples)
+    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples)} | changes
+    require_taken(filter, attacks, known["functions"], certificate)
     path = destination(to, keeping, base, ground, filter)
-    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, samples), "series": series}
     if path is None:
         require_room(base, filter, keeping, trials, samples, certificate != "none" or design is not None)
     with written(path, base, filter, trials, keeping.every) as store:
@@ -162,7 +164,7 @@ def replay(
             trials=trials,
             first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
             seed=arguments.whole("seed", seed, 0, 2**64 - 1),
-            threads=threads_of(filter, attacks, threads),
+            threads=threads_of(filter, attacks, threads, changes),
             start=None if start is None else arguments.table("start", start),
             attacks=attacks,
             link=links,
@@ -176,6 +178,6 @@ def replay(
         run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))
         if keeping.logs and any(a.target == "measurement" for a in attacks):
             run.log = np.array(y if y.ndim == 3 else y[None])
-        both = made_of(trials, first_trial, seed, start, attacks, links, keeping, design, wanted)
+        both = made_of(trials, first_trial, seed, start, attacks, links, keeping, design, wanted, known)
         run = with_recipe(run, {"driver": "replay"} | both, store)
     return run if path is None else stored(path)

@@ -24,19 +24,20 @@ from garrison.drivers.common import (
     with_recipe,
 )
 from garrison.drivers.keeping import KEEP, Keep, kept
+from garrison.nonlinear import NonlinearModel, require_taken, split
 from garrison.numeric import numbers
 from garrison.objects import plain_data
 from garrison.record import Run
 from garrison.store import written
 from garrison.stored import stored
-from garrison.varying import Inputs, VaryingModel, inputs_of, parted
+from garrison.varying import Inputs, VaryingModel, inputs_of
 from garrison.varying_network import VaryingNetwork, links_of
 from garrison.words import hinted, require_order
 
 
 @hinted
 def simulate(
-    model: _core.Model | VaryingModel,
+    model: _core.Model | VaryingModel | NonlinearModel,
     network: _core.Network | VaryingNetwork,
     filter: _core.Filter,
     *,
@@ -67,7 +68,7 @@ def simulate(
 
     Parameters
     ----------
-    model : Model or VaryingModel
+    model : Model, VaryingModel or NonlinearModel
         The plant and its sensors.
     network : Network or VaryingNetwork
         Who hears whom.
@@ -117,7 +118,7 @@ def simulate(
         run is over: one that fails or is interrupted leaves what was there.
     threads : int
         0 = all cores it may use; the result does not depend on it. Filters and attacks of your own
-        (garrison.Filter, garrison.attacks.custom) always run in one.
+        (garrison.Filter, garrison.attacks.custom), and plants by functions, always run in one.
     progress : callable, optional
         progress(done, total) is called at most once per percent of the samples. The design before them tells of its own
         progress in `prepare`, whose result runs, too.
@@ -150,12 +151,13 @@ def simulate(
         Something does not fit; the message says which, and what was expected.
     """
     steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
-    base, series = parted(model)
+    base, changes = split(model)
     ground, links = links_of(network, run_options.link(link), steps)
     require_order("simulate", base, ground, filter)
-    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, steps), "series": series}
+    known: dict[str, Any] = {"inputs": inputs_of(base, inputs, steps)} | changes
     wanted = arguments.flag("conditions", conditions)
     attacks, keeping = run_options.attacks(attack), kept(keep)
+    require_taken(filter, attacks, known["functions"], certificate)
     path = destination(to, keeping, base, ground, filter)
     if path is None:
         require_room(base, filter, keeping, trials, steps, certificate != "none" or design is not None)
@@ -171,7 +173,7 @@ def simulate(
             trials=trials,
             first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
             seed=arguments.whole("seed", seed, 0, 2**64 - 1),
-            threads=threads_of(filter, attacks, threads),
+            threads=threads_of(filter, attacks, threads, changes),
             start=None if start is None else arguments.table("start", start),
             attacks=attacks,
             link=links,
@@ -190,6 +192,6 @@ def simulate(
             "start_error": float(start_error),
             "noise": drawn,
         }
-        both = made_of(trials, first_trial, seed, start, attacks, links, keeping, design, wanted)
+        both = made_of(trials, first_trial, seed, start, attacks, links, keeping, design, wanted, known)
         run = with_recipe(run, own | both, store)
     return run if path is None else stored(path)

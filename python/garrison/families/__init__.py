@@ -13,14 +13,22 @@ def _never(params: dict[str, Any]) -> bool:
     return False
 
 
+def _promises(params: dict[str, Any]) -> str:
+    """What of the saturation filter rests on theorems for linear plants."""
+    asked = [name for name in ("initial_error", "detector", "adaptive", "table", "recovery") if params[name]]
+    asked = [name for name in asked if params[name] == params[name]]  # nan: not known
+    return f"{', '.join(asked)} rest on theorems for linear plants" if asked else ""
+
+
 _SATURATION = Family(
     accuses=lambda params: bool(params["detector"]),
     proves=True,
     contest=lambda liars, threshold: {"threshold": threshold, "rounds": 6, "attacked": liars},
+    linear=_promises,
 )
 _FAMILIES = {
     "saturation": _SATURATION,
-    "scalar_gain": Family(accuses=_never, contest=lambda liars, threshold: {"rounds": 6}),
+    "scalar_gain": Family(accuses=_never, contest=lambda liars, threshold: {"rounds": 6}, linear=lambda params: ""),
     "lfre": Family(accuses=_never, contest=lambda liars, threshold: {"faulty": liars}),
     "partial_sharing": Family(accuses=_never, contest=lambda liars, threshold: {"gain": 0.1}),
     "structural": Family(accuses=lambda params: True, contest=lambda liars, threshold: {"isolate": True}),

@@ -9,6 +9,10 @@ def _as_it_comes(liars: int, threshold: float) -> dict[str, Any]:
     return {}
 
 
+def _designed(params: dict[str, Any]) -> str:
+    return "its gains are designed for one A and C"
+
+
 @dataclass(frozen=True)
 class Family:
     """Answers of one family. accuses: filters with these parameters may accuse sensors; None: their runs show it.
@@ -16,7 +20,8 @@ class Family:
     proves: an accusation is a proof under the filter's assumptions (else an alarm, false at a chosen rate).
     own_plants: every agent drives a plant of its own, states have an agent axis. picture: name of the figure of a run
     in garrison.figures. contest: parameters in a comparison with so many liars; threshold: what clean innovations stay
-    below. least_attacked: the fewest liars that its parameter `attacked` takes.
+    below. least_attacked: the fewest liars that its parameter `attacked` takes. linear: why, with these parameters, the
+    plant has to be linear; empty: it need not.
     """
 
     accuses: Callable[[dict[str, Any]], bool] | None = None
@@ -25,3 +30,4 @@ class Family:
     picture: str = "network"
     contest: Callable[[int, float], dict[str, Any]] = _as_it_comes
     least_attacked: int = 0
+    linear: Callable[[dict[str, Any]], str] = _designed
