@@ -83,7 +83,8 @@ MEANINGS = {
     "link": {
         "drop": "probability that a message is lost",
         "delay": "probability that it is late",
-        "delay_rounds": "how many rounds a late message is late, >= 1; needs delay",
+        "delay_rounds": "how many rounds a late message is late, >= 1; its receiver has ended the round by then, so "
+        "that for estimates it is lost",
     },
     "certificate": {
         "spread": '"none"; "local": from the measurements of an agent and its neighbours; '
@@ -109,6 +110,6 @@ MEANINGS = {
         "threads": "0: as many as there are processors; the result does not depend on it",
         "x0": "state at time 0",
         "start": "estimate at time 0: one for all agents, or one row per agent",
-        "start_error": "standard deviation of random errors that are added to the start",
+        "start_error": "the start of every trial is moved by a random vector of at most this length (0)",
     },
 }

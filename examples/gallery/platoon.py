@@ -11,5 +11,12 @@ from garrison.scenario import read_scenario
 
 examples = Path(__file__).parents[1]
 string = read_scenario(examples / "platoon/spoofed.toml")
-run = gr.simulate(string.model, string.network, string.filters[0][1], attack=string.attacks, **string.run)
+run = gr.simulate(
+    string.model,
+    string.network,
+    string.filters[0][1],
+    attack=string.attacks,
+    keep=("estimate", "report", "measurements", "details", "signals"),
+    **string.run,
+)
 figure = run.plot()

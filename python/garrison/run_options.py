@@ -5,7 +5,7 @@ from typing import Any
 
 from garrison import _core
 from garrison.arguments import chance, entries, flag, number, whole
-from garrison.words import only, refusal, shown
+from garrison.words import near, only, refusal, shown
 
 #: of a row of `link`
 _LEAST = 1 - 2**31
@@ -32,6 +32,8 @@ def certificate(
     """What to certify: `attacked` is the filter's own where it has one."""
     if not isinstance(name, str):
         raise refusal("certificate", shown(name), ONE_SPREAD)
+    if name not in SPREADS:
+        raise refusal("certificate", repr(name), ONE_SPREAD, near(name, list(SPREADS)))
     out: dict[str, Any] = {"certificate": name, "failure": chance("failure", failure)}
     if attacked is not None:
         out["attacked"] = whole("attacked", attacked, 0)

@@ -131,19 +131,20 @@ def of_filter(model: _core.Model, network: _core.Network, filter: _core.Filter, 
         return None
     needs = "all required conditions of `garrison check`, with the parameters given"
     least, last, failed = family_of(filter).least_attacked, -1, ""
+    # More liars may be easier: a threshold that is too small for few is right for more, and "at most five" covers none.
     for attacked in range(least, model.agents + 1):
         if budget.over:
             return Limit(_titled(filter), max(last, 0), None, needs, LATE)
         try:
             found = check(model, network, make_filter(filter.name, filter.params | {"attacked": attacked}))
         except _core.InvalidInput as refused:
-            failed = str(refused)
+            failed = failed or str(refused)
             break
-        if not found.holds:
-            failed = "; ".join(c["name"] for c in found.failed)
-            break
-        last = attacked
-    else:
+        if found.holds:
+            last, failed = attacked, ""
+        else:
+            failed = failed or "; ".join(c["name"] for c in found.failed)
+    if not failed:
         return None
     return Limit(_titled(filter), max(last, 0), last + 1 if last >= 0 else 0, needs, f"not met: {failed}")
 

@@ -33,6 +33,10 @@ _NOTES = [
     "go into [data] file, one column per measurement in the order of outputs in model.json",
     "garrison analyze tells how many measurements may lie, which are necessary, and where the next one helps most",
 ]
+_UNSEEN = (
+    "nobody estimates the buses that no unit sees, so the filter is plain consensus (Kalman gains do not exist); "
+    "garrison analyze says which units would show them"
+)
 
 
 @dataclass(frozen=True)
@@ -86,26 +90,29 @@ def import_pandapower(
         units=dict.fromkeys([*states, *outputs], "rad"),
     )
     angles = [float(v) for v in grid.angles]
+    unseen = [grid.names[b] for b in np.flatnonzero(~np.any([(c != 0).any(axis=0) for c in C], axis=0))]
     tables = {
         "title": f"{grid.title}: {n} buses, {count(sum(map(len, members)), 'phasor unit')}",
         "model": {"file": "model.json"},
         "network": {"edges": [list(e) for e in links_of(grid, members)]},
-        "filter": _filter(n, max(map(len, C))),
+        "filter": _filter(n, max(map(len, C)), detected=not unseen),
         "run": {"steps": assumed.steps or (50 if n <= _MIDDLE else 10), "x0": angles, "start": angles},
     }
-    unseen = [grid.names[b] for b in np.flatnonzero(~np.any([(c != 0).any(axis=0) for c in C], axis=0))]
     facts = [
         ("buses, branches", f"{n}, {len(grid.branches)}"),
         ("phasor units", f"{sum(map(len, members))} with {len(outputs)} measurements"),
         ("agents", f"{len(members)}: {', '.join(agents[:6])}{', ..' if len(agents) > 6 else ''}"),
-        ("buses that no unit sees", ", ".join(unseen[:20]) or "none"),
+        ("buses that no unit sees", f"{len(unseen)}: {', '.join(unseen[:20])}" if unseen else "none"),
     ]
-    return Bundle(tables, SOURCE, None, model, facts, _NOTES)
+    return Bundle(tables, SOURCE, None, model, facts, [*_NOTES, *([_UNSEEN] if unseen else [])])
 
 
-def _filter(n: int, rows: int) -> dict[str, Any]:
-    """The filter of n buses; rows: measurements of the largest agent, whose whole innovation is clipped at once."""
-    if n <= _MIDDLE:
+def _filter(n: int, rows: int, *, detected: bool) -> dict[str, Any]:
+    """The filter of n buses; rows: measurements of the largest agent, whose whole innovation is clipped at once.
+
+    detected: units see all buses, as Kalman gains need.
+    """
+    if n <= _MIDDLE and detected:
         weight = round(_SIGMAS * float(np.sqrt(rows)), 1)
         return {"name": "rdkf", "label": "resilient Kalman", "penalty": "huber", "weight": weight}
     return {"name": "scalar_gain", "label": "consensus, unprotected", "rounds": 5}

@@ -1,6 +1,7 @@
 """Files of cells with lines about the recording above the header."""
 
 import gzip
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -64,8 +65,8 @@ def bytes_of(path: Path, expected: str) -> bytes:
     try:
         data = contents(path)
         return gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data
-    except OSError as error:
-        what = error.strerror or "a damaged gzip file"
+    except (OSError, zlib.error) as error:
+        what = getattr(error, "strerror", None) or "a damaged gzip file"
         raise _core.IoError(f"{path}: got {what}, expected {expected}") from None
     except EOFError:
         raise _core.IoError(f"{path}: got a gzip file that ends early, expected {expected}") from None
