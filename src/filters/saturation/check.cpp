@@ -77,7 +77,9 @@ std::string remedy11(const Matrix& C, int attacked) {
 
 /// What to do when (9) fails.
 std::string remedy9(const Setting& s, const FixedPoints& points, const Interval& thresholds) {
-  if (!std::isnan(points.lo) && s.eta0 < points.lo) return "raise initial_error to " + rounded_up(points.lo);
+  constexpr double kFar = 1e3;  // a start that far off is nobody's: then the threshold is what is too small
+  if (!std::isnan(points.lo) && s.eta0 < points.lo && points.lo <= kFar * s.eta0)
+    return "raise initial_error to " + rounded_up(points.lo);
   if (!std::isnan(thresholds.lo))
     return "choose a threshold from " + text(thresholds.lo) + " to " + text(thresholds.hi);
   if (!std::isnan(points.hi) && s.eta0 > points.hi)
