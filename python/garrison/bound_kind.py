@@ -7,20 +7,48 @@ from garrison.words import Word
 
 
 class BoundKind(Word):
-    """The values of `Run.bound_kind`. Proofs: docs/certificates.md."""
+    """The values of `Run.bound_kind`. Proofs: docs/certificates.md.
 
-    NONE = 0  #: no certificate was asked for, and the filter promises nothing here
-    PUBLISHED = 1  #: the filter family's own
-    WITNESS = 2  #: the measurements of this sample that reached the agent
-    RELAYED = 3  #: what another agent, or an earlier sample, has shown
-    TABLE = 4  #: data-free
-    INFORMED = 5  #: data-free, all attackers are proved
-    RECOVERED = 6  #: the table, and what lost messages may have added to it
-    TOO_FEW = 7  #: none (inf): too few measurements reached the agent, in this sample and all before
-    REFUTED = 8  #: none (nan): the data contradict "at most so many are attacked"
-    LIARS = 9  #: none (nan): agents lie in their messages, and bounds rest on what they say
-    VARYING = 10  #: none (nan): A or C changes in time or the plant is nonlinear; theorems need a constant linear one
-    MEMORY = 11  #: all measurements that reached the agent so far
+    Attributes
+    ----------
+    NONE : 0
+        No certificate was asked for, and the filter promises nothing here.
+    PUBLISHED : 1
+        The filter family's own.
+    WITNESS : 2
+        The measurements of this sample that reached the agent.
+    RELAYED : 3
+        What another agent, or an earlier sample, has shown.
+    TABLE : 4
+        Data-free.
+    INFORMED : 5
+        Data-free, all attackers are proved.
+    RECOVERED : 6
+        The table, and what lost messages may have added to it.
+    TOO_FEW : 7
+        None (inf): too few measurements reached the agent, in this sample and all before.
+    REFUTED : 8
+        None (nan): the data contradict "at most so many are attacked".
+    LIARS : 9
+        None (nan): agents lie in their messages, and bounds rest on what they say.
+    VARYING : 10
+        None (nan): A or C changes in time or the plant is nonlinear; theorems need a constant linear one.
+    MEMORY : 11
+        All measurements that reached the agent so far.
+    """
+
+    NONE = 0
+    PUBLISHED = 1
+    WITNESS = 2
+    RELAYED = 3
+    TABLE = 4
+    INFORMED = 5
+    RECOVERED = 6
+    TOO_FEW = 7
+    REFUTED = 8
+    LIARS = 9
+    VARYING = 10
+    MEMORY = 11
 
     @property
     def why(self) -> str:

@@ -4,10 +4,24 @@ from garrison.words import Word
 
 
 class Verdict(Word):
-    """The values of `Run.verdict`. NOT_TESTED never means cleared."""
+    """The values of `Run.verdict`. NOT_TESTED never means cleared.
 
-    CLEARED = 0  #: its measurement was used as it is
-    SUSPECTED = 1  #: its measurement was clipped, or a test was above its threshold once
-    ATTACKED = 2  #: the filter takes it for attacked and isolates it, or raises an alarm
-    SILENT = 3  #: it had no measurement: a relay, or lost
-    NOT_TESTED = 4  #: the filter could not, or does not, test it
+    Attributes
+    ----------
+    CLEARED : 0
+        Its measurement was used as it is.
+    SUSPECTED : 1
+        Its measurement was clipped, or a test was above its threshold once.
+    ATTACKED : 2
+        The filter takes it for attacked and isolates it, or raises an alarm.
+    SILENT : 3
+        It had no measurement: a relay, or lost.
+    NOT_TESTED : 4
+        The filter could not, or does not, test it.
+    """
+
+    CLEARED = 0
+    SUSPECTED = 1
+    ATTACKED = 2
+    SILENT = 3
+    NOT_TESTED = 4

@@ -85,6 +85,14 @@ def do(args: argparse.Namespace) -> int:
     return OK
 
 
+_LEGEND = (
+    "error: of honest agents' estimates, from the attack's start on. delay: samples until somebody is accused rightly "
+    "(median). false alarms: honest agents accused per trial, under all attacks, lies in messages too. bound share, "
+    "inside: samples with a bound, errors within it. bytes: of all messages of a sample. us: microseconds per agent "
+    "and sample. -: does not exist"
+)
+
+
 def _print(found: Comparison, full: bool) -> None:
     tail = ["bound share", "inside", "bytes", "us"]
     if full:
@@ -100,7 +108,9 @@ def _print(found: Comparison, full: bool) -> None:
         ]
         head = ["filter", "error 95 %, no attack", "worst lie in measurements", "", "worst lie in messages", ""]
         head += ["delay", "false alarms", *tail, ""]
-    print_table(found.title, head, rows, console_for())
+    console = console_for()
+    print_table(found.title, head, rows, console)
+    console.print(_LEGEND, markup=False)
 
 
 def _worst(row: dict[str, Any], kind: str) -> list[str]:
