@@ -134,8 +134,10 @@ void bind_agents(py::module_& m) {
           py::arg("data"), py::arg("snapshot") = py::none(),
           "The agent whose part of a design Prepared.part(id) wrote; nothing is designed.\n"
           "snapshot: of `save`; it goes on from there.")
-      .def_property_readonly("id", [](const PyAgent& a) { return a->id(); })
-      .def_property_readonly("family", [](const PyAgent& a) { return std::string(a->family()); })
+      .def_property_readonly(
+          "id", [](const PyAgent& a) { return a->id(); }, "Its number, 0..N-1.")
+      .def_property_readonly(
+          "family", [](const PyAgent& a) { return std::string(a->family()); }, "Name of the filter.")
       .def_property_readonly(
           "rounds", [](const PyAgent& a) { return a->rounds(); }, "Rounds per sample.")
       .def_property_readonly(
@@ -252,14 +254,21 @@ void bind_agents(py::module_& m) {
       .def_property_readonly(
           "resets", [](const PyAgent& a) { return a->resets(); },
           "How often the estimate was of no use and was taken anew from the neighbours.")
-      .def_property_readonly("bound", [](const PyAgent& a) { return a->report().bound; })
+      .def_property_readonly(
+          "bound", [](const PyAgent& a) { return a->report().bound; },
+          "On the error of its estimate, in the norm of the state; inf or nan: none, bound_kind says why.")
       .def_property_readonly(
           "bound_kind", [](const PyAgent& a) { return static_cast<int>(a->report().kind); },
           "Value of garrison.BoundKind: where the bound comes from, or why there is none.")
-      .def_property_readonly("statistic", [](const PyAgent& a) { return a->report().statistic; })
-      .def_property_readonly("threshold", [](const PyAgent& a) { return a->report().threshold; })
-      .def_property_readonly("verdict",
-                             [](const PyAgent& a) { return static_cast<int>(a->report().verdict); })
+      .def_property_readonly(
+          "statistic", [](const PyAgent& a) { return a->report().statistic; },
+          "Of the test of its own sensor; nan = not tested.")
+      .def_property_readonly(
+          "threshold", [](const PyAgent& a) { return a->report().threshold; },
+          "The level that the statistic is compared with; nan = not tested.")
+      .def_property_readonly(
+          "verdict", [](const PyAgent& a) { return static_cast<int>(a->report().verdict); },
+          "Value of garrison.Verdict, of its own sensor.")
       .def(
           "save", [](const PyAgent& a) { return to_python(a.snapshot()); },
           "A snapshot as bytes, between samples only; the agent that loads it goes on with the same bits.")

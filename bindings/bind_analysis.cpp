@@ -20,12 +20,12 @@ void bind_subsets(py::module_& m) {
   keep_fields<B>(bound, "garrison.SubsetBound", KeptField{"lower", &B::lower}, KeptField{"upper", &B::upper},
                  KeptField{"exact", &B::exact}, KeptField{"removed", &B::removed},
                  KeptField{"nodes", &B::nodes}, KeptField{"method", &B::method});
-  bound.def_readonly("lower", &SubsetBound::lower)
-      .def_readonly("upper", &SubsetBound::upper)
+  bound.def_readonly("lower", &SubsetBound::lower, "The value is at least this.")
+      .def_readonly("upper", &SubsetBound::upper, "And at most this; equal to lower: exact.")
       .def_readonly("exact", &SubsetBound::exact, "The search finished.")
       .def_readonly("removed", &SubsetBound::removed, "Worst set found, sorted.")
-      .def_readonly("nodes", &SubsetBound::nodes)
-      .def_readonly("method", &SubsetBound::method);
+      .def_readonly("nodes", &SubsetBound::nodes, "Sets, or parts of sets, that were looked at.")
+      .def_readonly("method", &SubsetBound::method, "How it was found, in words.");
   const SubsetLimits limits;
   m.def(
       "lambda0",

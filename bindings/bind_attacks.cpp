@@ -147,10 +147,11 @@ void bind_functions(py::module_& m) {
 void bind_attacks(py::module_& m) {
   py::class_<AnyAttack> attack(
       m, "Attack", "An attack with its schedule; made by the functions of garrison.attacks. Immutable.");
-  attack.def_readonly("name", &AnyAttack::name)
-      .def_property_readonly("target",
-                             [](const AnyAttack& a) { return a.message ? "message" : "measurement"; })
-      .def_property_readonly("params", &params_shown)
+  attack.def_readonly("name", &AnyAttack::name, "As in `garrison list`.")
+      .def_property_readonly(
+          "target", [](const AnyAttack& a) { return a.message ? "message" : "measurement"; },
+          "What it changes: \"measurement\" or \"message\".")
+      .def_property_readonly("params", &params_shown, "Parameters by name, those with defaults too.")
       .def_property_readonly(
           "own", [](const AnyAttack& a) { return own::is_own(a); }, "Its lies come from a Python function.")
       .def_property_readonly(
@@ -165,7 +166,9 @@ void bind_attacks(py::module_& m) {
       .def_property_readonly(
           "schedule", [](const AnyAttack& a) { return py::list(arguments(a)["schedule"]); },
           "(start, agents) phases.")
-      .def_property_readonly("probability", [](const AnyAttack& a) { return a.schedule().probability(); })
+      .def_property_readonly(
+          "probability", [](const AnyAttack& a) { return a.schedule().probability(); },
+          "Chance per sample that it acts, 0..1.")
       .def("__repr__", &code);
   keep(attack, arguments, attack_from);
   compare_arguments<AnyAttack>(attack, arguments);

@@ -106,16 +106,18 @@ void bind_regions(py::module_& m) {
       .def(py::init(&given_region), py::arg("center"), py::arg("radius"), py::arg("box") = py::none(),
            "center (n,), radius >= 0, box (n,) >= 0. Raises InvalidInput.")
       .def_property_readonly("center", &center_of, "(n,), None without an answer")
-      .def_readonly("radius", &Region::radius)
+      .def_readonly("radius", &Region::radius,
+                    "||x - center|| is at most this; inf = the rows at hand cannot answer, nan = the data "
+                    "refute the assumption.")
       .def_property_readonly("box", &box_of, "(n,), None where there is none")
       .def_property_readonly("shape", &shape_of, "(n, n), None where there is none")
-      .def_readonly("stretch", &Region::stretch)
+      .def_readonly("stretch", &Region::stretch, "(x - center)' shape^-1 (x - center) <= stretch^2.")
       .def_property_readonly("answered", &Region::answered, "radius is finite")
       .def_property_readonly("refuted", &Region::refuted, "radius is nan: more than s are attacked")
       .def("bound_around", &checked_bound_around, py::arg("estimate"),
            "Bound on ||estimate - x|| for any estimate (n,); inf without an answer, nan when refuted.");
   py::class_<Witness>(m, "Witness", "Answer of leverage_ball and witness_subsets.")
-      .def_readonly("region", &Witness::region)
+      .def_readonly("region", &Witness::region, "Where the state is.")
       .def_property_readonly(
           "center", [](const Witness& w) { return center_of(w.region); }, "region.center")
       .def_property_readonly(
@@ -220,13 +222,20 @@ void bind_system(py::module_& m) {
   py::class_<Kernels>(m, "Kernels",
                       "What k steps of the error system do: gb, ge (K, N, N), wb, we (K, N),\n"
                       "Rb, Re (K+1, N, N).")
-      .def_property_readonly("gb", [](const Kernels& k) { return stacked(k.gb); })
-      .def_property_readonly("ge", [](const Kernels& k) { return stacked(k.ge); })
-      .def_readonly("wb", &Kernels::wb)
-      .def_readonly("we", &Kernels::we)
-      .def_property_readonly("Rb", [](const Kernels& k) { return stacked(k.Rb); })
-      .def_property_readonly("Re", [](const Kernels& k) { return stacked(k.Re); })
-      .def_property_readonly("window", &Kernels::window);
+      .def_property_readonly(
+          "gb", [](const Kernels& k) { return stacked(k.gb); },
+          "(K, N, N): [k, i, l] = |block i of M^k B, column l|.")
+      .def_property_readonly(
+          "ge", [](const Kernels& k) { return stacked(k.ge); },
+          "(K, N, N): [k, j, l] = |C_j A (block j of M^k B, column l)|.")
+      .def_readonly("wb", &Kernels::wb, "(K, N): ||block i of M^k B_w||.")
+      .def_readonly("we", &Kernels::we, "(K, N): |C_j A (block j of M^k B_w)|.")
+      .def_property_readonly(
+          "Rb", [](const Kernels& k) { return stacked(k.Rb); }, "(K + 1, N, N): [k, i, l] = ||(M^k)_il||.")
+      .def_property_readonly(
+          "Re", [](const Kernels& k) { return stacked(k.Re); },
+          "(K + 1, N, N): [k, j, l] = |C_j A (M^k)_jl|.")
+      .def_property_readonly("window", &Kernels::window, "K, how many powers.");
   m.def("kernels", &kernels, py::arg("system"), py::arg("window"), py::call_guard<py::gil_scoped_release>(),
         "Kernels of K = window lags, best so many that Rb[K].sum(1) < 1e-3. Raises InvalidInput.");
 }
@@ -259,7 +268,8 @@ void bind_tables(py::module_& m) {
       "None = adaptive; fixed: the attacked set never changes. Raises InvalidInput.");
   py::class_<GaussianTable>(m, "GaussianTable",
                             "Table for Gaussian noise; d and eta without the noise itself.")
-      .def_readonly("table", &GaussianTable::table)
+      .def_readonly("table", &GaussianTable::table,
+                    "Bounds of the run, tested with the limit of the covariance.")
       .def_readonly("deviation", &GaussianTable::deviation,
                     "(T+1, N): sqrt of the largest eigenvalue of P_ii")
       .def("bound", &GaussianTable::bound, py::arg("t"), py::arg("delta"),

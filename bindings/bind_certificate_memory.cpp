@@ -130,14 +130,16 @@ void bind_window(py::module_& m) {
 
 void bind_answer(py::module_& m) {
   py::class_<WindowWitness>(m, "WindowWitness", "Answer of a certificate with memory.")
-      .def_readonly("region", &WindowWitness::region)
+      .def_readonly("region", &WindowWitness::region, "Where the state is.")
       .def_property_readonly(
           "center", [](const WindowWitness& w) { return of_region(w, &Region::center); },
           "(n,), None without an answer")
       .def_property_readonly(
           "shape", [](const WindowWitness& w) { return of_region(w, &Region::shape); },
           "(n, n): (x - center)' shape^-1 (x - center) <= stretch^2; None without an answer")
-      .def_property_readonly("stretch", [](const WindowWitness& w) { return w.region.stretch; })
+      .def_property_readonly(
+          "stretch", [](const WindowWitness& w) { return w.region.stretch; },
+          "(x - center)' shape^-1 (x - center) <= stretch^2.")
       .def_property_readonly(
           "box", [](const WindowWitness& w) { return of_region(w, &Region::box); },
           "(n,): |x_i - center_i| <= box_i; None without an answer")

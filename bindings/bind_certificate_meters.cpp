@@ -27,7 +27,7 @@ void bind_certificate_meters(py::module_& m) {
       "H (rows, n), divided by the deviations, reference removed; source (rows,). Raises InvalidInput.");
   py::class_<SmallestAttack>(m, "SmallestAttack", "The smallest set of meters that can lie unseen.")
       .def_readonly("size", &SmallestAttack::size, "None: none found")
-      .def_readonly("example", &SmallestAttack::example)
+      .def_readonly("example", &SmallestAttack::example, "Such a set of meters; empty = none was found.")
       .def_readonly("searched", &SmallestAttack::searched,
                     "no smaller one than this, or as large, for certain");
   m.def("smallest_undetectable", &smallest_undetectable, py::arg("H"), py::arg("most"),

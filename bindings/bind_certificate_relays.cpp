@@ -118,9 +118,10 @@ void bind_certificate_relays(py::module_& m) {
            py::arg("bv"))
       .def("step", &TwoNumbers::step, py::arg("gamma"), "One step; returns the bound. Raises InvalidInput.")
       .def_property_readonly("levels", &TwoNumbers::levels, "(N,): adaptive levels of the coming step")
-      .def_property_readonly("rho", &TwoNumbers::rho)
-      .def_property_readonly("p", &TwoNumbers::p)
-      .def_property_readonly("bound", &TwoNumbers::bound)
+      .def_property_readonly("rho", &TwoNumbers::rho, "Bound on the mean of the errors.")
+      .def_property_readonly("p", &TwoNumbers::p, "Bound on their deviations from the mean.")
+      .def_property_readonly("bound", &TwoNumbers::bound,
+                             "On the error of every agent: rho and its share of p; inf = none.")
       .def_property_readonly("constants", [](const TwoNumbers& x) {
         const auto& k = x.constants();
         return py::dict(py::arg("c") = k.c, py::arg("cw") = k.cw, py::arg("tau") = k.tau,

@@ -159,8 +159,9 @@ void bind_filters(py::module_& m) {
       .def(py::pickle(
           [](const FilterHandle& f) { return params_shown(f); },
           [make_own](const py::dict& attributes) { return std::make_pair(make_own(), attributes); }))
-      .def_property_readonly("name", [](const FilterHandle& f) { return f.filter->name(); })
-      .def_property_readonly("params", &params_shown)
+      .def_property_readonly(
+          "name", [](const FilterHandle& f) { return f.filter->name(); }, "As in `garrison list`.")
+      .def_property_readonly("params", &params_shown, "Parameters by name, those with defaults too.")
       .def_property_readonly(
           "own", [](const FilterHandle& f) { return own::is_own(*f.filter); },
           "Written in Python: a class derived from garrison.Filter.")

@@ -71,10 +71,14 @@ void bind_messages(py::module_& m) {
       "A message between agents of the same design; compares by value.\n\n"
       "What an agent sends is a list of fields: numbers, optional numbers (nan = absent), flags, counts\n"
       "and sets. sender, sample and round are the driver's, not the agent's.")
-      .def_property_readonly("family", [](const Letter& l) { return l.family; })
-      .def_property_readonly("sender", [](const Letter& l) { return l.envelope.sender; })
-      .def_property_readonly("sample", [](const Letter& l) { return l.envelope.sample; })
-      .def_property_readonly("round", [](const Letter& l) { return l.envelope.round; })
+      .def_property_readonly(
+          "family", [](const Letter& l) { return l.family; }, "Name of the filter that sent it.")
+      .def_property_readonly(
+          "sender", [](const Letter& l) { return l.envelope.sender; }, "Number of the agent.")
+      .def_property_readonly(
+          "sample", [](const Letter& l) { return l.envelope.sample; }, "Of which sample.")
+      .def_property_readonly(
+          "round", [](const Letter& l) { return l.envelope.round; }, "For which round of the sample, 0..")
       .def_property_readonly(
           "fields",
           [](const Letter& l) {

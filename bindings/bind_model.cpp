@@ -310,8 +310,12 @@ InvalidInput
           "Who can falsify each measurement; empty where none were given.")
       .def_property_readonly(
           "units", [](const Model& x) { return x.labels().units; }, "Unit by the name of a state or output.")
-      .def_property_readonly("process_bound", [](const Model& x) { return x.noise().process_bound; })
-      .def_property_readonly("measurement_bound", [](const Model& x) { return x.noise().measurement_bound; })
+      .def_property_readonly(
+          "process_bound", [](const Model& x) { return x.noise().process_bound; },
+          "||w(t)|| is at most this; nan = not known.")
+      .def_property_readonly(
+          "measurement_bound", [](const Model& x) { return x.noise().measurement_bound; },
+          "(N,): ||v_i(t)|| is at most this; empty = not known.")
       .def_property_readonly(
           "process_covariance",
           [](const Model& x) -> py::object {

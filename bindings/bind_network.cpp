@@ -36,22 +36,26 @@ int index_of(const Network& network, const py::object& agent) {
 
 template <class Class>
 void bind_generators(Class& network) {
-  network.def_static("ring", &Network::ring, py::arg("agents"))
-      .def_static("path", &Network::path, py::arg("agents"))
+  network.def_static("ring", &Network::ring, py::arg("agents"), "i hears i - 1 and i + 1, around.")
+      .def_static("path", &Network::path, py::arg("agents"), "i hears i - 1 and i + 1, from end to end.")
       .def_static("band", &Network::band, py::arg("agents"), py::arg("range"),
                   "i and j hear each other when |i - j| <= range.")
-      .def_static("star", &Network::star, py::arg("agents"))
-      .def_static("complete", &Network::complete, py::arg("agents"))
-      .def_static("grid", &Network::grid, py::arg("rows"), py::arg("columns"))
+      .def_static("star", &Network::star, py::arg("agents"),
+                  "Agent 0 and each of the others hear each other.")
+      .def_static("complete", &Network::complete, py::arg("agents"), "Everybody hears everybody.")
+      .def_static("grid", &Network::grid, py::arg("rows"), py::arg("columns"),
+                  "rows x columns agents, row by row; neighbours in a row or column hear each other.")
       .def_static(
           "random_geometric",
           [](int agents, double radius, std::uint64_t seed) {
             return Network::random_geometric(agents, radius, seed);
           },
           py::arg("agents"), py::arg("radius"), py::arg("seed") = 0,
-          "Points uniform in the unit square, edges below `radius`.")
+          "Points uniform in the unit square, edges below `radius`; it need not be connected (see "
+          "`connected`).")
       .def_static("erdos_renyi", &Network::erdos_renyi, py::arg("agents"), py::arg("probability"),
-                  py::arg("seed") = 0);
+                  py::arg("seed") = 0,
+                  "Every pair is a link with this probability; it need not be connected (see `connected`).");
 }
 
 template <class Class>
@@ -64,7 +68,8 @@ void bind_matrices(Class& network) {
             return std::pair(spectrum.lambda2, spectrum.lambda_max);
           },
           "(lambda_2, lambda_max) of the Laplacian; undirected networks only.")
-      .def("laplacian", &Network::laplacian)
+      .def("laplacian", &Network::laplacian,
+           "(N, N): how many an agent hears on the diagonal, -1 for each of them.")
       .def("laplacian_weights", &Network::laplacian_weights, py::arg("step"), "I - step * Laplacian")
       .def("metropolis_weights", &Network::metropolis_weights,
            "Doubly stochastic (N, N) weights; undirected only.")
@@ -110,11 +115,13 @@ InvalidInput
           "zeros are no links; the diagonal is ignored. Names of a DataFrame's columns become the agents'.\n"
           "Raises InvalidInput when it is not square, not symmetric (unless directed) or holds another "
           "number.")
-      .def_property_readonly("agents", &Network::agents)
+      .def_property_readonly("agents", &Network::agents, "How many, N.")
       .def_property_readonly("names", &Network::names, "One per agent; empty where none were given.")
-      .def_property_readonly("directed", &Network::directed)
-      .def_property_readonly("edges", &Network::edges)
-      .def_property_readonly("connected", &Network::connected)
+      .def_property_readonly("directed", &Network::directed, "Whether a pair of edges is one way.")
+      .def_property_readonly("edges", &Network::edges,
+                             "Each link once: (smaller, larger) number, or (sender, receiver) when directed.")
+      .def_property_readonly("connected", &Network::connected,
+                             "Everybody can reach everybody (directed: along the links).")
       .def("index", &index_of, py::arg("agent"), "The number of the agent with this name (or number).")
       .def(
           "neighbours",

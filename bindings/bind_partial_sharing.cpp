@@ -207,7 +207,9 @@ void bind_partial_sharing(py::module_& m) {
       "belong to k = 0.")
       .def(py::init<const Model&, const Network&, const FilterHandle&>(), py::arg("model"),
            py::arg("network"), py::arg("filter"))
-      .def_property_readonly("selection", [](const Analysis& a) { return a.setting.selection; })
+      .def_property_readonly(
+          "selection", [](const Analysis& a) { return a.setting.selection; },
+          "Which entries are shared when.")
       .def_property_readonly(
           "shared_fraction", [](const Analysis& a) { return a.setting.shared_fraction(); },
           "p_e = l/m, the largest of the agents.")

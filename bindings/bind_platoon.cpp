@@ -31,7 +31,9 @@ void bind_setting(py::module_& p) {
            py::kw_only(), py::arg("vehicles"), py::arg("range"), py::arg("period"), py::arg("attacked"),
            py::arg("eps"), py::arg("mu"), py::arg("q"), py::arg("varpi") = 2.0, py::arg("beta"),
            py::arg("adaptive") = true)
-      .def_property_readonly("norm_A", [](const Setting& s) { return norm_A(s); })
+      .def_property_readonly(
+          "norm_A", [](const Setting& s) { return norm_A(s); },
+          "||A|| of A = (1 T; 0 1): T/2 + sqrt(1 + T^2/4).")
       .def_property_readonly(
           "mubar", [](const Setting& s) { return mubar(s); }, "(8)")
       .def_property_readonly(
@@ -107,7 +109,10 @@ void bind_theorems(py::module_& p) {
 
 void bind_loop(py::module_& p) {
   p.def("grounded_eigenvalues", &grounded_eigenvalues, py::arg("vehicles"), "Of L_g, upwards.");
-  p.def("assumption4", &assumption4, py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"));
+  p.def("assumption4", &assumption4, py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"),
+        "Assumption 4: gv > T gs > 0 and T^2 gs - 2 T gv > -4/sigma_max(L_g); the string's own loop is "
+        "stable exactly then.\n"
+        "Raises InvalidInput.");
   p.def(
       "loop_factors",
       [](int vehicles, double period, double gs, double gv) {

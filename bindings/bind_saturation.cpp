@@ -60,13 +60,22 @@ void bind_setting(py::module_& s) {
         return std::pair(p.lo, p.hi);
       },
       py::arg("setting"), "Lower and upper fixed point of (7); nan where there is none.");
-  s.def("feasibility_margin", &feasibility_margin, py::arg("setting"));
+  s.def("feasibility_margin", &feasibility_margin, py::arg("setting"),
+        "Above 0 exactly when some threshold and initial error satisfy (9) for this g; -inf when a g >= 1. "
+        "Reads N, a, lambda0,\n"
+        "g, s. Raises InvalidInput.");
   s.def("minimal_rounds", py::overload_cast<const Setting&, double>(&minimal_rounds), py::arg("setting"),
         py::arg("gamma"),
         "Fewest plain rounds for which some threshold satisfies (9); None when no number is enough.");
-  s.def("normA_max_exact", &normA_max_exact, py::arg("setting"));
-  s.def("eps_paper", &eps_paper, py::arg("setting"));
-  s.def("condition11", &condition11, py::arg("setting"));
+  s.def("normA_max_exact", &normA_max_exact, py::arg("setting"),
+        "Supremum of ||A|| for which some threshold, initial error and rounds satisfy (9): N/(N - lambda0 + "
+        "s). Reads N,\n"
+        "lambda0, s. Raises InvalidInput.");
+  s.def("eps_paper", &eps_paper, py::arg("setting"),
+        "eps in the proof of theorem 2: (9) is feasible for 1 <= ||A|| < 1 + eps; nan unless lambda0 > s. "
+        "Raises InvalidInput.");
+  s.def("condition11", &condition11, py::arg("setting"),
+        "Whether lambda0 > s (11), beyond rounding. Raises InvalidInput.");
   s.def(
       "beta_interval",
       [](const Setting& x) {

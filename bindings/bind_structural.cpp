@@ -37,12 +37,12 @@ void bind_setting(py::module_& m) {
            }),
            py::kw_only(), py::arg("A"), py::arg("C"), py::arg("W"), py::arg("U"), py::arg("E") = py::none(),
            py::arg("R") = py::none())
-      .def_readonly("A", &Setting::A)
-      .def_readonly("C", &Setting::C)
-      .def_readonly("W", &Setting::W)
-      .def_readonly("U", &Setting::U)
-      .def_readonly("E", &Setting::E)
-      .def_readonly("R", &Setting::R);
+      .def_readonly("A", &Setting::A, "(n, n)")
+      .def_readonly("C", &Setting::C, "(N, n), row i = c_i'")
+      .def_readonly("W", &Setting::W, "(N, N): mixing weights of the estimates, >= 0, rows sum to 1.")
+      .def_readonly("U", &Setting::U, "(N, N) of 0 and 1: [i, j] = 1 when i receives y_j.")
+      .def_readonly("E", &Setting::E, "(n, n): covariance of the process noise.")
+      .def_readonly("R", &Setting::R, "(N, N): covariance of the measurement noise.");
   keep_as_code<Setting>(setting, "garrison.structural.Setting", [](const Setting& s) {
     py::dict all(py::arg("A") = s.A, py::arg("C") = s.C, py::arg("W") = s.W, py::arg("U") = s.U);
     if (s.E.size() != 0) all["E"] = s.E;
@@ -105,7 +105,8 @@ void bind_detection(py::module_& m) {
         return power(mean, std, threshold);
       },
       py::arg("mean"), py::arg("std"), py::arg("threshold"), "P(|N(mean, std^2)| >= threshold).");
-  m.def("chi_square_level", &chi_square_level, py::arg("degrees"), py::arg("rate"));
+  m.def("chi_square_level", &chi_square_level, py::arg("degrees"), py::arg("rate"),
+        "x with P(chi-square with `degrees` >= x) = rate, 0 < rate < 1, degrees >= 1. Raises InvalidInput.");
   m.def(
       "thresholds",
       [](const Vector& residual_std, double level) {
@@ -116,7 +117,9 @@ void bind_detection(py::module_& m) {
       py::arg("residual_std"), py::arg("m"), "m standard deviations of every residual.");
   m.def("thresholds_printed", &thresholds_printed, py::arg("setting"), py::arg("Q1"), py::arg("m"),
         "The paper's (17), for comparison only.");
-  m.def("thresholds_root", &thresholds_root, py::arg("setting"), py::arg("Q1"), py::arg("m"));
+  m.def(
+      "thresholds_root", &thresholds_root, py::arg("setting"), py::arg("Q1"), py::arg("m"),
+      "(N,): m sqrt(|c_i|^2 Q1 + R_ii), the root of the printed (17): the right unit, hugely conservative.");
   m.def("alarms", &alarms, py::arg("residuals"), py::arg("threshold"),
         "Agents with |r| >= threshold per row of residuals (T, N); nan is an alarm.");
   m.def(
@@ -133,7 +136,10 @@ void bind_detection(py::module_& m) {
       "What a constant attack on each agent can do before it is seen, at steady state: the least size that\n"
       "some agent's test detects with probability `detection` per sample and that agent, the largest steady\n"
       "|mean error| per unit of attack, and that of an attack of just this size.");
-  m.def("windows_naive", &windows_naive, py::arg("residuals"), py::arg("residual_std"), py::arg("window"));
+  m.def("windows_naive", &windows_naive, py::arg("residuals"), py::arg("residual_std"), py::arg("window"),
+        "(T, N): sums of squares over the last `window` residuals (T, N), as if they were independent in "
+        "time; nan until it\n"
+        "is full.");
   m.def(
       "windows_exact",
       [](const MatrixRef& r, const std::vector<Matrix>& covariances) {
@@ -174,8 +180,12 @@ void bind_gains(py::module_& m) {
             within_budget(kInfinity, [&] { return joint_kalman(s, most_sweeps, tolerance); });
         return py::dict(py::arg("K") = g.K, py::arg("converged") = g.converged, py::arg("sweeps") = g.sweeps);
       },
-      py::arg("setting"), py::arg("most_sweeps") = 20000, py::arg("tolerance") = 1e-14);
-  m.def("projection_gains", &projection_gains, py::arg("setting"));
+      py::arg("setting"), py::arg("most_sweeps") = 20000, py::arg("tolerance") = 1e-14,
+      "Gains K (N arrays (n, n)) from the joint covariance of all agents, whether they converged, and "
+      "sweeps.");
+  m.def(
+      "projection_gains", &projection_gains, py::arg("setting"),
+      "K_i that minimise |(I - K_i D_i) A| (Frobenius norm), N arrays (n, n): closed form, no noise model.");
   m.def(
       "h2_gains",
       [](const Setting& s, const GainMatrices& start, const std::vector<int>& hubs, double epsilon) {

@@ -121,10 +121,10 @@ void bind_pattern(py::module_& s) {
           },
           py::arg("rows"), py::arg("indptr"), py::arg("indices"),
           "Compressed columns (scipy.sparse.csc_array's indptr and indices), without doubles.")
-      .def_property_readonly("rows", &Pattern::rows)
-      .def_property_readonly("columns", &Pattern::columns)
-      .def_property_readonly("entries", &Pattern::entries)
-      .def("transposed", &Pattern::transposed);
+      .def_property_readonly("rows", &Pattern::rows, "How many.")
+      .def_property_readonly("columns", &Pattern::columns, "How many.")
+      .def_property_readonly("entries", &Pattern::entries, "How many may be other than zero.")
+      .def("transposed", &Pattern::transposed, "The pattern of the transposed matrix.");
   keep_as_code<Pattern>(pattern, "garrison.structure.Pattern", &arguments);
   s.def(
       "maximum_matching",
@@ -176,8 +176,10 @@ void bind_system(py::module_& s) {
   keep_as_code<System>(system, "garrison.structure.System",
                        [](const System& x) { return py::dict(py::arg("pattern") = x.pattern()); });
   system.def(py::init<Pattern>(), py::arg("pattern"))
-      .def_property_readonly("states", &System::states)
-      .def_property_readonly("structural_rank", [](const System& x) { return x.parts().structural_rank(); })
+      .def_property_readonly("states", &System::states, "How many, n.")
+      .def_property_readonly(
+          "structural_rank", [](const System& x) { return x.parts().structural_rank(); },
+          "Rank of A for almost all values of its entries.")
       .def_property_readonly(
           "parts",
           [](const System& x) {
@@ -188,12 +190,15 @@ void bind_system(py::module_& s) {
                 py::arg("sq_rows") = sorted(d.sq_rows), py::arg("sq_cols") = sorted(d.sq_cols));
           },
           "Coarse Dulmage-Mendelsohn parts, sorted.")
-      .def_property_readonly("contraction_union", &System::contraction_union)
+      .def_property_readonly("contraction_union", &System::contraction_union,
+                             "States of all contractions, sorted; does not depend on the matching.")
       .def_property_readonly(
           "contraction_components",
           [](const System& x) { return contraction_components(x.pattern(), x.parts()); },
           "Overlapping contractions joined; does not depend on the matching.")
-      .def_property_readonly("components", [](const System& x) { return x.components().lists(); })
+      .def_property_readonly(
+          "components", [](const System& x) { return x.components().lists(); },
+          "Strong components, lists of states, parents first.")
       .def_property_readonly("parent_components", &System::parent_components,
                              "Components that no link leaves.")
       .def(
@@ -203,7 +208,7 @@ void bind_system(py::module_& s) {
               refuse("state", std::to_string(state), "a state of the system");
             return x.in_contraction(state);
           },
-          py::arg("state"))
+          py::arg("state"), "Whether the state is in some contraction: a set of more columns than rows.")
       .def(
           "in_parent",
           [](const System& x, int state) {
@@ -211,7 +216,7 @@ void bind_system(py::module_& s) {
               refuse("state", std::to_string(state), "a state of the system");
             return x.in_parent(state);
           },
-          py::arg("state"))
+          py::arg("state"), "Whether the state is in a strong component that no link leaves.")
       .def(
           "observability",
           [](const System& x, const py::iterable& m) {
@@ -233,7 +238,10 @@ void bind_system(py::module_& s) {
       .def(
           "contraction_of_measured",
           [](const System& x, const py::iterable& m) { return x.contraction_of_measured(sensors_from(m)); },
-          py::arg("measured"))
+          py::arg("measured"),
+          "Measured state -> its contraction, sorted. Empty unless there are as many alpha agents, measuring "
+          "one state\n"
+          "each, as the structural rank lacks.")
       .def(
           "class_candidates",
           [](const System& x, const py::iterable& m, int agent, const std::string& type) {

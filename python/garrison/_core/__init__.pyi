@@ -236,7 +236,10 @@ class Model:
         p
         """
     @property
-    def measurement_bound(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def measurement_bound(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (N,): ||v_i(t)|| is at most this; empty = not known.
+        """
     @property
     def measurement_covariance(self) -> typing.Any:
         """
@@ -253,7 +256,10 @@ class Model:
         Scalar measurements per sample of the whole network.
         """
     @property
-    def process_bound(self) -> float: ...
+    def process_bound(self) -> float:
+        """
+        ||w(t)|| is at most this; nan = not known.
+        """
     @property
     def process_covariance(self) -> typing.Any:
         """
@@ -310,13 +316,19 @@ class Network:
         i and j hear each other when |i - j| <= range.
         """
     @staticmethod
-    def complete(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    def complete(agents: typing.SupportsInt | typing.SupportsIndex) -> Network:
+        """
+        Everybody hears everybody.
+        """
     @staticmethod
     def erdos_renyi(
         agents: typing.SupportsInt | typing.SupportsIndex,
         probability: typing.SupportsFloat | typing.SupportsIndex,
         seed: typing.SupportsInt | typing.SupportsIndex = 0,
-    ) -> Network: ...
+    ) -> Network:
+        """
+        Every pair is a link with this probability; it need not be connected (see `connected`).
+        """
     @staticmethod
     def from_adjacency(matrix: typing.Any, directed: bool = False, names: typing.Any = None) -> Network:
         """
@@ -327,9 +339,15 @@ class Network:
     @staticmethod
     def grid(
         rows: typing.SupportsInt | typing.SupportsIndex, columns: typing.SupportsInt | typing.SupportsIndex
-    ) -> Network: ...
+    ) -> Network:
+        """
+        rows x columns agents, row by row; neighbours in a row or column hear each other.
+        """
     @staticmethod
-    def path(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    def path(agents: typing.SupportsInt | typing.SupportsIndex) -> Network:
+        """
+        i hears i - 1 and i + 1, from end to end.
+        """
     @staticmethod
     def random_geometric(
         agents: typing.SupportsInt | typing.SupportsIndex,
@@ -337,12 +355,18 @@ class Network:
         seed: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> Network:
         """
-        Points uniform in the unit square, edges below `radius`.
+        Points uniform in the unit square, edges below `radius`; it need not be connected (see `connected`).
         """
     @staticmethod
-    def ring(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    def ring(agents: typing.SupportsInt | typing.SupportsIndex) -> Network:
+        """
+        i hears i - 1 and i + 1, around.
+        """
     @staticmethod
-    def star(agents: typing.SupportsInt | typing.SupportsIndex) -> Network: ...
+    def star(agents: typing.SupportsInt | typing.SupportsIndex) -> Network:
+        """
+        Agent 0 and each of the others hear each other.
+        """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
     def __eq__(self, other: typing.Any) -> typing.Any: ...
@@ -360,7 +384,10 @@ class Network:
         """
         The number of the agent with this name (or number).
         """
-    def laplacian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def laplacian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, N): how many an agent hears on the diagonal, -1 for each of them.
+        """
     def laplacian_spectrum(self) -> tuple[float, float]:
         """
         (lambda_2, lambda_max) of the Laplacian; undirected networks only.
@@ -384,13 +411,25 @@ class Network:
         Sorted ids of the agents that `agent` (a number or name) hears.
         """
     @property
-    def agents(self) -> int: ...
+    def agents(self) -> int:
+        """
+        How many, N.
+        """
     @property
-    def connected(self) -> bool: ...
+    def connected(self) -> bool:
+        """
+        Everybody can reach everybody (directed: along the links).
+        """
     @property
-    def directed(self) -> bool: ...
+    def directed(self) -> bool:
+        """
+        Whether a pair of edges is one way.
+        """
     @property
-    def edges(self) -> list[tuple[int, int]]: ...
+    def edges(self) -> list[tuple[int, int]]:
+        """
+        Each link once: (smaller, larger) number, or (sender, receiver) when directed.
+        """
     @property
     def names(self) -> list[str]:
         """
@@ -481,14 +520,20 @@ class Filter:
         Names of the lists (sets, gains) that a run can keep.
         """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        As in `garrison list`.
+        """
     @property
     def own(self) -> bool:
         """
         Written in Python: a class derived from garrison.Filter.
         """
     @property
-    def params(self) -> dict: ...
+    def params(self) -> dict:
+        """
+        Parameters by name, those with defaults too.
+        """
     @property
     def signal_names(self) -> list[str]:
         """
@@ -513,16 +558,25 @@ class Attack:
         Every agent that is attacked at some time.
         """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        As in `garrison list`.
+        """
     @property
     def own(self) -> bool:
         """
         Its lies come from a Python function.
         """
     @property
-    def params(self) -> dict: ...
+    def params(self) -> dict:
+        """
+        Parameters by name, those with defaults too.
+        """
     @property
-    def probability(self) -> float: ...
+    def probability(self) -> float:
+        """
+        Chance per sample that it acts, 0..1.
+        """
     @property
     def schedule(self) -> list:
         """
@@ -539,7 +593,10 @@ class Attack:
         First sample that is not attacked any more; None = never.
         """
     @property
-    def target(self) -> str: ...
+    def target(self) -> str:
+        """
+        What it changes: "measurement" or "message".
+        """
 
 class Message:
     """
@@ -574,7 +631,10 @@ class Message:
         The bytes that travel, without sender, sample and round.
         """
     @property
-    def family(self) -> str: ...
+    def family(self) -> str:
+        """
+        Name of the filter that sent it.
+        """
     @property
     def fields(self) -> dict:
         """
@@ -582,11 +642,20 @@ class Message:
         labels as (ids, complement).
         """
     @property
-    def round(self) -> int: ...
+    def round(self) -> int:
+        """
+        For which round of the sample, 0..
+        """
     @property
-    def sample(self) -> int: ...
+    def sample(self) -> int:
+        """
+        Of which sample.
+        """
     @property
-    def sender(self) -> int: ...
+    def sender(self) -> int:
+        """
+        Number of the agent.
+        """
 
 class Agent:
     """
@@ -667,7 +736,10 @@ class Agent:
         Agents that this one has accused.
         """
     @property
-    def bound(self) -> float: ...
+    def bound(self) -> float:
+        """
+        On the error of its estimate, in the norm of the state; inf or nan: none, bound_kind says why.
+        """
     @property
     def bound_kind(self) -> int:
         """
@@ -694,9 +766,15 @@ class Agent:
         (n,)
         """
     @property
-    def family(self) -> str: ...
+    def family(self) -> str:
+        """
+        Name of the filter.
+        """
     @property
-    def id(self) -> int: ...
+    def id(self) -> int:
+        """
+        Its number, 0..N-1.
+        """
     @property
     def neighbours(self) -> list[int]:
         """
@@ -729,11 +807,20 @@ class Agent:
         The sample it is in, or has finished.
         """
     @property
-    def statistic(self) -> float: ...
+    def statistic(self) -> float:
+        """
+        Of the test of its own sensor; nan = not tested.
+        """
     @property
-    def threshold(self) -> float: ...
+    def threshold(self) -> float:
+        """
+        The level that the statistic is compared with; nan = not tested.
+        """
     @property
-    def verdict(self) -> int: ...
+    def verdict(self) -> int:
+        """
+        Value of garrison.Verdict, of its own sensor.
+        """
 
 class Design:
     """
@@ -832,18 +919,30 @@ class SubsetBound:
         The search finished.
         """
     @property
-    def lower(self) -> float: ...
+    def lower(self) -> float:
+        """
+        The value is at least this.
+        """
     @property
-    def method(self) -> str: ...
+    def method(self) -> str:
+        """
+        How it was found, in words.
+        """
     @property
-    def nodes(self) -> int: ...
+    def nodes(self) -> int:
+        """
+        Sets, or parts of sets, that were looked at.
+        """
     @property
     def removed(self) -> list[int]:
         """
         Worst set found, sorted.
         """
     @property
-    def upper(self) -> float: ...
+    def upper(self) -> float:
+        """
+        And at most this; equal to lower: exact.
+        """
 
 class FitOptions:
     """

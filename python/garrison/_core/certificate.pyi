@@ -103,7 +103,10 @@ class Region:
         (n,), None without an answer
         """
     @property
-    def radius(self) -> float: ...
+    def radius(self) -> float:
+        """
+        ||x - center|| is at most this; inf = the rows at hand cannot answer, nan = the data refute the assumption.
+        """
     @property
     def refuted(self) -> bool:
         """
@@ -115,7 +118,10 @@ class Region:
         (n, n), None where there is none
         """
     @property
-    def stretch(self) -> float: ...
+    def stretch(self) -> float:
+        """
+        (x - center)' shape^-1 (x - center) <= stretch^2.
+        """
 
 class Witness:
     """
@@ -148,7 +154,10 @@ class Witness:
         region.radius
         """
     @property
-    def region(self) -> Region: ...
+    def region(self) -> Region:
+        """
+        Where the state is.
+        """
 
 class ErrorSystem:
     """
@@ -178,19 +187,40 @@ class Kernels:
     """
     def __reduce__(self) -> tuple: ...
     @property
-    def Rb(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    def Rb(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (K + 1, N, N): [k, i, l] = ||(M^k)_il||.
+        """
     @property
-    def Re(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    def Re(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (K + 1, N, N): [k, j, l] = |C_j A (M^k)_jl|.
+        """
     @property
-    def gb(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    def gb(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (K, N, N): [k, i, l] = |block i of M^k B, column l|.
+        """
     @property
-    def ge(self) -> numpy.typing.NDArray[numpy.float64]: ...
+    def ge(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (K, N, N): [k, j, l] = |C_j A (block j of M^k B, column l)|.
+        """
     @property
-    def wb(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def wb(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (K, N): ||block i of M^k B_w||.
+        """
     @property
-    def we(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def we(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (K, N): |C_j A (block j of M^k B_w)|.
+        """
     @property
-    def window(self) -> int: ...
+    def window(self) -> int:
+        """
+        K, how many powers.
+        """
 
 class Table:
     """
@@ -240,7 +270,10 @@ class GaussianTable:
         (T+1, N): sqrt of the largest eigenvalue of P_ii
         """
     @property
-    def table(self) -> Table: ...
+    def table(self) -> Table:
+        """
+        Bounds of the run, tested with the limit of the covariance.
+        """
 
 class Propagation:
     """
@@ -374,7 +407,10 @@ class TwoNumbers:
         One step; returns the bound. Raises InvalidInput.
         """
     @property
-    def bound(self) -> float: ...
+    def bound(self) -> float:
+        """
+        On the error of every agent: rho and its share of p; inf = none.
+        """
     @property
     def constants(self) -> dict: ...
     @property
@@ -383,9 +419,15 @@ class TwoNumbers:
         (N,): adaptive levels of the coming step
         """
     @property
-    def p(self) -> float: ...
+    def p(self) -> float:
+        """
+        Bound on their deviations from the mean.
+        """
     @property
-    def rho(self) -> float: ...
+    def rho(self) -> float:
+        """
+        Bound on the mean of the errors.
+        """
 
 class Window:
     """
@@ -550,14 +592,20 @@ class WindowWitness:
         of the ball; inf: the rows cannot answer; nan: more than s are attacked
         """
     @property
-    def region(self) -> Region: ...
+    def region(self) -> Region:
+        """
+        Where the state is.
+        """
     @property
     def shape(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"] | None:
         """
         (n, n): (x - center)' shape^-1 (x - center) <= stretch^2; None without an answer
         """
     @property
-    def stretch(self) -> float: ...
+    def stretch(self) -> float:
+        """
+        (x - center)' shape^-1 (x - center) <= stretch^2.
+        """
 
 class Bank:
     """
@@ -711,7 +759,10 @@ class SmallestAttack:
     """
     def __reduce__(self) -> tuple: ...
     @property
-    def example(self) -> list[int]: ...
+    def example(self) -> list[int]:
+        """
+        Such a set of meters; empty = none was found.
+        """
     @property
     def searched(self) -> int:
         """

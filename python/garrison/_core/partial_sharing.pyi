@@ -209,7 +209,10 @@ class Analysis:
         Payload of all messages of one sample.
         """
     @property
-    def selection(self) -> Selection: ...
+    def selection(self) -> Selection:
+        """
+        Which entries are shared when.
+        """
     @property
     def shared_fraction(self) -> float:
         """

@@ -77,14 +77,22 @@ class Setting:
         (8)
         """
     @property
-    def norm_A(self) -> float: ...
+    def norm_A(self) -> float:
+        """
+        ||A|| of A = (1 T; 0 1): T/2 + sqrt(1 + T^2/4).
+        """
 
 def assumption4(
     vehicles: typing.SupportsInt | typing.SupportsIndex,
     period: typing.SupportsFloat | typing.SupportsIndex,
     gs: typing.SupportsFloat | typing.SupportsIndex,
     gv: typing.SupportsFloat | typing.SupportsIndex,
-) -> bool: ...
+) -> bool:
+    """
+    Assumption 4: gv > T gs > 0 and T^2 gs - 2 T gv > -4/sigma_max(L_g); the string's own loop is stable exactly then.
+    Raises InvalidInput.
+    """
+
 def best_source(
     vehicle: typing.SupportsInt | typing.SupportsIndex,
     vehicles: typing.SupportsInt | typing.SupportsIndex,

@@ -73,7 +73,11 @@ def beta_interval(setting: Setting) -> tuple[float, float]:
     Thresholds with (9) for the given initial error; nan when there are none.
     """
 
-def condition11(setting: Setting) -> bool: ...
+def condition11(setting: Setting) -> bool:
+    """
+    Whether lambda0 > s (11), beyond rounding. Raises InvalidInput.
+    """
+
 def constants(setting: Setting) -> dict:
     """
     (8) and (9).
@@ -93,8 +97,17 @@ def design(
     at most (1 + slack) times the best, the fewest. gamma is the contraction of one round.
     """
 
-def eps_paper(setting: Setting) -> float: ...
-def feasibility_margin(setting: Setting) -> float: ...
+def eps_paper(setting: Setting) -> float:
+    """
+    eps in the proof of theorem 2: (9) is feasible for 1 <= ||A|| < 1 + eps; nan unless lambda0 > s. Raises InvalidInput.
+    """
+
+def feasibility_margin(setting: Setting) -> float:
+    """
+    Above 0 exactly when some threshold and initial error satisfy (9) for this g; -inf when a g >= 1. Reads N, a, lambda0,
+    g, s. Raises InvalidInput.
+    """
+
 def fixed_points(setting: Setting) -> tuple[float, float]:
     """
     Lower and upper fixed point of (7); nan where there is none.
@@ -105,7 +118,12 @@ def minimal_rounds(setting: Setting, gamma: typing.SupportsFloat | typing.Suppor
     Fewest plain rounds for which some threshold satisfies (9); None when no number is enough.
     """
 
-def normA_max_exact(setting: Setting) -> float: ...
+def normA_max_exact(setting: Setting) -> float:
+    """
+    Supremum of ||A|| for which some threshold, initial error and rounds satisfy (9): N/(N - lambda0 + s). Reads N,
+    lambda0, s. Raises InvalidInput.
+    """
+
 def normalise_rows(
     C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     b_v: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],

@@ -63,17 +63,35 @@ class Setting:
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
     @property
-    def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n)
+        """
     @property
-    def C(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def C(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, n), row i = c_i'
+        """
     @property
-    def E(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def E(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (n, n): covariance of the process noise.
+        """
     @property
-    def R(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def R(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, N): covariance of the measurement noise.
+        """
     @property
-    def U(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def U(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, N) of 0 and 1: [i, j] = 1 when i receives y_j.
+        """
     @property
-    def W(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def W(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (N, N): mixing weights of the estimates, >= 0, rows sum to 1.
+        """
 
 def alarms(
     residuals: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
@@ -93,7 +111,11 @@ def best_scalar_gain(
 
 def chi_square_level(
     degrees: typing.SupportsInt | typing.SupportsIndex, rate: typing.SupportsFloat | typing.SupportsIndex
-) -> float: ...
+) -> float:
+    """
+    x with P(chi-square with `degrees` >= x) = rate, 0 < rate < 1, degrees >= 1. Raises InvalidInput.
+    """
+
 def coupled_riccati(
     setting: Setting,
     most_sweeps: typing.SupportsInt | typing.SupportsIndex = 20000,
@@ -164,7 +186,11 @@ def joint_kalman(
     setting: Setting,
     most_sweeps: typing.SupportsInt | typing.SupportsIndex = 20000,
     tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-14,
-) -> dict: ...
+) -> dict:
+    """
+    Gains K (N arrays (n, n)) from the joint covariance of all agents, whether they converged, and sweeps.
+    """
+
 def kappa(m: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
     erf(m / sqrt 2): 1 - false-alarm rate at m standard deviations.
@@ -191,7 +217,11 @@ def predictions(
     sum_j W_ij A xhat_j, (N, n) from (N, n).
     """
 
-def projection_gains(setting: Setting) -> list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]: ...
+def projection_gains(setting: Setting) -> list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]:
+    """
+    K_i that minimise |(I - K_i D_i) A| (Frobenius norm), N arrays (n, n): closed form, no noise model.
+    """
+
 def setting(model: garrison._core.Model, network: garrison._core.Network, filter: garrison._core.Filter) -> Setting:
     """
     The setting that a Structural filter is designed for on this model and network.
@@ -242,7 +272,11 @@ def thresholds_printed(
 
 def thresholds_root(
     setting: Setting, Q1: typing.SupportsFloat | typing.SupportsIndex, m: typing.SupportsFloat | typing.SupportsIndex
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    (N,): m sqrt(|c_i|^2 Q1 + R_ii), the root of the printed (17): the right unit, hugely conservative.
+    """
+
 def windows_exact(
     residuals: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     covariances: collections.abc.Sequence[typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"]],
@@ -255,4 +289,8 @@ def windows_naive(
     residuals: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     residual_std: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     window: typing.SupportsInt | typing.SupportsIndex,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    (T, N): sums of squares over the last `window` residuals (T, N), as if they were independent in time; nan until it
+    is full.
+    """

@@ -64,13 +64,25 @@ class Pattern:
     def __reduce__(self) -> tuple: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict) -> None: ...
-    def transposed(self) -> Pattern: ...
+    def transposed(self) -> Pattern:
+        """
+        The pattern of the transposed matrix.
+        """
     @property
-    def columns(self) -> int: ...
+    def columns(self) -> int:
+        """
+        How many.
+        """
     @property
-    def entries(self) -> int: ...
+    def entries(self) -> int:
+        """
+        How many may be other than zero.
+        """
     @property
-    def rows(self) -> int: ...
+    def rows(self) -> int:
+        """
+        How many.
+        """
 
 class System:
     """
@@ -96,9 +108,19 @@ class System:
         """
         alpha, beta or gamma per agent.
         """
-    def contraction_of_measured(self, measured: collections.abc.Iterable) -> dict[int, list[int]]: ...
-    def in_contraction(self, state: typing.SupportsInt | typing.SupportsIndex) -> bool: ...
-    def in_parent(self, state: typing.SupportsInt | typing.SupportsIndex) -> bool: ...
+    def contraction_of_measured(self, measured: collections.abc.Iterable) -> dict[int, list[int]]:
+        """
+        Measured state -> its contraction, sorted. Empty unless there are as many alpha agents, measuring one state
+        each, as the structural rank lacks.
+        """
+    def in_contraction(self, state: typing.SupportsInt | typing.SupportsIndex) -> bool:
+        """
+        Whether the state is in some contraction: a set of more columns than rows.
+        """
+    def in_parent(self, state: typing.SupportsInt | typing.SupportsIndex) -> bool:
+        """
+        Whether the state is in a strong component that no link leaves.
+        """
     def mitigate(
         self,
         measured: collections.abc.Iterable,
@@ -125,14 +147,20 @@ class System:
         Per agent, every state that it could measure instead.
         """
     @property
-    def components(self) -> list[list[int]]: ...
+    def components(self) -> list[list[int]]:
+        """
+        Strong components, lists of states, parents first.
+        """
     @property
     def contraction_components(self) -> list[list[int]]:
         """
         Overlapping contractions joined; does not depend on the matching.
         """
     @property
-    def contraction_union(self) -> list[int]: ...
+    def contraction_union(self) -> list[int]:
+        """
+        States of all contractions, sorted; does not depend on the matching.
+        """
     @property
     def parent_components(self) -> list[list[int]]:
         """
@@ -144,9 +172,15 @@ class System:
         Coarse Dulmage-Mendelsohn parts, sorted.
         """
     @property
-    def states(self) -> int: ...
+    def states(self) -> int:
+        """
+        How many, n.
+        """
     @property
-    def structural_rank(self) -> int: ...
+    def structural_rank(self) -> int:
+        """
+        Rank of A for almost all values of its entries.
+        """
 
 def cheapest_per_class(
     cost: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
