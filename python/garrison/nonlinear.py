@@ -136,6 +136,9 @@ class NonlinearModel(metaclass=Hinting):
     def __hash__(self) -> int:
         return hash((self._model, tuple(self._functions.values())))
 
+    def __reduce__(self) -> Any:
+        raise refusal("NonlinearModel", "pickle or copy", "none", "its functions are not kept; make it anew from them")
+
     def __repr__(self) -> str:
         named = ", ".join(getattr(one, "__name__", "function") for one in self._functions.values() if one is not None)
         sizes = (count(self._model.states, "state"), count(self._model.agents, "agent"))

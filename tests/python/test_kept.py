@@ -18,7 +18,7 @@ from test_objects import keeps
 NOT_KEPT = {
     *("Window", "WindowWitness", "Witness", "Region", "Bank", "Propagation", "Recovery", "TwoNumbers", "ErrorSystem"),
     *("Kernels", "Table", "GaussianTable", "ObserverTable", "Meters", "SmallestAttack", "Response", "AgentInfo"),
-    *("rdkf.Setting", "Analysis", "Design"),
+    *("rdkf.Setting", "Analysis", "Design", "NonlinearModel"),
 }
 COVARIANCES = {"process_covariance": 1e-4, "measurement_covariance": 1e-4}
 MODEL = gr.Model(
