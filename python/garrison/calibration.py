@@ -138,6 +138,8 @@ def calibrate(
     """
     require_order("calibrate", model, network, filter)
     y = numbers("measurements", measurements)
+    if y.ndim != 2:
+        raise refusal("measurements", f"shape {y.shape}", "(samples, outputs)")
     known = inputs_of(model, inputs, len(y)) if model.inputs or inputs is not None else None
     attacked = arguments.whole("attacked", attacked, 0, model.agents - 1)
     asked = filter.params.get(_RATE)

@@ -12,6 +12,7 @@ from garrison import _core
 from garrison.arguments import require_arguments, whole, whole_numbers
 from garrison.families import family_of
 from garrison.numeric import whole_of
+from garrison.run_options import certified
 from garrison.varying import parted
 from garrison.words import Hinting, count, hinted, hinted_methods, refusal, shown
 
@@ -184,7 +185,7 @@ def require_taken(
     if any(attack.name == "false_trajectory" for attack in attacks):
         advice = "its story moves by A; garrison.attacks.custom takes yours"
         raise refusal("attack", "false_trajectory with a NonlinearModel", "another one", advice)
-    if certificate != "none":
+    if certified(certificate):
         advice = "certificates rest on A and C; docs/how-to/changing-plants.md"
         raise refusal("certificate", f"{certificate!r} with a NonlinearModel", '"none"', advice)
 

@@ -26,6 +26,11 @@ SPREADS = ("none", "local", "flooded", "direct")
 ONE_SPREAD = ", ".join(f'"{name}"' for name in SPREADS[:-1]) + f' or "{SPREADS[-1]}"'
 
 
+def certified(name: Any) -> bool:
+    """Whether a certificate is asked for, whatever the name is worth."""
+    return not (isinstance(name, str) and name == "none")
+
+
 def certificate(
     filter: _core.Filter, name: Any, failure: Any, attacked: Any, levels: Any = None, memory: Any = False
 ) -> dict[str, Any]:

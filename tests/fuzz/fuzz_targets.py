@@ -15,6 +15,7 @@ from garrison import _core
 
 #: names that are not called, with the reason
 EXCLUDED: dict[str, str] = {
+    "garrison.StoredRun": "made by simulate and replay with `to`; its arguments are theirs",
     "garrison.Run": "made by simulate, replay and load; its arguments are theirs",
     "garrison.Verdict": "an enumeration of Python's own",
     "garrison.BoundKind": "the same",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from garrison import arguments
-from garrison.words import Hinting, near, refusal, shown
+from garrison.words import Hinting, hinted, near, refusal, shown
 
 #: what a run keeps when nothing else is asked for, and everything that it can keep
 KEEP = ("estimate", "report", "measurements")
@@ -28,6 +28,7 @@ class Every(metaclass=Hinting):
         return f"garrison.every({self.step})"
 
 
+@hinted
 def every(step: int) -> Every:
     """Of an array, keep the times 0, step, 2 step, .. alone, as in `keep={"estimate": gr.every(100)}`.
 

@@ -154,7 +154,7 @@ def replay(
     require_taken(filter, attacks, known["functions"], certificate)
     path = destination(to, keeping, base, ground, filter)
     if path is None:
-        require_room(base, filter, keeping, trials, samples, certificate != "none" or design is not None)
+        require_room(base, filter, keeping, trials, samples, run_options.certified(certificate) or design is not None)
     with written(path, base, filter, trials, keeping.every) as store:
         design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
         data = _core.replay(

@@ -160,7 +160,7 @@ def simulate(
     require_taken(filter, attacks, known["functions"], certificate)
     path = destination(to, keeping, base, ground, filter)
     if path is None:
-        require_room(base, filter, keeping, trials, steps, certificate != "none" or design is not None)
+        require_room(base, filter, keeping, trials, steps, run_options.certified(certificate) or design is not None)
     with written(path, base, filter, trials, keeping.every) as store:
         design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
         data = _core.simulate(
