@@ -14,7 +14,7 @@ from garrison import growing, store
 from garrison.drivers import replaying, simulating
 from garrison.run_file import arrays_of
 
-pytest.importorskip("zarr")
+pytest.importorskip("zarr", minversion="3")
 
 N, STEPS, TRIALS = 7, 41, 5
 RNG = np.random.default_rng(4)
