@@ -77,8 +77,9 @@ std::string remedy11(const Matrix& C, int attacked) {
 
 /// What to do when (9) fails.
 std::string remedy9(const Setting& s, const FixedPoints& points, const Interval& thresholds) {
-  constexpr double kFar = 1e3;  // a start that far off is nobody's: then the threshold is what is too small
-  if (!std::isnan(points.lo) && s.eta0 < points.lo && points.lo <= kFar * s.eta0)
+  constexpr double kFar = 1e9;  // a start that far off is nobody's: then the threshold is what is too small
+  const bool far = points.lo > kFar * s.eta0 && thresholds.lo > 0.0;
+  if (!std::isnan(points.lo) && s.eta0 < points.lo && !far)
     return "raise initial_error to " + rounded_up(points.lo);
   if (!std::isnan(thresholds.lo))
     return "choose a threshold from " + text(thresholds.lo) + " to " + text(thresholds.hi);
