@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -76,7 +77,7 @@ def is_run(folder: Path) -> bool:
 def require_zarr(which: str) -> None:
     """Refuse what needs the package zarr where it is not installed."""
     try:
-        import zarr  # noqa: F401  (xarray finds it)
+        import_module("zarr")
     except ImportError:
         raise refusal(which, "a folder of zarr and no zarr", 'it installed: pip install "garrison[store]"') from None
 

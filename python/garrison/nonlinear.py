@@ -10,9 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core
 from garrison.arguments import require_arguments, whole, whole_numbers
-from garrison.families import family_of
 from garrison.numeric import whole_of
-from garrison.run_options import certified
 from garrison.varying import parted
 from garrison.words import Hinting, count, hinted, hinted_methods, refusal, shown
 
@@ -171,23 +169,4 @@ def split(model: Any) -> tuple[Any, dict[str, Any]]:
     return plain, {"series": series, "functions": {}}
 
 
-def require_taken(
-    filter: _core.Filter, attacks: list[_core.Attack], functions: dict[str, Any], certificate: str
-) -> None:
-    """Refuse what needs a linear plant before it is designed for the constant part, which is none."""
-    if not functions:
-        return
-    if why := "" if filter.own else family_of(filter).linear(filter.params):
-        takes = (
-            "ScalarGain, Saturation without a promise (initial_error, detector, adaptive, table), or one of your own"
-        )
-        raise refusal("filter", f"{filter.name} with a NonlinearModel", takes, f"{why}; docs/how-to/changing-plants.md")
-    if any(attack.name == "false_trajectory" for attack in attacks):
-        advice = "its story moves by A; garrison.attacks.custom takes yours"
-        raise refusal("attack", "false_trajectory with a NonlinearModel", "another one", advice)
-    if certified(certificate):
-        advice = "certificates rest on A and C; docs/how-to/changing-plants.md"
-        raise refusal("certificate", f"{certificate!r} with a NonlinearModel", '"none"', advice)
-
-
-__all__ = ["ByAgent", "NonlinearModel", "require_taken", "split"]
+__all__ = ["ByAgent", "NonlinearModel", "split"]

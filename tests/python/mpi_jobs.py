@@ -92,7 +92,7 @@ def mpi(ranks: int, *words: object) -> subprocess.CompletedProcess[str]:
 
 
 def write_inputs(path: Path, **other: np.ndarray) -> None:
-    """The agents and links of `_read_scenario`, as any netCDF library writes them."""
+    """The agents and links of `reading_scenario`, as any netCDF library writes them."""
     rng = np.random.default_rng(5)
     tree = [(rng.integers(0, i), i) for i in range(1, 40)]
     variables = {

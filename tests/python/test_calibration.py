@@ -117,7 +117,10 @@ def test_bounds_and_levels_hold_on_the_records(years) -> None:
     found, network, clean, _ = years
     filter = gr.filters.Structural(false_alarm=1e-2)
     told: list[tuple[str, float]] = []
-    progress = lambda what, seconds: told.append((what, seconds))  # noqa: E731
+
+    def progress(what: str, seconds: float) -> None:
+        told.append((what, seconds))
+
     calibrated = gr.calibrate(found.model, network, filter, measurements=clean, attacked=2, progress=progress)
     assert 5 <= len(told) <= 100
     assert told[0][0] == "replaying structural with false_alarm = 0.01"

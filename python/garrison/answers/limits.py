@@ -130,7 +130,8 @@ def of_filter(model: _core.Model, network: _core.Network, filter: _core.Filter, 
     if "attacked" not in filter.params:
         return None
     needs = "all required conditions of `garrison check`, with the parameters given"
-    least, last, failed, depends = family_of(filter).least_attacked, -1, "", False
+    least, last = family_of(filter).least_attacked, -1
+    unmet: dict[int, str] = {}  # attacked -> what is not met with so many
     # More liars may be easier: a threshold that is too small for few is right for more, and "at most five" covers none.
     for attacked in range(least, model.agents + 1):
         if budget.over:
@@ -138,17 +139,18 @@ def of_filter(model: _core.Model, network: _core.Network, filter: _core.Filter, 
         try:
             found = check(model, network, make_filter(filter.name, filter.params | {"attacked": attacked}))
         except _core.InvalidInput as refused:
-            failed, depends = failed or str(refused), True
+            unmet[attacked] = str(refused)
             break
         if found.holds:
-            last, failed = attacked, ""
+            last = attacked
         else:
-            failed, depends = failed or "; ".join(c["name"] for c in found.failed), True
-    if not depends:
+            unmet[attacked] = "; ".join(c["name"] for c in found.failed)
+    if not unmet:
         return None
-    if not failed:
+    if last == model.agents:
         return Limit(_titled(filter), last, None, needs, "")
-    return Limit(_titled(filter), max(last, 0), last + 1 if last >= 0 else 0, needs, f"not met: {failed}")
+    why = unmet[max(last + 1, least)]
+    return Limit(_titled(filter), max(last, 0), last + 1 if last >= 0 else 0, needs, f"not met: {why}")
 
 
 def _titled(filter: _core.Filter) -> str:

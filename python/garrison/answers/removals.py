@@ -46,12 +46,13 @@ def smallest_removal(A: Array, rows: Array, may_go: list[int], budget: Any) -> R
     """
     if not _seen(A, rows):
         return Removal(0, 0, [])
-    example = _by_support(A, rows, may_go, budget)
+    at_once = _is_identity(A)
+    example = _by_support(A, rows, may_go, at_once, budget)
     if example is None:
         return Removal(len(may_go) + 1, len(may_go) + 1, [])
     most = len(example)
     certain = 0
-    if most > 1 and len(may_go) == len(rows) and _is_identity(A) and np.all(np.any(rows != 0.0, axis=1)):
+    if most > 1 and len(may_go) == len(rows) and at_once and np.all(np.any(rows != 0.0, axis=1)):
         attack = certificate.smallest_undetectable(rows, most - 1, 1e12)  # stops with the budget
         if attack.size is not None:
             return Removal(attack.size, attack.size, sorted(attack.example))
@@ -79,10 +80,12 @@ def _breaking(A: Array, rows: Array, may_go: list[int], size: int, budget: Any) 
     return None
 
 
-def _by_support(A: Array, rows: Array, may_go: list[int], budget: Any) -> list[int] | None:
-    """A breaking set that is quickly found: all sensors of one state. None: no such set breaks."""
+def _by_support(A: Array, rows: Array, may_go: list[int], at_once: bool, budget: Any) -> list[int] | None:
+    """A breaking set that is quickly found: all sensors of one state. None: no such set breaks.
+
+    at_once: A is the identity, so that nothing else shows a state.
+    """
     allowed = set(may_go)
-    at_once = _is_identity(A)  # then nothing else shows a state
     touching = [np.flatnonzero(column) for column in rows.T]
     for some in sorted(touching, key=len):
         if budget.over:

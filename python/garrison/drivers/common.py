@@ -66,6 +66,25 @@ def destination(
     return None
 
 
+def require_taken(
+    filter: _core.Filter, attacks: list[_core.Attack], functions: dict[str, Any], certificate: str
+) -> None:
+    """Refuse what needs a linear plant before it is designed for the constant part, which is none."""
+    if not functions:
+        return
+    if why := "" if filter.own else family_of(filter).linear(filter.params):
+        takes = (
+            "ScalarGain, Saturation without a promise (initial_error, detector, adaptive, table), or one of your own"
+        )
+        raise refusal("filter", f"{filter.name} with a NonlinearModel", takes, f"{why}; docs/how-to/changing-plants.md")
+    if any(attack.name == "false_trajectory" for attack in attacks):
+        advice = "its story moves by A; garrison.attacks.custom takes yours"
+        raise refusal("attack", "false_trajectory with a NonlinearModel", "another one", advice)
+    if run_options.certified(certificate):
+        advice = "certificates rest on A and C; docs/how-to/changing-plants.md"
+        raise refusal("certificate", f"{certificate!r} with a NonlinearModel", '"none"', advice)
+
+
 def designed(
     model: _core.Model,
     network: _core.Network,
@@ -86,10 +105,42 @@ def designed(
     return design
 
 
-def threads_of(filter: _core.Filter, attacks: list[_core.Attack], threads: int, changes: dict[str, Any]) -> int:
+def threads_of(filter: _core.Filter, attacks: list[_core.Attack], threads: int, known: dict[str, Any]) -> int:
     """Python code runs in one thread: a filter, an attack or a plant of one's own need not be thread-safe."""
     found = arguments.whole("threads", threads, 0)
-    return 1 if filter.own or changes["functions"] or any(attack.own for attack in attacks) else found
+    return 1 if filter.own or known["functions"] or any(attack.own for attack in attacks) else found
+
+
+def arguments_of_both(
+    filter: _core.Filter,
+    attacks: list[_core.Attack],
+    links: dict[str, Any],
+    keeping: Kept,
+    known: dict[str, Any],
+    store: Store | None,
+    *,
+    trials: int,
+    first_trial: int,
+    seed: int,
+    threads: int,
+    start: ArrayLike | None,
+    progress: Progress | None,
+) -> dict[str, Any]:
+    """What the core's drivers take alike, checked."""
+    return {
+        "trials": trials,
+        "first_trial": arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
+        "seed": arguments.whole("seed", seed, 0, 2**64 - 1),
+        "threads": threads_of(filter, attacks, threads, known),
+        "start": None if start is None else arguments.table("start", start),
+        "attacks": attacks,
+        "link": links,
+        "keep": keeping.names,
+        **known,
+        "progress": arguments.callback("progress", progress),
+        "sink": store and store.take,
+        "block_bytes": BLOCK_BYTES,
+    }
 
 
 def recorded(

@@ -11,20 +11,19 @@ from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, doubts, run_options
 from garrison.drivers.common import (
-    BLOCK_BYTES,
-    MOST_TRIALS,
     Attacks,
     Progress,
+    arguments_of_both,
     designed,
     destination,
     made_of,
     recorded,
     require_room,
-    threads_of,
+    require_taken,
     with_recipe,
 )
 from garrison.drivers.keeping import KEEP, Keep, kept
-from garrison.nonlinear import NonlinearModel, require_taken, split
+from garrison.nonlinear import NonlinearModel, split
 from garrison.numeric import matched, numbers, output_names
 from garrison.record import Run
 from garrison.store import written
@@ -161,18 +160,20 @@ def replay(
             design,
             measurements=y,
             truth=None if truth is None else numbers("truth", truth),
-            trials=trials,
-            first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
-            seed=arguments.whole("seed", seed, 0, 2**64 - 1),
-            threads=threads_of(filter, attacks, threads, changes),
-            start=None if start is None else arguments.table("start", start),
-            attacks=attacks,
-            link=links,
-            keep=keeping.names,
-            **known,
-            progress=arguments.callback("progress", progress),
-            sink=store and store.take,
-            block_bytes=BLOCK_BYTES,
+            **arguments_of_both(
+                filter,
+                attacks,
+                links,
+                keeping,
+                known,
+                store,
+                trials=trials,
+                first_trial=first_trial,
+                seed=seed,
+                threads=threads,
+                start=start,
+                progress=progress,
+            ),
         )
         run = recorded(data, base, ground, filter, design, attacks, wanted, known, data["steps"])
         run.warnings += doubts.of_silence(names, y.reshape(-1, base.outputs))

@@ -11,20 +11,19 @@ from numpy.typing import ArrayLike
 
 from garrison import _core, arguments, run_options
 from garrison.drivers.common import (
-    BLOCK_BYTES,
-    MOST_TRIALS,
     Attacks,
     Progress,
+    arguments_of_both,
     designed,
     destination,
     made_of,
     recorded,
     require_room,
-    threads_of,
+    require_taken,
     with_recipe,
 )
 from garrison.drivers.keeping import KEEP, Keep, kept
-from garrison.nonlinear import NonlinearModel, require_taken, split
+from garrison.nonlinear import NonlinearModel, split
 from garrison.numeric import numbers
 from garrison.objects import plain_data
 from garrison.record import Run
@@ -170,18 +169,20 @@ def simulate(
             start_error=arguments.moderate("start_error", start_error),
             noise=noise if isinstance(noise, str) else "auto",
             disturbances=np.zeros((0, 0)) if isinstance(noise, str) else arguments.table("noise", noise),
-            trials=trials,
-            first_trial=arguments.whole("first_trial", first_trial, 0, MOST_TRIALS - trials),
-            seed=arguments.whole("seed", seed, 0, 2**64 - 1),
-            threads=threads_of(filter, attacks, threads, changes),
-            start=None if start is None else arguments.table("start", start),
-            attacks=attacks,
-            link=links,
-            keep=keeping.names,
-            **known,
-            progress=arguments.callback("progress", progress),
-            sink=store and store.take,
-            block_bytes=BLOCK_BYTES,
+            **arguments_of_both(
+                filter,
+                attacks,
+                links,
+                keeping,
+                known,
+                store,
+                trials=trials,
+                first_trial=first_trial,
+                seed=seed,
+                threads=threads,
+                start=start,
+                progress=progress,
+            ),
         )
         run = recorded(data, base, ground, filter, design, attacks, wanted, known, data["steps"])
         drawn = noise if isinstance(noise, str) else plain_data(numbers("noise", noise))

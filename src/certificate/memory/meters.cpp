@@ -35,16 +35,11 @@ bool determines(const MatrixRef& H) {
                      [&](const detail::RowPart& p) { return of_full_rank(H(p.rows, p.columns)); });
 }
 
-/// Projector onto the range of H.
-Matrix hat(const MatrixRef& H) {
-  Matrix Lam = Matrix::Zero(H.rows(), H.rows());
-  for (const detail::RowPart& p : detail::row_parts(H)) {
-    const Matrix part = H(p.rows, p.columns);
-    const Eigen::HouseholderQR<Matrix> qr(part);
-    const Matrix Q = qr.householderQ() * Matrix::Identity(part.rows(), part.cols());
-    Lam(p.rows, p.rows) = Q * Q.transpose();
-  }
-  return Lam;
+/// Projector onto the range of one part.
+Matrix hat(const Matrix& part) {
+  const Eigen::HouseholderQR<Matrix> qr(part);
+  const Matrix Q = qr.householderQ() * Matrix::Identity(part.rows(), part.cols());
+  return Q * Q.transpose();
 }
 
 /// The rows that are left; `out` need not be sorted.
@@ -55,6 +50,10 @@ Matrix without(const MatrixRef& H, const std::vector<Index>& out) {
   for (Eigen::Index r = 0; r < H.rows(); ++r)
     if (std::find(out.begin(), out.end(), static_cast<Index>(r)) == out.end()) rest.row(at++) = H.row(r);
   return rest;
+}
+
+[[noreturn]] void refuse_rank() {
+  refuse("H", "rows that do not determine the state", "full column rank", "remove the reference");
 }
 
 void require_rows(const MatrixRef& H) {
@@ -158,9 +157,9 @@ Meters meters(const MatrixRef& H, std::span<const int> source) {
     if (rows_of.size() <= static_cast<std::size_t>(of)) rows_of.resize(static_cast<std::size_t>(of) + 1);
     rows_of[static_cast<std::size_t>(of)].push_back(r);
   }
-  if (!determines(H))
-    refuse("H", "rows that do not determine the state", "full column rank", "remove the reference");
-  const Matrix Lam = hat(H);
+  if (!determines(H)) refuse_rank();
+  Matrix Lam = Matrix::Zero(m, m);
+  for (const detail::RowPart& p : detail::row_parts(H)) Lam(p.rows, p.rows) = hat(H(p.rows, p.columns));
   const auto count = static_cast<Eigen::Index>(rows_of.size());
   const auto block_norm = [&](Eigen::Index a, Eigen::Index b) {
     return spectral_norm(Lam(rows_of[static_cast<std::size_t>(a)], rows_of[static_cast<std::size_t>(b)]));
@@ -196,11 +195,12 @@ SmallestAttack smallest_undetectable(const MatrixRef& H, int most, double tries)
   if (!(H.rowwise().norm().minCoeff() > 1.0 / kHuge))
     refuse("H", "a row of zeros", "rows that measure something");
   const Matrix unit = H.rowwise().normalized();
-  if (!determines(unit))
-    refuse("H", "rows that do not determine the state", "full column rank", "remove the reference");
   std::vector<Search> searches;  // the smallest set is one of a single part
-  for (detail::RowPart& p : detail::row_parts(unit))
-    searches.emplace_back(Matrix(unit(p.rows, p.columns)), std::move(p.rows), tries);
+  for (detail::RowPart& p : detail::row_parts(unit)) {
+    Matrix part = unit(p.rows, p.columns);
+    if (!of_full_rank(part)) refuse_rank();
+    searches.emplace_back(std::move(part), std::move(p.rows), tries);
+  }
   SmallestAttack found;
   bool complete = true;
   for (int k = 1; k <= std::min(most, static_cast<int>(H.rows())); ++k) {

@@ -18,6 +18,12 @@ namespace {
 constexpr int kPauseMs = 20;
 constexpr Micros kFlushPause = 1'000'000;
 constexpr Micros kSettling = 3'000'000;
+constexpr int kIdleMs = 200;  // until there is a loop to be there for
+
+Descriptor signals_to_read() {
+  const sigset_t watched = node_signals();
+  return Descriptor(::signalfd(-1, &watched, SFD_NONBLOCK | SFD_CLOEXEC));
+}
 }  // namespace
 
 Desk::Desk(Station& station, std::uint64_t boot, std::unique_ptr<Sensor> sensor, Ring& ring, bool print)
@@ -40,23 +46,21 @@ Desk::Desk(Station& station, std::uint64_t boot, std::unique_ptr<Sensor> sensor,
 
 void Desk::run(Loop& loop) {
   loop_ = &loop;
-  const sigset_t watched = node_signals();
-  const Descriptor signals(::signalfd(-1, &watched, SFD_NONBLOCK | SFD_CLOEXEC));
+  const Descriptor signals = signals_to_read();
   saved_at_ = now().steady;
   settles_at_ = saved_at_ + kSettling;
   while (!ended(signals.get())) {
-    wait(signals.get());
+    wait(signals.get(), kPauseMs);
     tick(now().steady);
   }
   loop.end();
 }
 
 bool Desk::wait_until(const std::function<bool()>& ready) {
-  const sigset_t watched = node_signals();
-  const Descriptor signals(::signalfd(-1, &watched, SFD_NONBLOCK | SFD_CLOEXEC));
+  const Descriptor signals = signals_to_read();
   while (!ready()) {
     if (ended(signals.get())) return false;
-    wait(signals.get());
+    wait(signals.get(), kIdleMs);
     if (socket_) socket_->serve();
     notify("WATCHDOG=1");
   }
@@ -76,11 +80,11 @@ bool Desk::ended(int signals) {
   return false;
 }
 
-void Desk::wait(int signals) {
+void Desk::wait(int signals, int milliseconds) {
   std::vector<pollfd> all{{signals, POLLIN, 0}};
   if (sensor_->descriptor() >= 0) all.push_back({sensor_->descriptor(), POLLIN, 0});
   if (socket_) socket_->wait_for(all);
-  ::poll(all.data(), all.size(), kPauseMs);
+  ::poll(all.data(), all.size(), milliseconds);
 }
 
 void Desk::tick(Micros steady) {

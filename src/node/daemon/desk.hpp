@@ -35,7 +35,7 @@ class Desk {
 
  private:
   bool ended(int signals);
-  void wait(int signals);
+  void wait(int signals, int milliseconds);
   void tick(Micros steady);
   void record(Note note, Bytes content);
   void status(Bytes content);
