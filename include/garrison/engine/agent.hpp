@@ -16,6 +16,8 @@
 
 namespace garrison {
 
+struct AgentPart;
+
 /// The same agent as inside the engine, with the same bits: `sense` once per sample, then per round `deliver`
 /// what came and `fuse`. Nothing is allocated after construction but by `reset` and what returns vectors. It
 /// holds its own part of the gains only.
@@ -38,6 +40,8 @@ class GARRISON_EXPORT Agent {
   virtual std::string_view family() const = 0;
   /// Fingerprint of the design that this is an agent of: messages of another are not for it.
   virtual std::uint64_t design() const = 0;
+  /// Its plant and sensor, for drivers of plants with known inputs: the agent itself is not told of them.
+  virtual const AgentPart& part() const noexcept = 0;
   virtual int id() const = 0;
   virtual int agents() const = 0;  ///< of the whole network
   virtual int states() const = 0;
@@ -112,6 +116,7 @@ struct AgentPart {
   Matrix C_transposed;  ///< n x outputs, so that rows of C follow each other in memory
   std::vector<int> neighbours;
   std::uint64_t design = 0;  ///< fingerprint of the whole design: snapshots and bodies of another are refused
+  Matrix B = {};             ///< n x inputs; empty = no known inputs
 
   template <class V>
   void visit(V& v) {
@@ -121,7 +126,19 @@ struct AgentPart {
     v("C_transposed", C_transposed);
     v("neighbours", neighbours);
     v("design", design);
+    v("B", B);
   }
 };
+
+/// As the functions of a family see it; borrows A and C.
+inline Local local_of(const AgentPart& who) noexcept {
+  return {who.id,
+          who.agents,
+          static_cast<int>(who.A.rows()),
+          static_cast<int>(who.C_transposed.cols()),
+          static_cast<int>(who.neighbours.size()),
+          who.A.data(),
+          who.C_transposed.data()};
+}
 
 }  // namespace garrison

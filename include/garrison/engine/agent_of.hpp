@@ -30,13 +30,7 @@ class AgentOf final : public Agent {
           std::unique_ptr<certificate::Certifier> certifier = nullptr)
       : gains_(std::move(gains)),
         part_(std::move(part)),
-        local_{part_.id,
-               part_.agents,
-               static_cast<int>(part_.A.rows()),
-               static_cast<int>(part_.C_transposed.cols()),
-               static_cast<int>(part_.neighbours.size()),
-               part_.A.data(),
-               part_.C_transposed.data()},
+        local_(local_of(part_)),
         rounds_(F::rounds(*gains_)),
         mail_(part_.neighbours, rounds_),
         evidence_(std::move(certifier), part_.neighbours, mail_.places(), part_.id, part_.agents),
@@ -52,6 +46,7 @@ class AgentOf final : public Agent {
 
   std::string_view family() const override { return F::name; }
   std::uint64_t design() const override { return part_.design; }
+  const AgentPart& part() const noexcept override { return part_; }
   int id() const override { return local_.id; }
   int agents() const override { return local_.agents; }
   int states() const override { return local_.states; }

@@ -2,6 +2,7 @@
 // Turns a family F into an AnyFilter. Included only by the one source file that instantiates the family.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -26,11 +27,40 @@ auto dispatched(int states, const Action& action) {
     return dispatch(states, action);
 }
 
+/// Refuses an agent of more rounds, or in a network of more agents, than agents on their own are made for.
+template <class F>
+void require_counts(const Part<F>& part) {
+  const int rounds = F::rounds(part.gains);
+  if (rounds > kMostRounds)
+    refuse(std::string(F::name) + ".rounds", std::to_string(rounds),
+           "at most " + std::to_string(kMostRounds) + " for agents on their own");
+  if (part.who.agents > kMostAgents)
+    refuse("design", "an agent of " + std::to_string(part.who.agents),
+           "at most " + std::to_string(kMostAgents) + " for agents on their own",
+           "a file that claims so many is forged or damaged");
+}
+
+/// Refuses an agent whose mailboxes take more memory than makes sense, before they do.
+template <class F, int n>
+void require_room(const Part<F>& part, const certificate::Certifier* certifier) {
+  const double bytes = mail_bytes<F, n>(part.gains, part.who, certifier);
+  const auto megabytes = [](double some) { return std::to_string(std::llround(some / 1e6)) + " MB"; };
+  if (bytes > kMostMail)
+    refuse("design",
+           "an agent of " + std::to_string(part.who.agents) + " whose mailboxes, for " +
+               std::to_string(part.who.neighbours.size()) + " neighbours and " +
+               std::to_string(F::rounds(part.gains)) + " rounds, take " + megabytes(bytes),
+           "at most " + megabytes(kMostMail),
+           "design with fewer rounds or neighbours; a file that nobody designed so is forged or damaged");
+}
+
 template <class F>
 std::unique_ptr<Agent> agent_of(Part<F> part) {
+  require_counts(part);
   auto certifier = certifier_of(part.certificate, part.who, F::rounds(part.gains));
-  auto gains = std::make_shared<const typename F::Gains>(std::move(part.gains));
   const auto make = [&]<int n>() -> std::unique_ptr<Agent> {
+    require_room<F, n>(part, certifier.get());
+    auto gains = std::make_shared<const typename F::Gains>(std::move(part.gains));
     return std::make_unique<AgentOf<F, n>>(std::move(gains), std::move(part.who), std::move(certifier));
   };
   if constexpr (requires { F::only_states; })
@@ -70,13 +100,7 @@ class PreparedOf final : public Prepared {
     if constexpr (requires { F::check_log(*gains_, model_, measurements); })
       F::check_log(*gains_, model_, measurements);
   }
-  std::unique_ptr<Agent> agent(int id) const override {
-    constexpr int kMostRounds = 1000;  // it keeps the messages of two samples
-    if (F::rounds(*gains_) > kMostRounds)
-      refuse(std::string(F::name) + ".rounds", std::to_string(F::rounds(*gains_)),
-             "at most " + std::to_string(kMostRounds) + " for agents on their own");
-    return agent_of<F>(part(id));
-  }
+  std::unique_ptr<Agent> agent(int id) const override { return agent_of<F>(part(id)); }
   void require_varying(const std::string& what) const override {
     std::string reason = "its gains are designed for one A and C";
     if constexpr (requires { F::needs_constant(*gains_); }) reason = F::needs_constant(*gains_);
@@ -116,7 +140,8 @@ class PreparedOf final : public Prepared {
     if (id < 0 || id >= model_.agents())
       refuse("id", std::to_string(id), "an agent in 0.." + std::to_string(model_.agents() - 1));
     const auto heard = network_.neighbours(id);
-    return {id, model_.agents(), model_.A(), model_.C(id).transpose(), {heard.begin(), heard.end()}, 0};
+    return {id, model_.agents(), model_.A(), model_.C(id).transpose(), {heard.begin(), heard.end()},
+            0,  model_.B()};
   }
   Part<F> part(int id) const {
     AgentPart who = part_of(id);

@@ -11,6 +11,7 @@
 
 #include "garrison/core/abi.hpp"
 #include "garrison/engine/agent_of.hpp"
+#include "garrison/engine/agent_room.hpp"
 #include "garrison/wire/design_head.hpp"
 
 namespace garrison {
@@ -69,26 +70,21 @@ bool whole(const Part<F>& part) noexcept {
   const AgentPart& who = part.who;
   const auto n = who.A.rows();
   const auto stranger = [&](int j) { return j < 0 || j >= who.agents || j == who.id; };
-  if (who.id < 0 || who.id >= who.agents || n < 1 || who.A.cols() != n || who.C_transposed.rows() != n)
+  if (who.id < 0 || who.id >= who.agents || n < 1 || who.A.cols() != n || who.C_transposed.rows() != n ||
+      (who.B.size() != 0 && who.B.rows() != n))
     return false;
   if (std::any_of(who.neighbours.begin(), who.neighbours.end(), stranger) ||
       std::adjacent_find(who.neighbours.begin(), who.neighbours.end(), std::greater_equal<>()) !=
           who.neighbours.end())
     return false;
-  const Local local{who.id,
-                    who.agents,
-                    static_cast<int>(n),
-                    static_cast<int>(who.C_transposed.cols()),
-                    static_cast<int>(who.neighbours.size()),
-                    nullptr,
-                    nullptr};
-  return fits<F>(part.gains, local, who.neighbours);
+  return fits<F>(part.gains, local_of(who), who.neighbours);
 }
 
-/// The agent of a file that `write_part` (engine/design_file.hpp) wrote, or null. `why`: size, damaged,
-/// foreign (of another version, family or number of states, a whole design, a certificate, which needs the
-/// whole library, or gains that need what this build has not). Allocates; where memory runs out the process
-/// ends if it was compiled without exceptions.
+/// The agent of a file that `write_part` (engine/design_file.hpp) wrote, or null. `why`: size (of
+/// the file, or of what it claims: engine/agent_room.hpp), damaged, foreign (of another version, family or
+/// number of states, a whole design, a certificate, which needs the whole library, or gains that need what
+/// this build has not). Allocates; where memory runs out the process ends if it was compiled without
+/// exceptions.
 template <class F, int n>
 std::unique_ptr<AgentOf<RunsOf<F>, n>> agent_of_part(std::span<const std::byte> file, Refusal& why) {
   wire::DesignHead head;
@@ -105,6 +101,9 @@ std::unique_ptr<AgentOf<RunsOf<F>, n>> agent_of_part(std::span<const std::byte> 
   if (!part.certificate.empty()) return nullptr;
   if (part.who.A.rows() != head.states || !whole(part)) return nullptr;
   if (!runs<RunsOf<F>>(part.gains)) return nullptr;
+  why = Refusal::size;
+  if (RunsOf<F>::rounds(part.gains) > kMostRounds || part.who.agents > kMostAgents) return nullptr;
+  if (mail_bytes<RunsOf<F>, n>(part.gains, part.who, nullptr) > kMostMail) return nullptr;
   why = Refusal::none;
   return std::make_unique<AgentOf<RunsOf<F>, n>>(
       std::make_shared<const typename F::Gains>(std::move(part.gains)), std::move(part.who));
