@@ -112,6 +112,12 @@ TEST_CASE("settings: refusals say file, line, key, and what to do") {
   CHECK(says(settings_with("name = \"DUB\"", "name = 7"), {"line 1, name", "got 7", "quotes"}));
   CHECK(says(settings_with("\"HERE\"", "\"127.0.0.1\""), {"line 6, [listen].address", "host:port"}));
   CHECK(says(settings_with("\"HERE\"", "\"127.0.0.1:70000\""), {"[listen].address", "host:port"}));
+  CHECK(says(settings_with("\"HERE\"", "\"239.1.2.3:7470\""), {"[listen].address", "an address of many"}));
+  CHECK(says(settings_with("\"HERE\"", "\"[ff02::1]:7470\""), {"[listen].address", "an address of many"}));
+  CHECK(says(settings_with("[clock]", "[input]\nsource = \"udp\"\n[clock]"),
+             {"[input].source", "got \"udp\"", "only known once they are applied"}));
+  CHECK(
+      says(settings_with("[clock]", "[input]\nsource = \"file\"\n[clock]"), {"[input].path", "got nothing"}));
   CHECK(says(settings_with("command = \"cat\"", ""), {"[sensor].path", "named pipe"}));
   CHECK(says(settings_with("scale = [2.0]", "scale = [nan]"), {"[sensor].scale", "finite"}));
   CHECK(says(
@@ -144,6 +150,22 @@ TEST_CASE("roster: what cannot be is refused") {
   CHECK(says(with("start = 2026-11-28T22:00:00.5+01:00", ""),
              {"[run].start", "got nothing", "2026-01-31T12:00:00Z"}));
   CHECK(says(with("address", "adress"), {"did you mean \"address\""}));
+  CHECK(says(with("name = \"n1", "name = \"n" + std::string(300, '1')),
+             {"name", "got 301 bytes", "at most 200"}));
+  CHECK(says(with("HERE", "0.0.0.0:7470"), {"address", "0.0.0.0:7470", "that others send to"}));
+  CHECK(says(with("HERE", "224.0.0.1:7470"), {"address", "an address of many"}));
+}
+
+TEST_CASE("an address that no socket can be bound to is said with what the system says") {
+  const auto why = [](const char* text) {
+    return refused([&] { require_own("[listen].address = " + std::string(text), address_from("", text)); });
+  };
+  CHECK(why("127.0.0.1:7470").empty());
+  CHECK(why("0.0.0.0:7470").empty());
+  CHECK(
+      says(why("192.0.2.1:7470"), {"[listen].address = 192.0.2.1:7470", "Cannot assign", "of this machine"}));
+  CHECK(text_of(address_from("", "127.0.0.1:7470")) == "127.0.0.1:7470");
+  CHECK(text_of(address_from("", "[::1]:7470")) == "[::1]:7470");
 }
 
 TEST_CASE("schedule: rounds have to fit into the period") {
@@ -164,6 +186,8 @@ TEST_CASE("schedule and design make another run") {
   CHECK(prologue_of(1, s, x0) != prologue_of(2, s, x0));
   CHECK(prologue_of(1, s, x0) != prologue_of(1, later, x0));
   CHECK(prologue_of(1, s, x0) != prologue_of(1, s, {}));
+  CHECK(prologue_of(1, s, x0) == prologue_of(1, s, x0, {}));
+  CHECK(prologue_of(1, s, x0) != prologue_of(1, s, x0, x0));
 }
 
 // toml++ 3.3 held these for unreachable: found by libFuzzer in 440 runs.

@@ -86,6 +86,7 @@ TEST_CASE("a table has a row a sample, from the first sample on") {
     sensor.measure(none, 0, y);
     CHECK(std::isnan(y[0]));
   }
+  CHECK(sensor.counters().taken == 1);  // a row that a sample came to
   CHECK_THROWS_WITH_AS(Sensor(settings, 3, "node.toml"), doctest::Contains("line 1"), InvalidInput);
   const std::string zeros("1,2\n\0\x1b[1m\n", 11);
   replace_file(folder / "y.csv", text_bytes(zeros));

@@ -65,7 +65,8 @@ def status(name: str, **other: Any) -> dict[str, Any]:
         "counters": dict.fromkeys(COUNTERS, 7),
         "sensor": {"taken": 5, "malformed": 1, "outside": 0, "restarts": 0},
         "snapshot_age_s": 0.5,
-        "log_failed": 0,
+        "log_failed": 3,
+        "states_refused": 1,
         "outside": {"stranger": 4},
         "links": [{**link, "fates": {"taken": 12, "replay": 3}}],
     } | other
@@ -80,6 +81,8 @@ def test_metrics_are_in_the_format_of_prometheus() -> None:
     assert text.count("# TYPE") == len(set(re.findall(r"# TYPE (\S+)", text)))
     assert 'garrison_up{node="gone"} 0' in text
     assert 'garrison_proved{node="a"} 2' in text
+    assert 'garrison_log_failed_total{node="a"} 3' in text
+    assert 'garrison_states_refused_total{node="a"} 1' in text
     assert 'garrison_bound{node="a"} 0.25' in text
     assert 'garrison_bound{node="c"}' not in text  # no bound is no number
     assert 'garrison_frames_total{node="a",peer="b \\"x\\"\\\\",fate="replay"} 3' in text

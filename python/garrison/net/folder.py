@@ -1,5 +1,6 @@
 """The files of a network of nodes: keys, roster, parts of the design, and a folder for every node."""
 
+import math
 import re
 import socket
 import subprocess
@@ -9,10 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from garrison.importers.toml import document
 from garrison.net.plan import Plan
 from garrison.net.programs import KEYGEN, program
+
+Array = NDArray[np.float64]
+_AFTER_MS = 120_000
 
 
 @dataclass
@@ -53,6 +58,8 @@ def write_network(plan: Plan, folder: Path, start: float, programs: str | None) 
     for node in nodes:
         plan.reference.prepared.save(node.path / "part.gdesign", agent=node.id)
         np.savetxt(node.path / "sensor.csv", plan.reference.sensor(node.id), fmt="%.17g", delimiter=",")
+        if plan.scenario.inputs is not None:
+            np.savetxt(node.path / "inputs.csv", _inputs(plan, plan.scenario.inputs), fmt="%.17g", delimiter=",")
         node.settings.write_text(_settings(plan, node))
         node.clock.write_bytes(bytes(8))
     return nodes
@@ -101,7 +108,13 @@ def _heard(plan: Plan, agents: int) -> list[list[int]]:
     return [sorted(ids) for ids in heard]
 
 
+def _inputs(plan: Plan, known: Array) -> Array:
+    """Those of the run, and none for as long as the daemons may go on behind it: a node ends with its inputs."""
+    return np.vstack([known, np.zeros((math.ceil(_AFTER_MS / plan.period_ms), known.shape[1]))])
+
+
 def _settings(plan: Plan, node: NodeFolder) -> str:
+    known = {} if plan.scenario.inputs is None else {"input": {"source": "file", "path": "inputs.csv"}}
     return document(
         {
             "name": node.name,
@@ -113,7 +126,8 @@ def _settings(plan: Plan, node: NodeFolder) -> str:
             "clock": {"require_synchronised": False},
             "socket": {"path": "node.sock"},
             "state": {"every_s": plan.state_every_s},
-        },
+        }
+        | known,
         [],
     )
 

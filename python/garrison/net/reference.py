@@ -35,8 +35,8 @@ def reference_of(scenario: Scenario) -> Reference:
     filter = scenario.filters[0][1]
     assert filter is not None
     prepared = prepare(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
-    if scenario.inputs is not None or scenario.varying is not None or scenario.present is not None:
-        got = "known inputs, or a plant or network that changes in time"
+    if scenario.varying is not None or scenario.present is not None:
+        got = "a plant or network that changes in time"
         raise refusal("scenario", got, "none: daemons do not take them yet", "`garrison run` does")
     initial = np.asarray(scenario.run.get("start", np.zeros(scenario.model.A.shape[0])), dtype=float)
     if initial.ndim != 1:
@@ -54,6 +54,8 @@ def reference_of(scenario: Scenario) -> Reference:
 
 
 def _run(scenario: Scenario, prepared: Prepared, options: dict[str, object]) -> Run:
+    if scenario.inputs is not None:
+        options = {**options, "inputs": scenario.inputs}
     if scenario.measurements is not None:
         return prepared.replay(measurements=scenario.measurements, truth=scenario.truth, **options)
     more = {key: scenario.run[key] for key in ("x0", "start_error") if key in scenario.run}

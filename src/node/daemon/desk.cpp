@@ -49,10 +49,13 @@ void Desk::run(Loop& loop) {
   const Descriptor signals = signals_to_read();
   saved_at_ = now().steady;
   settles_at_ = saved_at_ + kSettling;
-  while (!ended(signals.get())) {
+  while (!ended(signals.get()) && !loop.over()) {
     wait(signals.get(), kPauseMs);
     tick(now().steady);
   }
+  if (loop.over())
+    say(Priority::notice, "the known inputs end with sample " + std::to_string(station_.inputs.last()) +
+                              ", and the node with them ([input].path)");
   loop.end();
 }
 
@@ -132,6 +135,8 @@ void Desk::record(Note note, Bytes content) {
 void Desk::status(Bytes content) {
   known_ = status_.read(content, static_cast<std::size_t>(station_.agent->states()), station_.links.size());
   if (!known_ || !status_.head.ended) return;
+  const auto led = station_.inputs.before(status_.head.sample.sample);
+  around_.input.assign(led.begin(), led.end());
   const bool wanted = log_ || print_ || (socket_ && socket_->watched());
   if (!wanted) return;
   const std::string line = sample_json(status_, around_);

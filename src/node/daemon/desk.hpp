@@ -26,7 +26,9 @@ class Desk {
 
   /// Serves clients until `ready`; false where a signal ended the node before.
   bool wait_until(const std::function<bool()>& ready);
-  /// Until a signal comes; the loop is told to end, and what it leaves is written.
+  /// What an earlier life left is not taken.
+  void count_refused_state() noexcept { ++around_.states_refused; }
+  /// Until a signal comes or the loop is over; it is told to end, and what it leaves is written.
   void run(Loop& loop);
   /// What came through the ring, to files and clients.
   void drain();

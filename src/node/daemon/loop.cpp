@@ -63,15 +63,16 @@ Loop::Loop(Station& station, std::uint64_t boot, Udp& udp, const Sensor& sensor,
       early_(static_cast<std::size_t>(station.agent->rounds()) * station.agent->neighbours().size() *
              (kEntryHead + station.agent->most_bytes())) {}
 
-void Loop::begin(Bytes snapshot) {
+bool Loop::begin(Bytes snapshot) {
   node_.sign_with(authors_);
   now_ = garrison::node::now();
   Core& core = node_.core();
-  if (!snapshot.empty() && core.restore(snapshot, now_)) return;
+  if (!snapshot.empty() && core.restore(snapshot, now_)) return true;
   if (station_.schedule.slot(now_.wall) <= station_.agent->start())
     core.start(station_.initial, now_);
   else
     core.listen(now_);
+  return snapshot.empty();
 }
 
 void Loop::run() noexcept {
@@ -81,6 +82,7 @@ void Loop::run() noexcept {
   }
   put_snapshot();
   put_status(nullptr);
+  over_.store(true);
 }
 
 void Loop::contradiction(const Statement& a, const Statement& b) noexcept {
@@ -112,8 +114,12 @@ void Loop::wait() noexcept {
   ::ppoll(&socket, 1, &time, nullptr);
 }
 
-/// A sample that is under way is finished, or given up when the next one begins.
+/// A sample that is under way is finished, or given up when the next one begins. The last that known inputs
+/// lead to is there until its end: others may have lost what was said in it.
 bool Loop::may_end() const noexcept {
+  const std::int64_t last = station_.inputs.last();
+  if (station_.agent->sample() >= last && garrison::node::now().wall >= station_.schedule.begin(last + 1))
+    return true;
   if (!ending_.load(std::memory_order_relaxed)) return false;
   return node_.core().state() != Core::State::rounds || station_.agent->round() >= station_.agent->rounds() ||
          now_.wall >= station_.schedule.begin(station_.agent->sample() + 1);
@@ -127,6 +133,7 @@ void Loop::send(int neighbour, Bytes datagram) noexcept {
 
 void Loop::measure(std::int64_t sample, std::span<double> y) noexcept {
   sensor_.load()->measure(sample, now_.wall, y);
+  station_.inputs.without(sample, y);
 }
 
 void Loop::journal(const Entry& entry) noexcept {
@@ -193,7 +200,9 @@ void Loop::put_status(const Sample* sample) noexcept {
   std::memcpy(at, &head_, sizeof head_);
   at += sizeof head_;
   const auto n = static_cast<std::size_t>(station_.agent->states());
-  station_.agent->estimate({reinterpret_cast<double*>(at), n});
+  const std::span<double> estimate(reinterpret_cast<double*>(at), n);
+  station_.agent->estimate(estimate);
+  station_.inputs.add(station_.agent->sample(), estimate);
   at += 8 * n;
   for (std::size_t k = 0; k < node_.links(); ++k, at += sizeof(LinkStatus)) {
     const LinkStatus link{node_.link(k, now_), node_.fates(k)};

@@ -33,8 +33,9 @@ class Loop final : private World {
   /// Keeps references to all but `boot`.
   Loop(Station& station, std::uint64_t boot, Udp& udp, const Sensor& sensor, Ring& ring);
 
-  /// How the node begins: from a snapshot, with the network before its first sample, or by listening.
-  void begin(Bytes snapshot);
+  /// How the node begins: from a snapshot, with the network before its first sample, or by listening. False
+  /// when there is a snapshot that the agent does not take: then as without it.
+  bool begin(Bytes snapshot);
   void run() noexcept;
   /// From the other thread. Ends after the sample that is under way.
   void end() noexcept { ending_.store(true); }
@@ -45,6 +46,8 @@ class Loop final : private World {
   void tamper_with(Tamper& tamper) noexcept { node_.tamper_with(tamper); }
   /// From the other thread: the log has to begin anew.
   void ask_fresh() noexcept { fresh_wanted_.store(true); }
+  /// It has ended by itself, or as it was told to.
+  bool over() const noexcept { return over_.load(); }
   /// Grows while the loop turns.
   std::uint64_t turns() const noexcept { return turns_.load(std::memory_order_relaxed); }
 
@@ -82,6 +85,7 @@ class Loop final : private World {
   Micros status_at_ = 0;
   Micros end_by_ = 0;
   std::atomic<bool> ending_{false};
+  std::atomic<bool> over_{false};
   std::atomic<bool> fresh_wanted_{false};
   std::atomic<std::uint64_t> turns_{0};
 };

@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::int64_t kMostMs = 7LL * 24 * 3600 * 1000;
 constexpr Micros kLeastRound = 1000;
+constexpr std::size_t kLongestName =
+    200;  // of logs: the start and a number follow, and 255 are a file's most
 constexpr Micros kEarliest = 946'684'800'000'000, kLatest = 4'102'444'800'000'000;  // 2000 and 2100
 
 Micros micros(double ms) { return std::llround(1000.0 * ms); }
@@ -23,8 +25,13 @@ Member read_member(const Section& section) {
   m.id = static_cast<int>(section.whole("id", 0, 65535));
   m.name = section.text("name", std::to_string(m.id));
   if (m.name.empty()) refuse(section.where("name"), "\"\"", "a name, or none: then its id is the name");
+  if (m.name.size() > kLongestName)
+    refuse(section.where("name"), std::to_string(m.name.size()) + " bytes",
+           "at most " + std::to_string(kLongestName), "a shorter name: files are named by it");
   m.open = open_key_from(section.where("key"), section.text("key"));
   m.address = address_from(section.where("address"), section.text("address"));
+  if (is_any(m.address))
+    refuse(section.where("address"), section.text("address"), "the address that others send to");
   m.directed = section.has("hears");
   for (const double id : section.numbers("hears")) {
     if (id != std::floor(id) || id < 0 || id > 65535)
@@ -101,16 +108,23 @@ Schedule schedule_for(const Roster& roster, int rounds) {
   return s;
 }
 
-Prologue prologue_of(std::uint64_t design, const Schedule& schedule, std::span<const double> initial) {
+namespace {
+std::vector<std::byte> bytes_of(std::span<const double> numbers) {
+  std::vector<std::byte> out(8 * numbers.size());
+  for (std::size_t k = 0; k < numbers.size(); ++k) wire::store_double(out.data() + 8 * k, numbers[k]);
+  return out;
+}
+}  // namespace
+
+Prologue prologue_of(std::uint64_t design, const Schedule& schedule, std::span<const double> initial,
+                     std::span<const double> inputs) {
   std::array<std::byte, 40> numbers;
   const std::uint64_t all[] = {design, static_cast<std::uint64_t>(schedule.start),
                                static_cast<std::uint64_t>(schedule.period),
                                static_cast<std::uint64_t>(schedule.round), initial.size()};
   for (std::size_t k = 0; k < 5; ++k) wire::store(numbers.data() + 8 * k, all[k]);
-  std::vector<std::byte> start(8 * initial.size());
-  for (std::size_t k = 0; k < initial.size(); ++k) wire::store_double(start.data() + 8 * k, initial[k]);
   Prologue out;
-  hash({}, {text_bytes("garrison-node 1"), numbers, start}, out);
+  hash({}, {text_bytes("garrison-node 1"), numbers, bytes_of(initial), bytes_of(inputs)}, out);
   return out;
 }
 

@@ -39,6 +39,7 @@ Roster parse_roster(const std::string& text, const std::string& path);
 Schedule schedule_for(const Roster& roster, int rounds);
 
 /// What both ends of a link must agree on: design, schedule and start. Nodes of another run cannot link up.
-Prologue prologue_of(std::uint64_t design, const Schedule& schedule, std::span<const double> initial);
+Prologue prologue_of(std::uint64_t design, const Schedule& schedule, std::span<const double> initial,
+                     std::span<const double> inputs = {});
 
 }  // namespace garrison::node

@@ -34,14 +34,26 @@ bool wait_for_clock(const Settings& settings, Desk& desk) {
   return desk.wait_until(clock_synchronised);
 }
 
-/// What the last life left; nothing, with a word, where that cannot be used.
-std::vector<std::byte> kept_state(const Station& station) {
+void require_inputs_now(const Station& station) {
+  const std::int64_t slot = station.schedule.slot(now().wall);
+  if (slot > station.inputs.last())
+    refuse(station.settings.inputs, std::to_string(station.inputs.last()) + " rows",
+           std::to_string(slot) + " at least: the run is at that sample",
+           "the inputs of the whole run, the same on all nodes");
+}
+
+/// With what the last life left; where that cannot be used, with a word, as without it.
+void begin(Loop& loop, Desk& desk, const Station& station) {
   const std::string& folder = station.settings.state_folder;
-  auto found = read_state(folder, station.run);
-  if (!found && has_state(folder))
-    say(Priority::warning,
-        folder + "/state: got a file that is damaged or of another run; the node starts without it");
-  return found.value_or(std::vector<std::byte>{});
+  const bool kept = has_state(folder);
+  const auto found = read_state(folder, station.run);
+  const bool taken = loop.begin(found.value_or(std::vector<std::byte>{}));
+  if (!kept || (found && taken)) return;
+  desk.count_refused_state();
+  say(Priority::warning, folder + "/state: got " +
+                             (found ? "that of another node of this run, or of another version"
+                                    : "a file that is damaged or of another run") +
+                             ", expected what this node left; it starts without it");
 }
 
 /// The loop in its thread, which ends with this, however that comes.
@@ -82,7 +94,8 @@ void run_node(Station& station, bool print, Tamper* tamper) {
   if (tamper != nullptr) loop.tamper_with(*tamper);
   notify("READY=1");
   if (!wait_for_clock(settings, desk)) return;
-  loop.begin(kept_state(station));
+  require_inputs_now(station);
+  begin(loop, desk, station);
   {
     const Estimating estimating(loop);
     const sched_param usual{};

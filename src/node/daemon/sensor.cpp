@@ -99,8 +99,15 @@ void Sensor::measure(std::int64_t sample, Micros now, std::span<double> y) const
   if (settings_.source != Source::file) return reading_.get(now, settings_.max_age, y);
   const auto rows = static_cast<std::int64_t>(outputs_ == 0 ? 0 : table_.size() / outputs_);
   if (sample < 1 || sample > rows) return std::fill(y.begin(), y.end(), kNaN);
+  rows_taken_.fetch_add(1, std::memory_order_relaxed);
   const auto from = table_.begin() + (sample - 1) * static_cast<std::int64_t>(outputs_);
   std::copy(from, from + static_cast<std::int64_t>(outputs_), y.begin());
+}
+
+Sensor::Counters Sensor::counters() const noexcept {
+  Counters all = counters_;
+  all.taken += rows_taken_.load(std::memory_order_relaxed);
+  return all;
 }
 
 /// A table is read at once: nothing of it can be late.

@@ -3,6 +3,7 @@
 // clients.
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string_view>
 
@@ -23,7 +24,7 @@ std::optional<SensorLine> parse_line(std::string_view line, std::size_t outputs)
 class Sensor {
  public:
   struct Counters {
-    std::int64_t taken = 0;
+    std::int64_t taken = 0;      ///< lines, readings, rows of a table that a sample came to
     std::int64_t malformed = 0;  ///< lines
     std::int64_t outside = 0;    ///< numbers beyond least or most: missing
     std::int64_t restarts = 0;   ///< of the command, or of a pipe that ended
@@ -47,7 +48,7 @@ class Sensor {
   bool takes_lines_from_clients() const noexcept {
     return settings_.source == SensorSettings::Source::socket;
   }
-  const Counters& counters() const noexcept { return counters_; }
+  Counters counters() const noexcept;
 
  private:
   void prepare(std::span<double> y) noexcept;
@@ -73,6 +74,7 @@ class Sensor {
   Micros pause_ = 0;
   bool opened_ = false;
   Counters counters_;
+  mutable std::atomic<std::int64_t> rows_taken_{0};  ///< of the table, by the loop
 };
 
 }  // namespace garrison::node

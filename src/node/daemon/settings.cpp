@@ -59,6 +59,18 @@ SensorSettings read_sensor(const Section& section, const std::string& folder) {
   return s;
 }
 
+/// Inputs that come as they are applied are no source: one that got lost would shift all that a node says
+/// from then on.
+std::string read_inputs(const Section& section, const std::string& folder) {
+  section.only({"source", "path"});
+  if (const std::string source = section.text("source"); source != "file")
+    refuse(section.where("source"), "\"" + source + "\"", "\"file\": the inputs of the whole run in \"path\"",
+           "inputs that are only known once they are applied are not taken: a node that missed one would be "
+           "wrong "
+           "from then on");
+  return beside(folder, section.text("path"));
+}
+
 /// Where the service manager wants it (systemd.exec(5)), else beside the settings.
 std::string given_or(const char* variable, const std::string& otherwise) {
   const char* given = std::getenv(variable);
@@ -69,8 +81,8 @@ std::string given_or(const char* variable, const std::string& otherwise) {
 
 Settings parse_settings(const std::string& text, const std::string& path) {
   const Section file = parse_toml(text, path);
-  file.only(
-      {"name", "part", "roster", "key", "listen", "sensor", "clock", "log", "state", "socket", "limits"});
+  file.only({"name", "part", "roster", "key", "listen", "sensor", "input", "clock", "log", "state", "socket",
+             "limits"});
   const std::string folder = folder_of(path);
   Settings s;
   s.file = path;
@@ -84,6 +96,7 @@ Settings parse_settings(const std::string& text, const std::string& path) {
   listen.only({"address"});
   s.listen = address_from(listen.where("address"), listen.text("address"));
   if (file.has("sensor")) s.sensor = read_sensor(file.section("sensor"), folder);
+  if (file.has("input")) s.inputs = read_inputs(file.section("input"), folder);
 
   const Section clock = file.section("clock");
   clock.only({"require_synchronised"});

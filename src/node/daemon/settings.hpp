@@ -28,6 +28,7 @@ struct Settings {
   std::string key;
   Address listen;
   SensorSettings sensor;
+  std::string inputs;  ///< CSV, a row a sample, from sample 0 on; empty = none
   bool require_synchronised = true;
   bool log_inputs = true;
   std::string log_folder;

@@ -47,6 +47,18 @@ Vector initial_of(const Roster& roster, int states) {
   return Eigen::Map<const Vector>(roster.initial.data(), states);
 }
 
+/// A model with inputs says something else without them, and all nodes have to have the same.
+Inputs inputs_of(const Settings& settings, const AgentPart& part) {
+  const std::string which = settings.file + ", [input]";
+  if (part.B.cols() == 0 && !settings.inputs.empty())
+    refuse(which, settings.inputs, "none: the model of the design has no B");
+  if (part.B.cols() == 0) return {};
+  if (settings.inputs.empty())
+    refuse(which, "none", "source = \"file\" and a path: the model of the design has known inputs",
+           "a CSV file with " + std::to_string(part.B.cols()) + " numbers a row, the same on all nodes");
+  return {settings.inputs, part};
+}
+
 /// A folder that is there, or can be made, and takes files.
 void require_folder(const std::string& which, const std::string& path) {
   std::filesystem::path there(path);
@@ -63,6 +75,7 @@ void require_places(const Settings& s) {
   if (s.socket.size() >= sizeof(sockaddr_un::sun_path))
     refuse(s.file + ", [socket].path", std::to_string(s.socket.size()) + " characters",
            "at most " + std::to_string(sizeof(sockaddr_un::sun_path) - 1), "a shorter path, as in /run");
+  require_own(s.file + ", [listen].address = " + text_of(s.listen), s.listen);
   if (s.sensor.source == SensorSettings::Source::udp && same_address(s.sensor.address, s.listen))
     refuse(s.file + ", [sensor].address", "the address of [listen]", "another port");
   require_folder(s.file + ", [state].folder", s.state_folder);
@@ -118,8 +131,9 @@ Station read_station(const std::string& path) {
            "that of agent " + std::to_string(s.self.id) + ", which is " + s.self.name);
   s.schedule = schedule_for(s.roster, s.agent->rounds());
   s.initial = initial_of(s.roster, s.agent->states());
+  s.inputs = inputs_of(s.settings, s.agent->part());
   s.run = prologue_of(design_of(*s.agent), s.schedule,
-                      {s.initial.data(), static_cast<std::size_t>(s.initial.size())});
+                      {s.initial.data(), static_cast<std::size_t>(s.initial.size())}, s.inputs.numbers());
   add_links(s);
   require_places(s.settings);
   const Sensor tried(s.settings.sensor, static_cast<std::size_t>(s.agent->outputs()), s.settings.file);
@@ -138,7 +152,8 @@ void require_same_run(const Station& now, const Station& next) {
       {"name", now.self.id == next.self.id},
       {"key", now.identity.open == next.identity.open},
       {"part", now.part == next.part},
-      {"run or schedule in the roster", now.run == next.run && now.schedule.resend == next.schedule.resend},
+      {"run, inputs or schedule in the roster",
+       now.run == next.run && now.schedule.resend == next.schedule.resend},
       {"list of neighbours in the roster", same_links() && now.listens == next.listens},
       {"[listen].address", same_address(a.listen, b.listen)},
       {"[clock].require_synchronised", a.require_synchronised == b.require_synchronised},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "garrison/engine/agent.hpp"
+#include "node/daemon/inputs.hpp"
 #include "node/daemon/keys.hpp"
 #include "node/daemon/roster.hpp"
 #include "node/daemon/settings.hpp"
@@ -18,6 +19,7 @@ struct Station {
   std::unique_ptr<Agent> agent;
   Schedule schedule;
   Vector initial;
+  Inputs inputs;
   Prologue run{};
   std::vector<Member> links;  ///< everybody it hears or is heard by, ascending ids
   std::vector<bool> listens;  ///< whether our messages go there

@@ -59,6 +59,11 @@ void put_sample(Json& json, const Status& status, const Surroundings& around) {
   json.key("estimate").open('[');
   for (const double x : status.estimate) json.number(x);
   json.close(']');
+  if (!around.input.empty()) {
+    json.key("input").open('[');
+    for (const double u : around.input) json.number(u);
+    json.close(']');
+  }
   json.key("bound").number(report.bound);
   json.key("bound_kind").word(garrison::word(report.kind));
   json.key("verdict").word(word(report.verdict));
@@ -119,6 +124,7 @@ std::string status_json(const Status& status, const Surroundings& around) {
   json.key("snapshot_age_s")
       .number(around.snapshot_age < 0 ? kNaN : static_cast<double>(around.snapshot_age) / 1e6);
   json.key("log_failed").whole(around.log_failed);
+  json.key("states_refused").whole(around.states_refused);
   json.key("outside");
   put_fates(json, status.head.outside);
   json.key("links").open('[');

@@ -46,11 +46,13 @@ struct Surroundings {
   int id = 0;
   std::string family;
   std::vector<std::string> names;  ///< of the links, as in the status
+  std::vector<double> input;       ///< known, that led to the sample; empty = none
   std::vector<int> accused;
   std::vector<int> proved;  ///< sources, Agent::proved
   Sensor::Counters sensor;
   Micros snapshot_age = -1;
-  std::int64_t log_failed = 0;  ///< writes
+  std::int64_t log_failed = 0;      ///< writes
+  std::int64_t states_refused = 0;  ///< that an earlier life left
   std::uint64_t boot = 0;
 };
 

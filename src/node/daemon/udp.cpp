@@ -26,6 +26,18 @@ struct Udp::Batch {
   static void end(Batch* batch) { delete batch; }
 };
 
+namespace {
+/// Multicast, or everybody's.
+bool of_many(const Address& address) noexcept {
+  if (address.storage.ss_family == AF_INET) {
+    const auto ip = ntohl(reinterpret_cast<const sockaddr_in&>(address.storage).sin_addr.s_addr);
+    return IN_MULTICAST(ip) || ip == INADDR_BROADCAST;
+  }
+  const auto& v6 = reinterpret_cast<const sockaddr_in6&>(address.storage);
+  return IN6_IS_ADDR_MULTICAST(&v6.sin6_addr);
+}
+}  // namespace
+
 Address address_from(const std::string& which, const std::string& text) {
   const char* expected = "\"host:port\", e.g. \"127.0.0.1:7470\" or \"[::1]:7470\"";
   const std::size_t colon = text.rfind(':');
@@ -45,7 +57,27 @@ Address address_from(const std::string& which, const std::string& text) {
   std::memcpy(&out.storage, found->ai_addr, found->ai_addrlen);
   out.size = found->ai_addrlen;
   ::freeaddrinfo(found);
+  if (of_many(out)) refuse(which, "\"" + text + "\", an address of many", "that of one machine");
   return out;
+}
+
+std::string text_of(const Address& address) {
+  std::array<char, NI_MAXHOST> host{};
+  std::array<char, NI_MAXSERV> port{};
+  ::getnameinfo(address.get(), address.size, host.data(), host.size(), port.data(), port.size(),
+                NI_NUMERICHOST | NI_NUMERICSERV);
+  const bool six = address.storage.ss_family == AF_INET6;
+  return (six ? "[" : "") + std::string(host.data()) + (six ? "]:" : ":") + port.data();
+}
+
+void require_own(const std::string& which, Address address) {
+  if (address.storage.ss_family == AF_INET6)
+    reinterpret_cast<sockaddr_in6&>(address.storage).sin6_port = 0;
+  else
+    reinterpret_cast<sockaddr_in&>(address.storage).sin_port = 0;
+  const Descriptor tried(::socket(address.storage.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (!tried || ::bind(tried.get(), address.get(), address.size) != 0)
+    refuse_file(which, "an address of this machine, or 0.0.0.0 for all that it has");
 }
 
 bool same_address(const Address& a, const Address& b) noexcept {
@@ -61,6 +93,13 @@ bool is_loopback(const Address& address) noexcept {
   return address.storage.ss_family == AF_INET6 && IN6_IS_ADDR_LOOPBACK(&v6.sin6_addr);
 }
 
+bool is_any(const Address& address) noexcept {
+  if (address.storage.ss_family == AF_INET)
+    return reinterpret_cast<const sockaddr_in&>(address.storage).sin_addr.s_addr == htonl(INADDR_ANY);
+  const auto& v6 = reinterpret_cast<const sockaddr_in6&>(address.storage);
+  return IN6_IS_ADDR_UNSPECIFIED(&v6.sin6_addr);
+}
+
 Udp::Udp(const std::string& which, const Address& own, int receive_buffer)
     : socket_(::socket(own.storage.ss_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)),
       in_(new Batch, &Batch::end),
@@ -68,7 +107,7 @@ Udp::Udp(const std::string& which, const Address& own, int receive_buffer)
   if (!socket_) refuse_file(which, "a UDP socket");
   ::setsockopt(socket_.get(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
   if (::bind(socket_.get(), own.get(), own.size) != 0)
-    refuse_file(which, "an address of this machine that nobody else listens at");
+    refuse_file(which + " = " + text_of(own), "an address of this machine that nobody else listens at");
 }
 
 void Udp::send(const Address& to, Bytes datagram) noexcept {

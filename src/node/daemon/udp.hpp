@@ -22,10 +22,17 @@ struct Address {
 
 /// "127.0.0.1:7470", "[::1]:7470", "host:7470". @throws InvalidInput
 Address address_from(const std::string& which, const std::string& text);
+/// "host:port", numbers only.
+std::string text_of(const Address& address);
+/// Refuses what no socket of this machine can be bound to, whether or not somebody listens there. @throws
+/// IoError
+void require_own(const std::string& which, Address address);
 
 bool same_address(const Address& a, const Address& b) noexcept;
 /// Of this machine alone.
 bool is_loopback(const Address& address) noexcept;
+/// 0.0.0.0 or [::]: where to listen, not where to send to.
+bool is_any(const Address& address) noexcept;
 
 class Udp {
  public:

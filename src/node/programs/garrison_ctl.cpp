@@ -13,6 +13,7 @@
 #include "garrison/version.hpp"
 #include "node/daemon/files.hpp"
 #include "node/daemon/roster.hpp"
+#include "node/programs/printed.hpp"
 
 using namespace garrison::node;
 
@@ -26,7 +27,9 @@ constexpr const char* kUsage =
     "  status   everything a node says of itself, as a line of JSON\n"
     "  watch    a line a sample, until interrupted\n"
     "  reload   read node.toml again: [sensor], [log] size_mb and files, [state] every_s\n"
-    "  replay   do again every call of a log and compare the estimates, bit by bit\n"
+    "  replay   do again every call of a log and compare the estimates, bit by bit; samples in JSON, which "
+    "are\n"
+    "           for people, are not compared\n"
     "\n"
     "  verify-proof   whether a .proof convicts an agent of the roster\n"
     "\n"
@@ -79,7 +82,7 @@ int ask(const std::string& request, const std::string& path, bool once) {
   char piece[4096];
   for (ssize_t got = 0; (got = ::read(socket.get(), piece, sizeof piece)) > 0;) {
     std::fwrite(piece, 1, static_cast<std::size_t>(got), stdout);
-    std::fflush(stdout);
+    if (std::fflush(stdout) != 0) return 0;  // `printed` says so
     if (once && std::memchr(piece, '\n', static_cast<std::size_t>(got)) != nullptr) return 0;
   }
   return once ? no_answer(path) : 0;
@@ -121,9 +124,7 @@ int verify(const std::string& path, const std::string& roster_path) {
   return proved ? 0 : 1;
 }
 
-}  // namespace
-
-int main(int count, char** words) {
+int run(int count, char** words) {
   if (count == 2 && std::string_view(words[1]) == "--version")
     return std::printf("garrison-ctl " GARRISON_VERSION "\n"), 0;
   if (count == 2 && std::string_view(words[1]) == "--help") return std::fputs(kUsage, stdout), 0;
@@ -145,3 +146,7 @@ int main(int count, char** words) {
                       words[1], kUsage),
          2;
 }
+
+}  // namespace
+
+int main(int count, char** words) { return printed("garrison-ctl", run(count, words)); }

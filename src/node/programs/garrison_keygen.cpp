@@ -5,6 +5,7 @@
 
 #include "garrison/version.hpp"
 #include "node/daemon/keys.hpp"
+#include "node/programs/printed.hpp"
 
 using namespace garrison::node;
 
@@ -16,9 +17,8 @@ constexpr const char* kUsage =
     "  --show   print the line of the key that is there\n"
     "\n"
     "Exit codes: 0 fine, 2 refused.\n";
-}
 
-int main(int count, char** words) {
+int run(int count, char** words) {
   const char* file = nullptr;
   bool show = false;
   for (int k = 1; k < count; ++k) {
@@ -44,3 +44,7 @@ int main(int count, char** words) {
     return 2;
   }
 }
+
+}  // namespace
+
+int main(int count, char** words) { return printed("garrison-keygen", run(count, words)); }

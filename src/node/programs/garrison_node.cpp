@@ -6,6 +6,7 @@
 #include "garrison/version.hpp"
 #include "node/daemon/running.hpp"
 #include "node/daemon/service.hpp"
+#include "node/programs/printed.hpp"
 
 using namespace garrison;
 using namespace garrison::node;
@@ -21,7 +22,8 @@ constexpr const char* kUsage =
     "  --version\n"
     "\n"
     "SIGTERM and SIGINT end it; SIGHUP lets a service read its files anew, as garrison-ctl reload does.\n"
-    "Exit codes: 0 ended by a signal (or --check found nothing), 2 a file or the command line was refused.\n";
+    "Exit codes: 0 ended by a signal or with its known inputs (or --check found nothing), 2 a file or the\n"
+    "command line was refused, or nobody takes what is printed.\n";
 
 void print_station(const Station& s) {
   std::printf("%s: agent %d of %d, %s, %d rounds every %.6g ms, %zu neighbours, first sample at %.6f\n",
@@ -31,9 +33,7 @@ void print_station(const Station& s) {
               static_cast<double>(s.schedule.begin(s.agent->start() + 1)) / 1e6);
 }
 
-}  // namespace
-
-int main(int count, char** words) {
+int run(int count, char** words) {
   const char* file = nullptr;
   bool check = false, print = false;
   for (int k = 1; k < count; ++k) {
@@ -62,3 +62,7 @@ int main(int count, char** words) {
     return 2;
   }
 }
+
+}  // namespace
+
+int main(int count, char** words) { return printed("garrison-node", run(count, words)); }

@@ -23,6 +23,11 @@ _COUNTERS = {
     "disowned": ("disowned_total", "statements of neighbours about something else than what they sent here"),
     "log_gaps": ("log_gaps_total", "times the log had to begin anew"),
 }
+#: the same, of what the daemon itself counts
+_OF_DAEMON = {
+    "log_failed": ("log_failed_total", "writes of the log that the disk did not take"),
+    "states_refused": ("states_refused_total", "states of an earlier life that could not be used"),
+}
 #: numbers of a status -> metric and what it is; missing where there is none
 _GAUGES = {
     "t": ("sample", "the last sample that ended"),
@@ -48,6 +53,8 @@ def exposition(statuses: Mapping[str, dict[str, Any] | None]) -> str:
     _family(lines, "up", "gauge", "whether the node answers", _up(statuses))
     for key, (metric, what) in _COUNTERS.items():
         _family(lines, metric, "counter", what, _counters(known, key))
+    for key, (metric, what) in _OF_DAEMON.items():
+        _family(lines, metric, "counter", what, _gauges(known, key))
     for key, (metric, what) in _GAUGES.items():
         _family(lines, metric, "gauge", what, _gauges(known, key))
     _family(lines, "accused", "gauge", "sensors that the node takes for attacked", _sizes(known, "accused"))
