@@ -388,6 +388,7 @@ def test_a_log_that_the_disk_did_not_take_goes_on_in_a_new_file(folder: Path, pr
                 if client.status()["log_failed"] > 0:
                     break
             assert client.status()["log_failed"] > 0
+            time.sleep(1.2)  # the next file is not taken, either, and that is not said again
             resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
             for _ in range(100):
                 time.sleep(0.1)
@@ -399,6 +400,7 @@ def test_a_log_that_the_disk_did_not_take_goes_on_in_a_new_file(folder: Path, pr
     assert process.returncode == 0
     assert (folder / "said").read_text().count("no log from here on, until there is room") == 1
     cut, *others = [_core.replay_log(path.read_bytes()) for path in sorted((folder / "log").glob("*.mcap"))]
+    assert len(others) == 1
     assert not cut["ended"] and cut["differ"] == 0
     assert others[-1]["ended"] and others[-1]["differ"] == 0 and others[-1]["estimates"] > 0
 

@@ -167,7 +167,8 @@ void Desk::begin_log() {
   }
 }
 void Desk::lose_log(const std::string& why) {
-  if (!log_lost_) say(Priority::error, "no log from here on, until there is room: " + why);
+  if (!std::exchange(log_said_, true))
+    say(Priority::error, "no log from here on, until there is room: " + why);
   log_lost_ = true;
 }
 
@@ -176,7 +177,10 @@ void Desk::flush_log() {
   if (!log_) return;
   log_->file().flush();
   around_.log_failed = log_->failed();
-  if (!log_->whole()) lose_log(log_->folder() + ": got a disk that does not take it");
+  if (!log_->whole())
+    lose_log(log_->folder() + ": got a disk that does not take it");
+  else if (!log_lost_)
+    log_said_ = false;
   if (log_lost_ && log_->room()) loop_->ask_fresh();
 }
 

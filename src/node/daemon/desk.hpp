@@ -69,7 +69,8 @@ class Desk {
   bool known_ = false;
   Micros snapshot_at_ = -1;
   Micros stored_at_ = -1;  ///< of the one on the disk
-  bool log_lost_ = false;  ///< the present file has a hole, or the next could not be begun: said once
+  bool log_lost_ = false;  ///< the present file has a hole, or the next could not be begun
+  bool log_said_ = false;  ///< so, and no file has been whole since
   Micros saved_at_ = 0;
   Micros flushed_at_ = 0;
   Micros watched_at_ = 0;

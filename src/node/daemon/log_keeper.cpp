@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "garrison/core/error.hpp"
 #include "node/daemon/files.hpp"
 
 namespace garrison::node {
@@ -28,8 +29,15 @@ LogKeeper::LogKeeper(std::string folder, std::string name, std::uint64_t boot, s
 
 void LogKeeper::begin() {
   const std::string file =
-      name_ + "-" + padded(boot_, 6) + "-" + padded(static_cast<std::uint64_t>(number_++), 4) + ".mcap";
+      name_ + "-" + padded(boot_, 6) + "-" + padded(static_cast<std::uint64_t>(number_), 4) + ".mcap";
   LogWriter next(beside(folder_, file), name_, part_);
+  next.flush();
+  if (file_ && next.failed() != 0) {  // a file that cannot be read must not be what drops older ones
+    failed_ += next.failed();
+    std::filesystem::remove(beside(folder_, file));
+    throw IoError(beside(folder_, file) + ": got a disk that does not take its begin, expected room");
+  }
+  ++number_;
   if (file_) failed_ += file_->failed();
   file_.reset();  // the last one gets its end
   file_.emplace(std::move(next));

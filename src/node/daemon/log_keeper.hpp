@@ -15,6 +15,7 @@ class LogKeeper {
   /// @throws IoError
   LogKeeper(std::string folder, std::string name, std::uint64_t boot, std::vector<std::byte> part, int files);
 
+  /// The next file; as it was where the disk does not take the begin of one. @throws IoError
   void begin();
   LogWriter& file() { return *file_; }
   /// The disk has taken all of the present file.
