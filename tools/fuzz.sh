@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # tools/fuzz.sh [SECONDS [TARGET...]]: the node's parsers under libFuzzer with address and undefined-behaviour sanitizers, for
-# so long each (default 60), JOBS of them at a time (default: one per processor). Wants what `tools/system.sh fuzz` installs,
+# so many seconds of a processor each (default 60), however much of it others take, JOBS of them at a time (default: one per
+# processor). Wants what `tools/system.sh fuzz` installs,
 # and a build: parsers are compiled anew with coverage, what is below them is the library of BUILD (default build/dev).
 # Inputs that showed something new stay in build/fuzz/TARGET, one that breaks a parser in build/fuzz/TARGET-found-*; the end
 # is then not 0.
@@ -30,17 +31,23 @@ compile() { # SOURCE
 }
 
 try() { # TARGET
-  local log=$out/$1.log found=$out/$1-found-
+  local log=$out/$1.log found=$out/$1-found- left=$((1000 * seconds)) runs=0 TIMEFORMAT='%3U %3S' used user system
   rm -f "$found"*
   mkdir -p "$out/$1"
-  if GARRISON_TARGET=$1 GARRISON_SEEDS=$out/$1 "$out/fuzz" "$out/$1" -max_total_time="$seconds" -artifact_prefix="$found" \
-    -verbosity=0 -print_final_stats=1 -timeout=20 >"$log" 2>&1; then
-    echo "fuzz: $1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") runs, nothing found"
-  else
-    grep -m 1 -A 25 -E 'ERROR|runtime error' "$log" || tail -n 25 "$log"
-    echo "fuzz: $1: broken by an input; again: GARRISON_TARGET=$1 $out/fuzz" "$found"*
-    return 1
-  fi
+  while ((left >= 1000)); do
+    # Refused is what claims more than the file has; half a gigabyte is what an agent's mailboxes may take.
+    if ! used=$({ time GARRISON_TARGET=$1 GARRISON_SEEDS=$out/$1 "$out/fuzz" "$out/$1" -max_total_time=$((left / 1000)) \
+      -artifact_prefix="$found" -verbosity=0 -print_final_stats=1 -timeout=20 -malloc_limit_mb=600 \
+      >"$log" 2>&1; } 2>&1); then
+      grep -m 1 -A 25 -E 'ERROR|runtime error' "$log" || tail -n 25 "$log"
+      echo "fuzz: $1: broken by an input; again: GARRISON_TARGET=$1 $out/fuzz" "$found"*
+      return 1
+    fi
+    read -r user system <<<"$used"
+    left=$((left - 10#${user/./} - 10#${system/./} - 1))
+    runs=$((runs + $(sed -n 's/^stat::number_of_executed_units: *//p' "$log")))
+  done
+  echo "fuzz: $1: $runs runs in $((seconds - left / 1000)) s of a processor, nothing found"
 }
 
 export -f object_of compile try
