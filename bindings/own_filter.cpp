@@ -145,15 +145,15 @@ class OwnRunner final : public Runner {
     engine_.reset(x0, link == nullptr ? &faultless_ : link);
     raise();
   }
-  void vary(const Matrix* A, const Matrix* C) override {
-    engine_.vary(A, C);
+  void vary(const Change& change) override {
+    engine_.vary(change);
     const py::gil_scoped_acquire gil;
     int first = 0;
     for (auto& agent : session_->agents) {
       auto& info = agent.info.cast<AgentInfo&>();
       const auto rows = info.C.rows();
-      if (A != nullptr) info.A = *A;
-      if (C != nullptr) info.C = C->middleRows(first, rows);
+      if (change.A != nullptr) info.A = *change.A;
+      if (change.C != nullptr) info.C = change.C->middleRows(first, rows);
       first += static_cast<int>(rows);
     }
   }
