@@ -103,6 +103,34 @@ def test_certificates_hold_where_everything_changes(memory: bool) -> None:
     assert np.median(run.bound[0, 10:20]) > 3 * np.median(run.bound[0, 30:])
 
 
+def test_filters_of_ones_own_are_told_the_noise_of_the_sample() -> None:
+    told: list[Any] = []
+
+    class Look(gr.Filter):
+        rounds = 0
+
+        def sense(self, agent: Any, state: Any, y: Any, t: int) -> Any:
+            told.append((t, agent.id, agent.process_covariance, agent.measurement_variance))
+            return {"estimate": state.estimate}
+
+        def fuse(self, agent: Any, state: Any, inbox: Any, round: int) -> Any:
+            return {"estimate": state.estimate}
+
+    plant = gr.VaryingModel(MODEL, process_covariance=Q_T, measurement_covariance=VARIANCES)
+    gr.simulate(plant, NETWORK, Look(), steps=T)
+    own = np.split(VARIANCES, [1, 3, 3], axis=1)
+    assert len(told) == 4 * T
+    for t, agent, Q, R in told:
+        assert np.array_equal(Q, Q_T[t - 1]) and np.array_equal(R, own[agent][t - 1])
+    told.clear()
+    gr.simulate(MODEL, NETWORK, Look(), steps=1)
+    (Q, R) = next((Q, R) for _, agent, Q, R in told if agent == 1)
+    assert np.array_equal(Q, 0.01 * np.eye(2)) and np.array_equal(R, [0.04, 0.04])
+    told.clear()
+    gr.simulate(gr.Model(MODEL.A, ROWS), NETWORK, Look(), steps=1)
+    assert all(Q is None and (R is None or not R.size) for _, _, Q, R in told)
+
+
 def test_families_for_constant_covariances_refuse_by_name() -> None:
     for changes in ({"process_covariance": Q_T}, {"measurement_covariance": np.ones((T, 6))}):
         plant = gr.VaryingModel(SEEN, **changes)
