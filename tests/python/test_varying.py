@@ -215,6 +215,41 @@ def test_runs_keep_what_changed(tmp_path: Path, suffix: str) -> None:
     assert gr.VaryingModel(again.model, **again.varying) == gr.VaryingModel(MODEL, A=A_T, C=C_T)
 
 
+def test_check_says_what_it_does_not_cover(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from garrison.cli import main
+
+    text = f"""
+[model]
+A = [[1, 0], [0, 1]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
+process_covariance = 1e-4
+measurement_covariance = 1e-2
+A_over_time = {A_T[:9].tolist()}
+[network]
+kind = "complete"
+[filter]
+name = "scalar_gain"
+[certificate]
+spread = "flooded"
+attacked = 1
+[run]
+steps = 9
+"""
+    path = tmp_path / "s.toml"
+    path.write_text(text)
+    assert main(["check", str(path)]) == 0
+    told = capsys.readouterr()
+    assert "the plant changes in time" in told.out + told.err and "certificate_expected" not in told.out
+    assert main(["run", str(path), "-o", str(tmp_path / "out")]) == 0
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "quantities are those of its constant part" in page and "certificate_expected" not in page
+    path.write_text("\n".join(line for line in text.splitlines() if "over_time" not in line))
+    capsys.readouterr()
+    assert main(["check", str(path)]) == 0
+    told = capsys.readouterr()
+    assert "the plant changes in time" not in told.out + told.err and "certificate_expected" in told.out
+
+
 def test_a_network_of_every_sample_is_the_union_with_lost_messages() -> None:
     ring, path = gr.Network.ring(4), gr.Network.path(4)
     networks = [ring if t % 3 else path for t in range(1, 21)]
