@@ -250,6 +250,32 @@ steps = 9
     assert "the plant changes in time" not in told.out + told.err and "certificate_expected" in told.out
 
 
+@pytest.mark.parametrize("command", ["analyze", "compare", "calibrate", "design", "structure"])
+def test_commands_about_a_constant_plant_refuse_others(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from garrison.cli import main
+
+    path = tmp_path / "s.toml"
+    path.write_text(
+        f"""
+[model]
+A = [[1, 0], [0, 1]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1]]
+A_over_time = {A_T[:9].tolist()}
+[network]
+kind = "complete"
+[filter]
+name = "scalar_gain"
+[run]
+steps = 9
+"""
+    )
+    assert main([command, str(path)]) == 2
+    told = capsys.readouterr().err
+    assert f"[model]: got A_over_time, expected a constant plant for garrison {command}" in " ".join(told.split())
+
+
 def test_a_network_of_every_sample_is_the_union_with_lost_messages() -> None:
     ring, path = gr.Network.ring(4), gr.Network.path(4)
     networks = [ring if t % 3 else path for t in range(1, 21)]
