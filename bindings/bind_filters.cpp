@@ -145,6 +145,16 @@ void bind_filters(py::module_& m) {
       .def_readonly("name", &own::AgentInfo::name, "Its name in the network, or nothing.")
       .def_readonly("A", &own::AgentInfo::A, "Of the plant, (n, n).")
       .def_readonly("C", &own::AgentInfo::C, "Its own rows, (outputs, n).")
+      .def_property_readonly(
+          "process_covariance",
+          [](const own::AgentInfo& a) { return a.Q.size() == 0 ? py::object(py::none()) : py::cast(a.Q); },
+          "Of the step to this sample, (n, n); None: not known.")
+      .def_property_readonly(
+          "measurement_variance",
+          [](const own::AgentInfo& a) {
+            return a.R.size() == 0 && a.C.rows() > 0 ? py::object(py::none()) : py::cast(a.R);
+          },
+          "Variances of its outputs in this sample, (outputs,); None: not known.")
       .def_readonly("neighbours", &own::AgentInfo::neighbours, "Agents that it hears.")
       .def_readonly("gains", &own::AgentInfo::gains, "What design() returned.")
       .def("__repr__", [](const own::AgentInfo& a) { return "<AgentInfo " + std::to_string(a.id) + ">"; });

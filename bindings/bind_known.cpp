@@ -25,8 +25,8 @@ Vector vector_from(const char* which, const py::object& value) {
 
 /// The user's functions, called with the GIL; an empty one where there is none.
 NonlinearPlant plant_of(const py::function& f, const py::function& h, const py::object& f_jacobian,
-                        const py::object& h_jacobian, const Matrix& process_covariance,
-                        const Vector& measurement_variance) {
+                        const py::object& h_jacobian, const py::dict& process_covariance,
+                        const Matrix& measurement_variances) {
   NonlinearPlant plant;
   plant.f = [f](const Vector& x, const Vector& u, int t) {
     const py::gil_scoped_acquire gil;
@@ -46,8 +46,16 @@ NonlinearPlant plant_of(const py::function& f, const py::function& h, const py::
       const py::gil_scoped_acquire gil;
       return convert::eigen(convert::matrix("h_jacobian", h_jacobian(x, t)));
     };
-  plant.process_covariance = process_covariance;
-  plant.measurement_variance = measurement_variance;
+  const auto over_time = series_of(process_covariance);
+  plant.process_covariances = over_time->process_covariance;
+  if (plant.process_covariances.size() == 1) {
+    plant.process_covariance = plant.process_covariances.front();
+    plant.process_covariances.clear();
+  }
+  if (measurement_variances.rows() == 1)
+    plant.measurement_variance = measurement_variances.row(0);
+  else
+    plant.measurement_variances = measurement_variances;
   return plant;
 }
 
@@ -81,7 +89,7 @@ void bind_kalman(py::module_& m) {
   m.def(
       "extended_kalman",
       [](const py::function& f, const py::function& h, const MatrixRef& y, const VectorRef& x0,
-         const MatrixRef& P0, const Matrix& process_covariance, const Vector& measurement_variance,
+         const MatrixRef& P0, const py::dict& process_covariance, const Matrix& measurement_variance,
          const MatrixRef& inputs, const py::object& f_jacobian, const py::object& h_jacobian, double gate,
          double huber) {
         const NonlinearPlant plant =

@@ -100,5 +100,7 @@ std::shared_ptr<const Nonlinear> functions_of(const py::dict& given, const Model
     plant->h_jacobian = [of = own::Held(jacobian), &model](const Matrix& X, int t) -> Matrix {
       return observed("h_jacobian", of, X, t, model, model.states());
     };
+  if (given.contains("linear"))
+    for (const py::handle one : given["linear"]) plant->linear.push_back(one.cast<int>());
   return plant;
 }

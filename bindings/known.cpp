@@ -36,8 +36,10 @@ std::shared_ptr<const Series> series_of(const py::dict& given) {
       series->C = std::move(all);
     else if (name == "process_covariance")
       series->process_covariance = std::move(all);
+    else if (name == "measurement_covariance")
+      series->measurement_covariance = std::move(all);
     else
-      refuse("series", name, "A, B, C or process_covariance");
+      refuse("series", name, "A, B, C, process_covariance or measurement_covariance");
   }
   return series;
 }

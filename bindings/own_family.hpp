@@ -29,6 +29,8 @@ struct AgentInfo {
   garrison::Matrix C;
   std::vector<int> neighbours;
   py::object gains;
+  garrison::Matrix Q{};  ///< of the process noise; empty = not known
+  garrison::Vector R{};  ///< variances of its own outputs; empty = not known
 };
 
 /// All that Python keeps for one run; used under the lock, by one thread.

@@ -145,15 +145,17 @@ class OwnRunner final : public Runner {
     engine_.reset(x0, link == nullptr ? &faultless_ : link);
     raise();
   }
-  void vary(const Matrix* A, const Matrix* C) override {
-    engine_.vary(A, C);
+  void vary(const Change& change) override {
+    engine_.vary(change);
     const py::gil_scoped_acquire gil;
     int first = 0;
     for (auto& agent : session_->agents) {
       auto& info = agent.info.cast<AgentInfo&>();
       const auto rows = info.C.rows();
-      if (A != nullptr) info.A = *A;
-      if (C != nullptr) info.C = C->middleRows(first, rows);
+      if (change.A != nullptr) info.A = *change.A;
+      if (change.C != nullptr) info.C = change.C->middleRows(first, rows);
+      if (change.Q != nullptr) info.Q = *change.Q;
+      if (change.variance != nullptr) info.R = change.variance->segment(first, rows);
       first += static_cast<int>(rows);
     }
   }
@@ -271,13 +273,20 @@ class OwnPrepared final : public Prepared {
   }
   py::object info(int i) const {
     const auto heard = network_.neighbours(i);
+    const auto at = static_cast<std::size_t>(i);
+    const Noise& noise = model_.noise();
+    const Matrix& Q = noise.agent_process_covariance.empty() ? noise.process_covariance
+                                                             : noise.agent_process_covariance[at];
+    const auto& R = noise.measurement_covariance;
     return py::cast(AgentInfo{i,
                               model_.agents(),
-                              network_.names().empty() ? "" : network_.names()[static_cast<std::size_t>(i)],
+                              network_.names().empty() ? "" : network_.names()[at],
                               model_.A(),
                               model_.C(i),
                               {heard.begin(), heard.end()},
-                              *gains_});
+                              *gains_,
+                              Q,
+                              R.empty() ? Vector() : Vector(R[at].diagonal())});
   }
 
   Held object_;

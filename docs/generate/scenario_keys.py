@@ -55,6 +55,8 @@ MEANINGS = {
         "B_over_time": "likewise",
         "C_over_time": "likewise, of samples 1, 2, ..: the rows of all agents",
         "process_covariance_over_time": "likewise",
+        "measurement_covariance_over_time": "variances of all outputs, a row per sample; or the covariances "
+        "of all agents below each other, per sample",
         "file": "a [model file](../files.md#model-json): `garrison fit -o model.json` and `garrison import` write them",
     },
     "network": {

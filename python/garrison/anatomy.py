@@ -89,6 +89,7 @@ def read_anatomy(path: str | Path, measured: list[int | None] | None = None) -> 
         if measured:
             raise refusal("measured", "states together with a scenario", "a CSV file with A")
         scenario = read_scenario(file)
+        scenario.require_constant("structure")
         require_common_state(scenario.filters[0][1])
         model = scenario.model
         rows = [np.asarray(c) for c in model.C]

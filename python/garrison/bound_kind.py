@@ -60,7 +60,8 @@ _WHY = {
     BoundKind.NONE: "no certificate was asked for, and the filter promises nothing at this sample: a condition of its "
     "theorem is not met, or what the theorem needs was lost, such as a message",
     BoundKind.TOO_FEW: "too few measurements have reached this agent, at this sample and all before: without those of "
-    "the attackers the rest does not determine the state",
+    "the attackers the rest does not determine the state (where the plant changes or is nonlinear, earlier ones count "
+    "with memory alone, and of a nonlinear one its linear outputs)",
     BoundKind.REFUTED: "the measurements contradict the assumption that at most so many are attacked (or the rare "
     "event happened that the failure probability allows)",
     BoundKind.LIARS: "agents lie in their messages, and this bound rests on what they say (those of "

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from garrison import _core, doubts
 from garrison.bound_kind import counts
+from garrison.checks import Check, check
 from garrison.drivers import KEEP, kept, replay, require_room, simulate
 from garrison.families import accuses, family_of
 from garrison.kalman import central_kalman, local_kalman
@@ -20,6 +21,10 @@ from garrison.scenario import Scenario
 from garrison.varying_network import links_of
 from garrison.words import count, refusal
 
+_CONSTANT_PART = (
+    "the plant changes in time: conditions and quantities are those of its constant part and do not cover it; what a "
+    "certificate is worth is seen in a run"
+)
 Array = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
 Working = Callable[[str, float], None]
@@ -215,6 +220,17 @@ def _labelled(progress: Progress | None, label: str) -> Callable[[int, int], Non
 def certificate_of(scenario: Scenario, filter: _core.Filter) -> dict[str, Any]:
     """What a filter of the scenario is to certify; agents with states of their own have bounds of their own."""
     return {} if family_of(filter).own_plants else scenario.certificate
+
+
+def checked(scenario: Scenario, filter: _core.Filter) -> tuple[Check, list[str]]:
+    """Conditions and quantities of a filter of the scenario, and what to know of them.
+
+    Where the plant changes in time they are those of its constant part, and a certificate is none of them: what it is
+    worth depends on the matrices of every sample.
+    """
+    wanted = certificate_of(scenario, filter) if scenario.varying is None else {}
+    found = check(scenario.model, scenario.network, filter, **wanted)
+    return found, [] if scenario.varying is None else [_CONSTANT_PART]
 
 
 def _options(scenario: Scenario, filter: _core.Filter, attacked: bool) -> dict[str, Any]:

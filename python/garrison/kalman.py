@@ -167,10 +167,10 @@ def extended_kalman(
         What is measured.
     measurements : (samples, m) array
         nan or masked = missing; row r belongs to time r + 1.
-    process_covariance : (n, n) array or float
-        Of w; a number is times the identity.
-    measurement_variance : (m,) array or float
-        Of v, >= 0; outputs are independent.
+    process_covariance : (n, n) or (samples, n, n) array, or float
+        Of w, constant or of every step; a number is times the identity.
+    measurement_variance : (m,) or (samples, m) array, or float
+        Of v, >= 0, constant or of every sample; outputs are independent.
     start : (n,) array
         Initial estimate.
     start_covariance : (n, n) array or float
@@ -210,10 +210,8 @@ def extended_kalman(
         y,
         x0,
         _square("start_covariance", start_covariance, len(x0)),
-        _square("process_covariance", process_covariance, len(x0)),
-        np.broadcast_to(numbers("measurement_variance", measurement_variance), (y.shape[1],)).copy()
-        if np.ndim(measurement_variance) == 0
-        else numbers("measurement_variance", measurement_variance),
+        {"process_covariance": _over_time(_square("process_covariance", process_covariance, len(x0)))},
+        _variances(measurement_variance, y.shape[1]),
         _rows(inputs, len(y)),
         **jacobians,
         **_screen(gate, huber),
@@ -223,6 +221,18 @@ def extended_kalman(
 def _square(which: str, given: Any, n: int) -> Array:
     found = numbers(which, given)
     return found * np.eye(n) if found.ndim == 0 else np.atleast_2d(found)
+
+
+def _over_time(covariance: Array) -> Array:
+    return covariance[None] if covariance.ndim == 2 else covariance
+
+
+def _variances(given: Any, outputs: int) -> Array:
+    """A row of variances, or one per sample."""
+    found = numbers("measurement_variance", given)
+    if found.ndim > 2:
+        raise refusal("measurement_variance", f"{found.shape}", f"({outputs},) or (samples, {outputs})")
+    return np.full((1, outputs), float(found)) if found.ndim == 0 else np.atleast_2d(found)
 
 
 def _rows(inputs: Any, samples: int) -> Array:

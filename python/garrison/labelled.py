@@ -48,6 +48,7 @@ def dimensions(filter: _core.Filter) -> dict[str, tuple[str, ...]]:
         "varying_B": ("step", "state", "input"),
         "varying_C": ("step", "row", "state"),
         "varying_process_covariance": ("step", "state", "state_before"),
+        "varying_measurement_covariance": ("step", "row", "output_before"),
     }
 
 

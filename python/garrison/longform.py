@@ -33,6 +33,11 @@ def state_names(run: Run) -> list[str]:
     return [str(n) for n in names] if names else [f"x{k}" for k in range(run.model.states)]
 
 
+def state_columns(run: Run) -> list[str]:
+    """Names of the columns that estimates have in tables: those of the states, told apart from other columns."""
+    return [_column(name) for name in state_names(run)]
+
+
 def common_unit(model: _core.Model) -> str:
     """The unit of all states, where they have one and the same: then errors and bounds have it too."""
     found = {model.units.get(s, "") for s in model.state_names}
@@ -52,7 +57,7 @@ def units(run: Run) -> dict[str, str]:
 
 
 def _column(state: str) -> str:
-    return f"state_{state}" if state in (*_OWN, *_REPORTED, "bound_kind", "verdict") else state
+    return f"state_{state}" if state in (*_OWN, *_REPORTED, "date", "bound_kind", "verdict") else state
 
 
 def columns(run: Run) -> dict[str, Any]:
@@ -66,7 +71,7 @@ def columns(run: Run) -> dict[str, Any]:
     out["agent"] = index[2] if names is None else np.array(names, dtype=object)[index[2]]
     states = state_names(run)
     if run.estimate is not None:
-        out |= {_column(name): run.estimate[..., k].ravel() for k, name in enumerate(states)}
+        out |= {name: run.estimate[..., k].ravel() for k, name in enumerate(state_columns(run))}
     if run.truth is not None:
         truth = run.truth if family_of(run.filter).own_plants else run.truth[:, :, None]
         whole = np.broadcast_to(truth, (trials, times, agents, truth.shape[-1]))

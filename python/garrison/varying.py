@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core, notebook
 from garrison.arguments import whole
 from garrison.numeric import matched, numbers
+from garrison.varying_noise import below_each_other
 from garrison.words import Hinting, hinted, hinted_methods, refusal, shown
 
 Array = NDArray[np.float64]
@@ -18,7 +19,7 @@ Array = NDArray[np.float64]
 OverTime = ArrayLike | Callable[[int], ArrayLike]
 #: known inputs: an array, a table or a function of the time; None: none
 Inputs = OverTime | None
-_PARTS = ("A", "B", "C", "process_covariance")
+_PARTS = ("A", "B", "C", "process_covariance", "measurement_covariance")
 
 
 @hinted_methods
@@ -28,9 +29,10 @@ class VaryingModel(metaclass=Hinting):
     Taken by `simulate`, `replay`, `central_kalman` and `local_kalman`. Filters: `ScalarGain`, `Saturation` without
     detector, adaptive and table, and filters of your own (`agent.A`, `agent.C` are those of the sample); the others are
     designed for one A and C and refuse it. No theorem of theirs covers it, so their bounds are absent
-    (`BoundKind.VARYING`); a certificate holds where A and process_covariance stay as they are. Where only C changes,
-    between finitely many rows (sightings), give a constant Model all rows and measure nan where there is no sighting:
-    everything holds then. Immutable; compares by value, copies and pickles.
+    (`BoundKind.VARYING`). Certificates hold: each sample has its rows and variances; where A or process_covariance
+    changes, regions of earlier samples count with `memory` only. Where only C changes, between finitely many rows
+    (sightings), give a constant Model all rows and measure nan where there is no sighting: everything holds then.
+    Immutable; compares by value, copies and pickles.
 
     Parameters
     ----------
@@ -44,7 +46,12 @@ class VaryingModel(metaclass=Hinting):
         Entry r is that of sample r + 1, one array per agent or all rows on top of each other. A function is called with
         t = 1..steps and returns the rows of all agents, (outputs, n) or a list with those of each.
     process_covariance : (T, n, n) array or function, optional
-        Of w(t); simulated, and used by the Kalman filters.
+        Of w(t); simulated, and used by the Kalman filters and certificates.
+    measurement_covariance : list of (T, m_i, m_i) arrays, (T, outputs) array or function, optional
+        Of v(t), used likewise; entry r is that of sample r + 1. One array per agent; or the variances of all outputs,
+        which are independent then; or (T, outputs, most m_i), those of all agents below each other with zeros right of
+        smaller ones, as `parts` has it. A function is called with t = 1..steps and returns a number for all outputs,
+        their variances, or a list with the (m_i, m_i) of each agent.
     steps : int, optional
         T, where functions are given.
 
@@ -63,6 +70,7 @@ class VaryingModel(metaclass=Hinting):
         B: OverTime | None = None,
         C: OverTime | Sequence[ArrayLike] | None = None,
         process_covariance: OverTime | None = None,
+        measurement_covariance: OverTime | Sequence[ArrayLike] | None = None,
         steps: int | None = None,
     ) -> None:
         if not isinstance(model, _core.Model):
@@ -75,6 +83,13 @@ class VaryingModel(metaclass=Hinting):
             "B": _over_time("B", B, (n, p), T, 0),
             "C": _over_time("C", _stacked(C, rows), (m, n), T, 1),
             "process_covariance": _over_time("process_covariance", process_covariance, (n, n), T, 0),
+            "measurement_covariance": _over_time(
+                "measurement_covariance",
+                below_each_other(measurement_covariance, rows),
+                (m, max(rows, default=0)),
+                T,
+                1,
+            ),
         }
         self._model = model
         self._parts = {name: value for name, value in given.items() if value is not None}

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from garrison import _core, notebook
-from garrison.arguments import entries
+from garrison.arguments import entries, whole
 from garrison.numeric import numbers
 from garrison.words import Hinting, hinted, hinted_methods, refusal, shown
 
@@ -23,10 +23,14 @@ class VaryingNetwork(metaclass=Hinting):
 
     Parameters
     ----------
-    network : Network, or list of Networks
-        Of all links, with `present`; or the network of every sample, the first of sample 1, all with the same agents.
-    present : (T, links) array of bool, optional
-        Whether each of `network.edges` is there at samples 1..T; of an undirected network, both ways.
+    network : Network, list of Networks, or function
+        Of all links, with `present`; or the network of every sample, the first of sample 1, all with the same agents. A
+        function is called with t = 1..steps and returns that of sample t.
+    present : (T, links) array of bool or function, optional
+        Whether each of `network.edges` is there at samples 1..T; of an undirected network, both ways. A function
+        returns the row of sample t.
+    steps : int, optional
+        T, where a function is given.
 
     Raises
     ------
@@ -35,7 +39,18 @@ class VaryingNetwork(metaclass=Hinting):
     """
 
     @hinted
-    def __init__(self, network: _core.Network | Iterable[_core.Network], present: ArrayLike | None = None) -> None:
+    def __init__(
+        self,
+        network: _core.Network | Iterable[_core.Network] | Callable[[int], _core.Network],
+        present: ArrayLike | Callable[[int], ArrayLike] | None = None,
+        *,
+        steps: int | None = None,
+    ) -> None:
+        T = None if steps is None else whole("steps", steps, 1)
+        if callable(network):
+            network = _of_every_sample("network", network, T)
+        if callable(present):
+            present = [numbers("present", row, flags=True) for row in _of_every_sample("present", present, T)]
         if isinstance(network, _core.Network):
             if present is None:
                 raise refusal("VaryingNetwork.present", "none", f"(steps, {len(network.edges)}) of True or False")
@@ -43,6 +58,8 @@ class VaryingNetwork(metaclass=Hinting):
         else:
             listed = entries("VaryingNetwork.network", network, "a Network with `present`, or a list of Networks")
             self._network, self._present = _united(listed)
+        if T is not None and len(self._present) != T:
+            raise refusal("VaryingNetwork", f"{len(self._present)} samples", f"{T}, as `steps` says")
         self._present.flags.writeable = False
 
     @property
@@ -95,6 +112,17 @@ class VaryingNetwork(metaclass=Hinting):
     def _repr_html_(self) -> str:
         share = float(self._present.mean()) if self._present.size else 1.0
         return notebook.of_network(self._network, f"over {self.steps} samples, a link is there in {share:.0%}")
+
+
+def _of_every_sample(name: str, function: Callable[[int], Any], steps: int | None) -> list[Any]:
+    """What a function of t gives at samples 1..steps. Its own errors stay its own, but for one that says it is none."""
+    if steps is None:
+        raise refusal(f"VaryingNetwork.{name}", "a function and no steps", "steps, how many times it is asked for")
+    try:
+        return [function(t) for t in range(1, steps + 1)]
+    except TypeError as error:
+        advice = "a function of t, a whole number"
+        raise refusal(f"VaryingNetwork.{name}", f"a TypeError ({error})", advice) from error
 
 
 def _presence(network: _core.Network, present: ArrayLike) -> NDArray[np.bool_]:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "garrison/core/series.hpp"
 
+#include <algorithm>
+
 #include "core/solvers.hpp"
 
 namespace garrison {
@@ -24,12 +26,29 @@ void require_part(const char* name, const std::vector<Matrix>& part, Eigen::Inde
   }
 }
 
-void require_covariance(const Matrix& S, std::size_t t) {
-  const std::string which = "process_covariance[" + std::to_string(t) + "]";
+void require_covariance(const std::string& which, const Matrix& S) {
+  if (S.size() == 0) return;
   if (!S.isApprox(S.transpose(), 1e-12)) refuse(which, "a matrix that is not symmetric", "a symmetric one");
   const double least = Eigen::SelfAdjointEigenSolver<Matrix>(S, Eigen::EigenvaluesOnly).eigenvalues()(0);
   if (least < -1e-12 * S.cwiseAbs().maxCoeff())
     refuse(which, "least eigenvalue " + std::to_string(least), "a positive semidefinite covariance");
+}
+
+void require_blocks(const Model& model, const Matrix& R, const std::string& when) {
+  for (int i = 0; i < model.agents(); ++i) {
+    const std::string which = "measurement_covariance" + when + " of agent " + std::to_string(i);
+    const int m = model.outputs(i);
+    const auto own = R.middleRows(model.offset(i), m);
+    if (!own.rightCols(R.cols() - m).isZero(0.0))
+      refuse(which, "numbers right of its " + std::to_string(m) + " columns", "zeros there");
+    require_covariance(which, own.leftCols(m));
+  }
+}
+
+int most_outputs(const Model& model) {
+  int most = 0;
+  for (int i = 0; i < model.agents(); ++i) most = std::max(most, model.outputs(i));
+  return most;
 }
 
 }  // namespace
@@ -40,8 +59,12 @@ void require_series(const Series& series, const Model& model, int steps) {
   require_part("B", series.B, n, model.inputs(), steps);
   require_part("C", series.C, model.total_outputs(), n, steps);
   require_part("process_covariance", series.process_covariance, n, n, steps);
+  require_part("measurement_covariance", series.measurement_covariance, model.total_outputs(),
+               most_outputs(model), steps);
   for (std::size_t t = 0; t < series.process_covariance.size(); ++t)
-    require_covariance(series.process_covariance[t], t);
+    require_covariance("process_covariance[" + std::to_string(t) + "]", series.process_covariance[t]);
+  for (std::size_t t = 0; t < series.measurement_covariance.size(); ++t)
+    require_blocks(model, series.measurement_covariance[t], "[" + std::to_string(t) + "]");
 }
 
 }  // namespace garrison

@@ -6,12 +6,17 @@
 namespace garrison::detail {
 namespace {
 
-/// A certificate takes the rows of every sample as they are; what is carried from sample to sample rests on A
-/// and the process noise, and the levels on how many rows may be wrong.
-void require_certifiable(const certificate::Plan& plan, const Series& series) {
-  if (!series.A.empty() || !series.process_covariance.empty())
-    refuse("certificate", "a plant whose A or process_covariance changes in time",
-           "one of which C alone changes", "see docs/how-to/changing-plants.md");
+/// A certificate takes rows, their variances and, in its bank, A and the process noise of every sample as
+/// they are; its levels rest on how many rows may be wrong, and whitened rows on variances.
+void require_certifiable(const certificate::Plan& plan, const Model& model, const Series& series) {
+  for (std::size_t t = 0; t < series.measurement_covariance.size(); ++t)
+    for (int i = 0; i < model.agents(); ++i) {
+      const Matrix R = measurement_covariance_at(series, model, i, static_cast<int>(t) + 1);
+      if (R.size() == 0 || (R.isDiagonal(0.0) && R.diagonal().minCoeff() > 0.0)) continue;
+      refuse("measurement_covariance[" + std::to_string(t) + "] of agent " + std::to_string(i),
+             "correlated outputs, or a variance of 0",
+             "a diagonal matrix with variances > 0, for a certificate");
+    }
   for (std::size_t t = 0; t < series.C.size(); ++t) {
     const auto rows = (series.C[t].array() != 0.0).rowwise().any().count();
     if (rows > plan.all_rows)
@@ -30,10 +35,19 @@ void require_nonlinear(const Prepared& prepared, const RunOptions& options) {
     refuse("series", "matrices over time beside functions", "one of them", "the functions are told the time");
   if (!options.inputs.allFinite())
     refuse("inputs", "a number that is not finite", "known inputs at all times");
+  for (const int r : options.nonlinear->linear)
+    if (r < 0 || r >= prepared.model().total_outputs())
+      refuse("linear", "output " + std::to_string(r),
+             "numbers of outputs, 0.." + std::to_string(prepared.model().total_outputs() - 1));
   prepared.require_varying("a plant by functions");
-  if (prepared.certificate() != nullptr)
-    refuse("certificate", "a plant by functions", "a linear plant",
-           "certificates rest on A and C; see docs/how-to/changing-plants.md");
+  const auto plan = prepared.certificate();
+  if (plan == nullptr) return;
+  if (options.nonlinear->linear.empty())
+    refuse("certificate", "a plant by functions without linear outputs", "outputs that are linear",
+           "certificates rest on rows of C; see docs/how-to/changing-plants.md");
+  if (plan->wanted.memory)
+    refuse("memory", "true with a plant by functions", "false",
+           "a bank moves by A; regions of single samples hold where rows are linear");
 }
 
 }  // namespace
@@ -56,9 +70,9 @@ void require_course(const Prepared& prepared, const RunOptions& options, int ste
   if (options.nonlinear != nullptr) return require_nonlinear(prepared, options);
   if (options.series == nullptr) return;
   require_series(*options.series, model, steps);
-  if (prepared.certificate() != nullptr) require_certifiable(*prepared.certificate(), *options.series);
-  if (options.series->A.empty() && options.series->C.empty()) return;
-  prepared.require_varying("A or C that change in time");
+  if (prepared.certificate() != nullptr) require_certifiable(*prepared.certificate(), model, *options.series);
+  const bool moves = !options.series->A.empty() || !options.series->C.empty();
+  prepared.require_varying(moves ? "A or C that change in time" : "covariances that change in time");
 }
 
 Course::Course(const Model& model, const RunOptions& options) : model_(model), options_(options) {
@@ -84,19 +98,36 @@ const Matrix& Course::rows() const {
 void Course::enter(int t, Runner& runner) {
   enter(t);
   if (functions_) return linearise(runner);
-  const Series* series = options_.series.get();
-  if (series == nullptr || (series->A.empty() && series->C.empty())) return;
-  const auto at = static_cast<std::size_t>(t - 1);
-  runner.vary(series->A.empty() ? nullptr : &series->A[at], series->C.empty() ? nullptr : &series->C[at]);
+  if (options_.series == nullptr) return;
+  const auto now = [t](const std::vector<Matrix>& all) {
+    return all.empty() ? nullptr : &all[static_cast<std::size_t>(t - 1)];
+  };
+  const Series& series = *options_.series;
+  Change change{.A = now(series.A), .C = now(series.C), .Q = now(series.process_covariance)};
+  change.rows = change.C;
+  if (!series.measurement_covariance.empty()) {
+    measure_variance(t);
+    change.variance = &variance_;
+  }
+  runner.vary(change);
+}
+
+void Course::measure_variance(int t) {
+  variance_.resize(model_.total_outputs());
+  for (int i = 0; i < model_.agents(); ++i)
+    variance_.segment(model_.offset(i), model_.outputs(i)) =
+        measurement_covariance_at(*options_.series, model_, i, t).diagonal();
 }
 
 void Course::linearise(Runner& runner) {
   runner.estimates(predictions_);
   predictions_ = functions_->moved(predictions_, options_.inputs, t_ - 1);
-  const Matrix C = functions_->rows(predictions_, t_);
+  linearised_ = functions_->rows(predictions_, t_);
+  const Matrix& C = linearised_;
   added_ = functions_->measured(predictions_, t_);
   runner.place(predictions_);
-  runner.vary(&identity_, &C);
+  const Matrix* linear = functions_->linear().size() == 0 ? nullptr : &functions_->linear();
+  runner.vary({.A = &identity_, .C = &C, .rows = linear});
   for (int i = 0; i < model_.agents(); ++i)
     for (int r = model_.offset(i); r < model_.offset(i) + model_.outputs(i); ++r) {
       double seen = 0.0;  // in the order in which filters sum it: a linear h leaves no rounding
@@ -104,6 +135,7 @@ void Course::linearise(Runner& runner) {
       added_(r) -= seen;
       longest_ = std::max(longest_, C.row(r).norm());
     }
+  for (const int r : options_.nonlinear->linear) added_(r) = 0.0;  // but for rounding
 }
 
 void Course::enter(int t) {

@@ -42,6 +42,8 @@ class Course {
   /// is f(xhat_i), and its innovation y_i - h_i(f(xhat_i)).
   void linearise(Runner& runner);
 
+  void measure_variance(int t);
+
   const Model& model_;
   const RunOptions& options_;
   std::optional<Response> response_;
@@ -51,6 +53,8 @@ class Course {
   double largest_ = 0.0;
   std::optional<Functions> functions_;
   Matrix identity_;
+  Matrix linearised_;     // dh/dx at the predictions
+  Vector variance_;       // of all outputs, where it changes
   Matrix predictions_;    // n x N
   double longest_ = 0.0;  // row of h so far
   int t_ = 0;

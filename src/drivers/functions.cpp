@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "functions.hpp"
 
+#include <cmath>
+
 #include "garrison/kernel/differences.hpp"
 
 namespace garrison::detail {
@@ -16,7 +18,14 @@ void require_size(const char* name, const Matrix& found, Eigen::Index rows, Eige
 }  // namespace
 
 Functions::Functions(const Nonlinear& plant, const Model& model, std::string of)
-    : plant_(plant), model_(model), of_(std::move(of)) {}
+    : plant_(plant), model_(model), of_(std::move(of)) {
+  if (plant.linear.empty()) return;
+  const Matrix all = model.stacked();
+  C_ = Matrix::Zero(all.rows(), all.cols());
+  for (const int r : plant.linear) C_.row(r) = all.row(r);
+  for (int i = 0; i < model.agents(); ++i)
+    owner_.insert(owner_.end(), static_cast<std::size_t>(model.outputs(i)), i);
+}
 
 void Functions::refuse_number(const char* name, const Matrix& X, Eigen::Index column, int t) const {
   const std::string who = X.cols() > 1 ? " of agent " + std::to_string(column) : "";
@@ -45,10 +54,30 @@ Vector Functions::measured(const Matrix& X, int t) const {
   Vector found = plant_.h(X, t);
   require_size("h", found, model_.total_outputs(), 1, "the outputs of all agents");
   require_finite("h", found, X, t);
+  require_linear(found, X, t);
   return found;
 }
 
+void Functions::require_linear(const Vector& found, const Matrix& X, int t) const {
+  constexpr double kRounding = 1e-9;  // of the largest term of a sum
+  for (const int r : plant_.linear) {
+    const Vector terms = C_.row(r).transpose().cwiseProduct(X.col(owner_[static_cast<std::size_t>(r)]));
+    if (std::abs(found(r) - terms.sum()) <= kRounding * (terms.cwiseAbs().sum() + 1e-9)) continue;
+    refuse("linear",
+           "output " + std::to_string(r) + ", of which h says " + text(found(r)) + " at time " +
+               std::to_string(t) + ", for " + of_ + ", and its row " + text(terms.sum()),
+           "outputs that are their row times the state",
+           "take it out of the linear ones; subtract constants in h");
+  }
+}
+
 Matrix Functions::rows(const Matrix& X, int t) const {
+  Matrix found = derivative(X, t);
+  for (const int r : plant_.linear) found.row(r) = C_.row(r);
+  return found;
+}
+
+Matrix Functions::derivative(const Matrix& X, int t) const {
   if (!plant_.h_jacobian) return differences(X, t);
   Matrix found = plant_.h_jacobian(X, t);
   require_size("h_jacobian", found, model_.total_outputs(), model_.states(), "a row per output");

@@ -150,7 +150,8 @@ NoiseLaw::NoiseLaw(const std::string& law, const Model& model, const Series* ser
   const bool bounds_v = noise.measurement_bound.size() != 0;
   const bool changes = series != nullptr && !series->process_covariance.empty();
   const bool covariance_w = noise.process_covariance.size() != 0 || changes;
-  const bool covariance_v = !noise.measurement_covariance.empty();
+  const bool changes_v = series != nullptr && !series->measurement_covariance.empty();
+  const bool covariance_v = !noise.measurement_covariance.empty() || changes_v;
   if (law == "auto") {
     process_ = bounds_w ? Kind::uniform : covariance_w ? Kind::normal : Kind::none;
     measurement_ = bounds_v ? Kind::uniform : covariance_v ? Kind::normal : Kind::none;
@@ -171,9 +172,13 @@ NoiseLaw::NoiseLaw(const std::string& law, const Model& model, const Series* ser
     for (const Matrix& covariance : series->process_covariance) process_roots_.push_back(root(covariance));
   else if (process_ == Kind::normal)
     process_root_ = root(noise.process_covariance);
-  if (measurement_ == Kind::normal)
-    for (const Matrix& covariance : noise.measurement_covariance)
-      measurement_roots_.push_back(root(covariance));
+  if (measurement_ != Kind::normal) return;
+  static const Series constant;
+  samples_ = changes_v ? series->measurement_covariance.size() : 1;
+  for (std::size_t t = 1; t <= samples_; ++t)
+    for (int i = 0; i < model.agents(); ++i)
+      measurement_roots_.push_back(
+          root(measurement_covariance_at(changes_v ? *series : constant, model, i, static_cast<int>(t))));
 }
 
 void NoiseLaw::process(const Random& random, std::int64_t t, Vector& w) const {
@@ -192,7 +197,9 @@ void NoiseLaw::measurement(const Random& random, std::int64_t t, std::span<doubl
     const int rows = model_.outputs(i);
     double* own = y.data() + model_.offset(i);
     if (measurement_ == Kind::normal) {
-      const Matrix& S = measurement_roots_[static_cast<std::size_t>(i)];
+      const std::size_t sample = samples_ > 1 ? static_cast<std::size_t>(t - 1) : 0;
+      const Matrix& S = measurement_roots_[sample * static_cast<std::size_t>(model_.agents()) +
+                                           static_cast<std::size_t>(i)];
       for (int c = 0; c < rows; ++c) {
         const double z = random.normal(t, agent, static_cast<std::uint32_t>(c));
         for (int r = 0; r < rows; ++r) own[r] += S(r, c) * z;

@@ -44,8 +44,9 @@ class NoiseLaw {
   Kind process_ = Kind::none;
   Kind measurement_ = Kind::none;
   Matrix process_root_;
-  std::vector<Matrix> process_roots_;  // over time
-  std::vector<Matrix> measurement_roots_;
+  std::vector<Matrix> process_roots_;      // over time
+  std::size_t samples_ = 1;                // with roots of their own
+  std::vector<Matrix> measurement_roots_;  // sample by sample, agent by agent
 };
 
 /// A random vector of length at most `radius` (uniform in the ball), or of exactly that length.

@@ -107,11 +107,18 @@ void CertifiedNetwork::reset(std::int64_t t) {
   bytes_ = samples_ = 0;
 }
 
-void CertifiedNetwork::begin(std::int64_t t, const double* y, const Matrix* C) {
-  if (C != nullptr) rows_ = C->transpose();
-  if (C != nullptr || varied_)
-    for (const auto& one : all_->certifiers) one->vary(C != nullptr ? &rows_ : nullptr);
-  varied_ = C != nullptr;
+void CertifiedNetwork::begin(std::int64_t t, const double* y, const Change& change) {
+  const bool other =
+      change.rows != nullptr || change.variance != nullptr || change.A != nullptr || change.Q != nullptr;
+  if (other || varied_) {
+    Change here = change;
+    if (change.rows != nullptr) {
+      rows_ = change.rows->transpose();
+      here.rows = &rows_;
+    }
+    for (const auto& one : all_->certifiers) one->vary(here);
+  }
+  varied_ = other;
   t_ = t;
   y_ = y;
   round_ = 0;

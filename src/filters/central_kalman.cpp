@@ -15,7 +15,8 @@ void require(const Model& model, const MatrixRef& measurements, double start_var
   kalman::require_screen(screen);
   const Noise& noise = model.noise();
   const bool covariance = noise.process_covariance.size() != 0 || !known.series.process_covariance.empty();
-  if (!covariance || noise.measurement_covariance.empty())
+  const bool measured = !noise.measurement_covariance.empty() || !known.series.measurement_covariance.empty();
+  if (!covariance || !measured)
     refuse("model", "no covariances", "process_covariance and measurement_covariance",
            "a Kalman filter weighs with them");
   if (measurements.cols() != model.total_outputs())
@@ -35,11 +36,11 @@ void require(const Model& model, const MatrixRef& measurements, double start_var
   require_series(known.series, model, static_cast<int>(measurements.rows()));
 }
 
-/// Variances of all measurements, agent by agent.
-Vector variances(const Model& model) {
+/// Variances of all measurements of sample t, agent by agent.
+Vector variances(const Model& model, const Series& series, int t) {
   Vector R(model.total_outputs());
   for (int i = 0; i < model.agents(); ++i) {
-    const Matrix& S = model.noise().measurement_covariance[static_cast<std::size_t>(i)];
+    const Matrix S = measurement_covariance_at(series, model, i, t);
     if (!S.isDiagonal(1e-12))
       refuse("measurement_covariance[" + std::to_string(i) + "]", "a full matrix", "a diagonal one");
     R.segment(model.offset(i), model.outputs(i)) = S.diagonal();
@@ -51,9 +52,10 @@ Vector variances(const Model& model) {
 Matrix filtered(const Model& model, const MatrixRef& measurements, const VectorRef& x0, double start_variance,
                 const Screen& screen, const Known& known) {
   const auto n = model.states();
-  const Vector R = variances(model);
-  const Matrix C = model.stacked();
   const Series& series = known.series;
+  const bool constant = series.measurement_covariance.empty();
+  Vector R = constant ? variances(model, series, 1) : Vector();
+  const Matrix C = model.stacked();
   Matrix process_root;
   if (series.process_covariance.empty())
     process_root = detail::covariance_root(model.noise().process_covariance);
@@ -71,6 +73,7 @@ Matrix filtered(const Model& model, const MatrixRef& measurements, const VectorR
                     ? Vector(A * now.x)
                     : driven(A, now.x, series.B_at(model, sample), known.inputs.row(t).transpose()),
                 A, process_root);
+    if (!constant) R = variances(model, series, sample);
     const Vector y = measurements.row(t);
     now.correct({series.C.empty() ? C : series.C[at], R, y, none}, screen);
     estimates.row(t + 1) = now.x;

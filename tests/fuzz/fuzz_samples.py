@@ -86,9 +86,15 @@ def samples() -> dict[str, list[Any]]:
         ],
         "weights": [weights],
         "AgentInfo": [_agent_info(model, network)],
-        "VaryingModel": [gr.VaryingModel(model, A=np.repeat(np.asarray(model.A)[None], 3, axis=0))],
+        "VaryingModel": [
+            gr.VaryingModel(model, A=np.repeat(np.asarray(model.A)[None], 3, axis=0)),
+            gr.VaryingModel(model, measurement_covariance=np.ones((3, model.outputs))),
+        ],
         "NonlinearModel": [
-            gr.NonlinearModel(lambda X, u, t: 0.9 * X, lambda X, t: X[:, 0], states=2, outputs=[1] * model.agents)
+            gr.NonlinearModel(lambda X, u, t: 0.9 * X, lambda X, t: X[:, 0], states=2, outputs=[1] * model.agents),
+            gr.NonlinearModel(
+                lambda X, u, t: 0.9 * X, np.ones((model.agents, 2)), states=2, outputs=[1] * model.agents
+            ),
         ],
         "VaryingNetwork": [gr.VaryingNetwork([network] * 3)],
         "Response": [_core.Response(gr.Model([[0.5]], [[1.0]], B=[[1.0]]))],

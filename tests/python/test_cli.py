@@ -151,3 +151,10 @@ def test_verify_reports_and_counts(cases: Path, tmp_path: Path, capsys: pytest.C
     (tmp_path / "other.json").write_text('{"paper": "unheard_of", "inputs": {}, "expected": {}}')
     assert main(["verify", str(tmp_path)]) == 1
     assert "unheard_of" in capsys.readouterr().out
+
+
+def test_estimates_are_named_as_the_states_are(scenario: Path, tmp_path: Path) -> None:
+    changed(scenario, "[model]\n", '[model]\nstates = ["position", "time"]\n')
+    assert main(["run", str(scenario), "-o", str(tmp_path / "out")]) == 0
+    text = (tmp_path / "out" / "estimates.csv").read_text()
+    assert text.startswith("trial,time,agent,position,state_time,bound,bound_kind\n")

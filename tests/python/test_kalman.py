@@ -127,6 +127,33 @@ def test_a_pendulum_is_tracked_as_the_textbook_says() -> None:
     assert np.abs(found[150:, 0] - truth[149:, 0]).max() < 0.1
 
 
+def test_noises_of_every_sample_are_weighed() -> None:
+    """A constant one in every sample is the constant one; others are those of central_kalman over time."""
+    _, y = swing()
+    exact = {"f_jacobian": pendulum_jacobian, "h_jacobian": bob_jacobian}
+    constant = gr.extended_kalman(pendulum, bob, y, **ARGUMENTS, **exact)
+    repeated = ARGUMENTS | {"process_covariance": np.tile(Q, (300, 1, 1)), "measurement_variance": np.tile(R, (300, 1))}
+    assert np.array_equal(gr.extended_kalman(pendulum, bob, y, **repeated, **exact), constant)
+    rng = np.random.default_rng(4)
+    Q_t, R_t = rng.uniform(0.1, 3.0, size=(40, 1, 1)) * np.eye(2), rng.uniform(0.1, 3.0, size=(40, 4))
+    y = rng.normal(size=(40, 4))
+    found = gr.extended_kalman(
+        lambda x, u, t: MODEL.A @ x, lambda x, t: np.concatenate(MODEL.C) @ x, y, start=[0, 0],
+        process_covariance=Q_t, measurement_variance=R_t,
+    )  # fmt: skip
+    plant = gr.VaryingModel(MODEL, process_covariance=Q_t, measurement_covariance=R_t)
+    assert np.abs(found - gr.central_kalman(plant, y)).max() < 1e-8
+    for given, words in (
+        ({"process_covariance": Q_t[:30]}, "process_covariance: got 30 matrices over time, expected at least 40"),
+        ({"measurement_variance": R_t[:30]}, "measurement_variance: got 30 x 4, expected 40 x 4"),
+        ({"measurement_variance": -R_t}, "negative"),
+        ({"measurement_variance": R_t[None]}, r"measurement_variance: got \(1, 40, 4\)"),
+    ):
+        asked: dict[str, Any] = {"process_covariance": Q_t, "measurement_variance": R_t, "start": [0, 0]} | given
+        with pytest.raises(gr.InvalidInput, match=words):
+            gr.extended_kalman(lambda x, u, t: x, lambda x, t: np.ones(4) * x[0], y, **asked)
+
+
 def test_a_pendulum_against_filterpy() -> None:
     filterpy = pytest.importorskip("filterpy.kalman")
     _, y = swing()

@@ -210,7 +210,7 @@ def test_what_needs_a_linear_plant_is_refused_by_name() -> None:
     for asked in ({"initial_error": 1.0}, {"detector": True}, {"initial_error": 1.0, "adaptive": True}):
         filt = gr.filters.Saturation(threshold=0.1, attacked=1, **asked)
         refused(plant, f"{next(iter(asked))}.* rest on theorems for linear plants", filt)
-    refused(plant, "certificate: got 'local' with a NonlinearModel", certificate="local", attacked=1)
+    refused(plant, "certificate: got 'local' with a NonlinearModel without linear", certificate="local", attacked=1)
     story = gr.attacks.FalseTrajectory(agents=[1], offset=[1.0, 0.0])
     refused(plant, "attack: got false_trajectory with a NonlinearModel", attack=story)
     calls: list[Any] = [gr.check, gr.prepare, gr.analyze]

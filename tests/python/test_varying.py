@@ -79,8 +79,8 @@ def test_families_for_constant_plants_refuse_by_name() -> None:
         with pytest.raises(gr.InvalidInput, match=r"rest on theorems for constant plants|expected"):
             gr.simulate(bounded, NETWORK, filt, steps=T)
     moving = gr.VaryingModel(MODEL, A=A_T, C=C_T)
-    with pytest.raises(gr.InvalidInput, match="certificate: got a plant whose A or process_covariance changes in time"):
-        gr.simulate(moving, NETWORK, gr.filters.ScalarGain(), steps=T, certificate="local", failure=0, attacked=1)
+    run = gr.simulate(moving, NETWORK, gr.filters.ScalarGain(), steps=T, certificate="local", failure=0, attacked=1)
+    assert (run.bound_kind == gr.BoundKind.WITNESS).any() and (run.error[0, 1:] <= run.bound[0, 1:]).all()
 
 
 def test_certificates_hold_where_rows_turn() -> None:
@@ -215,6 +215,67 @@ def test_runs_keep_what_changed(tmp_path: Path, suffix: str) -> None:
     assert gr.VaryingModel(again.model, **again.varying) == gr.VaryingModel(MODEL, A=A_T, C=C_T)
 
 
+def test_check_says_what_it_does_not_cover(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from garrison.cli import main
+
+    text = f"""
+[model]
+A = [[1, 0], [0, 1]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]]
+process_covariance = 1e-4
+measurement_covariance = 1e-2
+A_over_time = {A_T[:9].tolist()}
+[network]
+kind = "complete"
+[filter]
+name = "scalar_gain"
+[certificate]
+spread = "flooded"
+attacked = 1
+[run]
+steps = 9
+"""
+    path = tmp_path / "s.toml"
+    path.write_text(text)
+    assert main(["check", str(path)]) == 0
+    told = capsys.readouterr()
+    assert "the plant changes in time" in told.out + told.err and "certificate_expected" not in told.out
+    assert main(["run", str(path), "-o", str(tmp_path / "out")]) == 0
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "quantities are those of its constant part" in page and "certificate_expected" not in page
+    path.write_text("\n".join(line for line in text.splitlines() if "over_time" not in line))
+    capsys.readouterr()
+    assert main(["check", str(path)]) == 0
+    told = capsys.readouterr()
+    assert "the plant changes in time" not in told.out + told.err and "certificate_expected" in told.out
+
+
+@pytest.mark.parametrize("command", ["analyze", "compare", "calibrate", "design", "structure"])
+def test_commands_about_a_constant_plant_refuse_others(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from garrison.cli import main
+
+    path = tmp_path / "s.toml"
+    path.write_text(
+        f"""
+[model]
+A = [[1, 0], [0, 1]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1]]
+A_over_time = {A_T[:9].tolist()}
+[network]
+kind = "complete"
+[filter]
+name = "scalar_gain"
+[run]
+steps = 9
+"""
+    )
+    assert main([command, str(path)]) == 2
+    told = capsys.readouterr().err
+    assert f"[model]: got A_over_time, expected a constant plant for garrison {command}" in " ".join(told.split())
+
+
 def test_a_network_of_every_sample_is_the_union_with_lost_messages() -> None:
     ring, path = gr.Network.ring(4), gr.Network.path(4)
     networks = [ring if t % 3 else path for t in range(1, 21)]
@@ -226,6 +287,8 @@ def test_a_network_of_every_sample_is_the_union_with_lost_messages() -> None:
     lost = [(t, r, *pair) for t in range(3, 21, 3) for r in range(2) for pair in ((0, 3), (3, 0))]
     by_hand = gr.simulate(MODEL, ring, filt, steps=20, x0=[1, 2], link={"lost": lost})
     assert np.array_equal(run.estimate, by_hand.estimate) and run.counters["lost"] == len(lost)
+    assert gr.VaryingNetwork(lambda t: networks[t - 1], steps=20) == varying
+    assert gr.VaryingNetwork(ring, lambda t: varying.present[t - 1], steps=20) == varying
 
 
 def test_directed_links_come_and_go_one_way() -> None:
@@ -242,6 +305,8 @@ def test_directed_links_come_and_go_one_way() -> None:
         ((gr.Network.ring(4), np.full((3, 4), 0.5)), "True or False"),
         (([gr.Network.ring(4), gr.Network.ring(5)],), r"network\[1\]"),
         (([],), "an empty list"),
+        ((lambda t: gr.Network.ring(4),), "a function and no steps"),
+        ((gr.Network.ring(4), lambda: [1, 1, 1, 1]), "a function and no steps"),
         ((["ring"],), r"network\[0\]: got 'ring'"),
     ],
 )

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "garrison/core/types.hpp"
 
@@ -19,6 +20,9 @@ struct Nonlinear {
   std::function<Vector(const Matrix& X, int t)> h;
   /// dh/dx, total_outputs x n, the rows of agent i at column i of X; empty = by central differences.
   std::function<Matrix(const Matrix& X, int t)> h_jacobian = {};
+  /// Outputs r that are linear, h_r(x) = C_r x with the model's C, at all x and t (refused where h says
+  /// something else). Certificates of single samples rest on these rows, and on no others.
+  std::vector<int> linear = {};
 };
 
 }  // namespace garrison

@@ -8,6 +8,7 @@
 #include "garrison/certificate/online/certifier.hpp"
 #include "garrison/certificate/online/evidence.hpp"
 #include "garrison/certificate/online/plan.hpp"
+#include "garrison/core/change.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/engine/routes.hpp"
 #include "garrison/engine/workers.hpp"
@@ -24,9 +25,9 @@ class GARRISON_EXPORT CertifiedNetwork {
   ~CertifiedNetwork();
 
   void reset(std::int64_t t);
-  /// Sample t; y: all measurements, agent by agent, that stay there until `finish`. C: the rows of this
-  /// sample, of all agents on top of each other; null = the plan's.
-  void begin(std::int64_t t, const double* y, const Matrix* C = nullptr);
+  /// Sample t; y: all measurements, agent by agent, that stay there until `finish`. change: what of this
+  /// sample is not the plan's.
+  void begin(std::int64_t t, const double* y, const Change& change = {});
   /// Keeps places for so many messages in which agents lie. At least one, to look at.
   void keep_lies(std::size_t places);
   /// One round: everybody says what is new. Either all rounds of a sample are told so and heard, or none:

@@ -54,7 +54,7 @@ class Engine final : public Runner {
     mail_.connect(link);
     batch_.release();
     places_.constant();
-    rows_ = nullptr;
+    change_ = {};
     for (std::size_t k = 0; k < states_.size(); ++k) {
       const Vec<n> start = x0.col(places_.id(k));
       F::template init<n>(local(k), *gains_, start, states_[k], mail_.outgoing()[k]);
@@ -68,9 +68,9 @@ class Engine final : public Runner {
     if (certified_) certified_->reset(first_sample<F>() - 1);
   }
 
-  void vary(const Matrix* A, const Matrix* C) override {
-    places_.vary(A, C);
-    rows_ = C;
+  void vary(const Change& change) override {
+    if (change.A != nullptr || change.C != nullptr) places_.vary(change.A, change.C);
+    change_ = change;
   }
   void estimates(Matrix& out) const override {
     batch_.settle();
@@ -86,7 +86,7 @@ class Engine final : public Runner {
   }
 
   void step(std::int64_t t, const double* y) override {
-    if (certified_) certified_->begin(t, y, rows_);
+    if (certified_) certified_->begin(t, y, change_);
     if constexpr (requires { F::most_missing(*gains_); }) notice_missing(F::most_missing(*gains_), y);
     filter(t, y);
     if (certified_) certified_->finish(workers_);
@@ -277,7 +277,7 @@ class Engine final : public Runner {
   std::shared_ptr<const typename F::Gains> gains_;
   ConsensusPlan plan_;
   Places places_;
-  const Matrix* rows_ = nullptr;  // C of the sample where it is not the model's
+  Change change_;  // of the sample
   Mailroom<Message> mail_;
   Workers workers_;
   Aligned<State> states_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "garrison/certificate/online/certifier.hpp"
+#include "garrison/core/change.hpp"
 #include "garrison/core/filter.hpp"
 #include "garrison/engine/link.hpp"
 
@@ -42,9 +43,9 @@ class GARRISON_EXPORT Runner {
   /// Time 0: one initial estimate per agent, n x N. `link` (null = perfect) must outlive the run.
   /// @throws InvalidInput when an attack of the link changes what messages of this family do not hold
   virtual void reset(const Matrix& x0, Link* link) = 0;
-  /// Whether the network is told, before a sample, of an A or C (stacked) that differ from the model's: for
-  /// families that can (Prepared::require_varying). Null = as before; `reset` goes back to the model's.
-  virtual void vary(const Matrix* A, const Matrix* C) = 0;
+  /// Tells the network, before a sample, what differs from the model: A or C for families that can
+  /// (Prepared::require_varying), the rest for their certificates. `reset` goes back to the model's.
+  virtual void vary(const Change& change) = 0;
   /// Estimates of all agents, n x N in the order of public ids.
   virtual void estimates(Matrix& out) const = 0;
   /// Before a sample: puts others in their place; for the families that `vary` is for.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "garrison/filters/central_kalman.hpp"
 
@@ -17,7 +18,10 @@ struct GARRISON_EXPORT NonlinearPlant {
   std::function<Matrix(const Vector& x, const Vector& u, int t)> f_jacobian = {};
   std::function<Matrix(const Vector& x, int t)> h_jacobian = {};
   Matrix process_covariance;    ///< n x n
-  Vector measurement_variance;  ///< m, > = 0
+  Vector measurement_variance;  ///< m, >= 0
+  /// In place of these two where they change: of every step, and T x m, row r of time r+1.
+  std::vector<Matrix> process_covariances = {};
+  Matrix measurement_variances = {};
 };
 
 /// Estimates (T+1) x n from measurements T x m, row r belonging to time r+1; NaN or inf = missing. Starts

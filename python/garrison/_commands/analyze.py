@@ -32,6 +32,7 @@ def do(args: argparse.Namespace) -> int:
     """Run the command."""
     target = new_file(args.output, args.force) if args.output else None
     scenario = read_scenario(args.scenario)
+    scenario.require_constant("analyze")
     found = analyze(
         scenario.model,
         scenario.network,

@@ -26,6 +26,7 @@ def add(commands: Commands) -> None:
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
     scenario = read_scenario(args.scenario)
+    scenario.require_constant("calibrate")
     found = _all(scenario)
     if args.json:
         print_json({"filters": [_plain(label, scenario, one) for label, one in found]})

@@ -4,8 +4,8 @@ import argparse
 
 from garrison._commands.setting import add_set, settings
 from garrison._commands.terminal import NO, OK, Commands, console_for, print_json, print_table, print_warnings, working
-from garrison.checks import check, verdict
-from garrison.jobs import certificate_of, rehearse
+from garrison.checks import verdict
+from garrison.jobs import checked, rehearse
 from garrison.scenario import read_scenario
 
 
@@ -28,11 +28,11 @@ def do(args: argparse.Namespace) -> int:
     label, filter = scenario.filters[0]
     assert filter is not None  # the main filter is never the central one
     with working(f"checking the conditions of {label}"):
-        found = check(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
+        found, doubts = checked(scenario, filter)
         rehearse(scenario)
     code = OK if found.holds else NO
     if args.json:
-        facts = {"conditions": found.conditions, "quantities": found.quantities, "notes": scenario.notes}
+        facts = {"conditions": found.conditions, "quantities": found.quantities, "notes": scenario.notes + doubts}
         print_json({"filter": label, "holds": found.holds, **facts})
         return code
     console = console_for()
@@ -41,5 +41,5 @@ def do(args: argparse.Namespace) -> int:
     console.print()
     quantities = [[q["name"], f"{q['value']:.6g}", q["meaning"]] for q in found.quantities]
     print_table("", ["quantity", "value", "meaning"], quantities, console)
-    print_warnings(scenario.notes)
+    print_warnings(scenario.notes + doubts)
     return code

@@ -47,6 +47,7 @@ def do(args: argparse.Namespace) -> int:
     """Run the command."""
     target = new_file(args.output, args.force) if args.output else None
     scenario = read_scenario(args.scenario)
+    scenario.require_constant("compare")
     own = {label: filter for label, filter in scenario.filters if filter is not None}
     attacked = _agents(args.agents, scenario.names) if args.agents else scenario.hit
     if not attacked:

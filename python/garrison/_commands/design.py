@@ -36,6 +36,7 @@ def do(args: argparse.Namespace) -> int:
     """Run the command."""
     target = new_file(args.output, args.force) if args.output else None
     scenario = read_scenario(args.scenario)
+    scenario.require_constant("design")
     main = scenario.filters[0][1]
     own = main.params if main is not None else {}
     attacked = args.attacked if args.attacked is not None else own.get("attacked", len(scenario.hit))

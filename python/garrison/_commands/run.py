@@ -19,6 +19,7 @@ from garrison._commands.setting import add_set, settings
 from garrison._commands.terminal import OK, Commands, clean, console_for, print_json, print_table, print_warnings
 from garrison.bound_kind import BoundKind
 from garrison.jobs import Row, run_scenario, signal_size
+from garrison.longform import state_columns
 from garrison.report import table_rows
 from garrison.report.table import error_note, warnings_of
 from garrison.scenario import Scenario, read_scenario
@@ -168,7 +169,8 @@ def _write_estimates(path: Path, scenario: Scenario, row: Row, npz: bool) -> Non
     trials, times, agents, n = run.estimate.shape
     trial, time, agent = (axis.ravel() for axis in np.indices((trials, times, agents)))
     numbers = [run.estimate.reshape(-1, n)]
-    head = ["trial", "time", "agent", *(f"x{k}" for k in range(n))]
+    named = "states" in run.model.__getstate__()
+    head = ["trial", "time", "agent", *(state_columns(run) if named else (f"x{k}" for k in range(n)))]
     if run.bound is not None:
         numbers.append(run.bound.reshape(-1, 1))
         head.append("bound")

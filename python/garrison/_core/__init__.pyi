@@ -468,6 +468,11 @@ class AgentInfo:
         Its number, 0..agents-1.
         """
     @property
+    def measurement_variance(self) -> typing.Any:
+        """
+        Variances of its outputs in this sample, (outputs,); None: not known.
+        """
+    @property
     def name(self) -> str:
         """
         Its name in the network, or nothing.
@@ -476,6 +481,11 @@ class AgentInfo:
     def neighbours(self) -> list[int]:
         """
         Agents that it hears.
+        """
+    @property
+    def process_covariance(self) -> typing.Any:
+        """
+        Of the step to this sample, (n, n); None: not known.
         """
 
 class Filter:
@@ -1315,8 +1325,8 @@ def extended_kalman(
     measurements: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     x0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     P0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    process_covariance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    measurement_variance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    process_covariance: dict,
+    measurement_variance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     inputs: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     f_jacobian: typing.Any = None,
     h_jacobian: typing.Any = None,

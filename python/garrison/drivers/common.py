@@ -80,9 +80,9 @@ def require_taken(
     if any(attack.name == "false_trajectory" for attack in attacks):
         advice = "its story moves by A; garrison.attacks.custom takes yours"
         raise refusal("attack", "false_trajectory with a NonlinearModel", "another one", advice)
-    if run_options.certified(certificate):
-        advice = "certificates rest on A and C; docs/how-to/changing-plants.md"
-        raise refusal("certificate", f"{certificate!r} with a NonlinearModel", '"none"', advice)
+    if run_options.certified(certificate) and not functions["linear"]:
+        advice = "certificates rest on rows of C; docs/how-to/changing-plants.md"
+        raise refusal("certificate", f"{certificate!r} with a NonlinearModel without linear outputs", '"none"', advice)
 
 
 def designed(

@@ -5,11 +5,11 @@ import tempfile
 from pathlib import Path
 
 from garrison import _core
-from garrison.checks import check, verdict
+from garrison.checks import verdict
 from garrison.families import family_of
 from garrison.figures import error_figure, innovation_figure, map_figure, verdict_figure
 from garrison.figures.errors import bounded, smoothing_width
-from garrison.jobs import Row, certificate_of, signal_size
+from garrison.jobs import Row, checked, signal_size
 from garrison.longform import common_unit
 from garrison.record import Run
 from garrison.report.html import figure, image, page, table
@@ -112,11 +112,13 @@ def _model_text(scenario: Scenario) -> str:
 
 
 def _check_table(scenario: Scenario, filter: _core.Filter) -> str:
-    found = check(scenario.model, scenario.network, filter, **certificate_of(scenario, filter))
+    found, doubts = checked(scenario, filter)
     conditions = [[c["name"], c["meaning"], f"{c['value']:.4g}", c["needed"], verdict(c)] for c in found.conditions]
     quantities = [[q["name"], q["meaning"], f"{q['value']:.4g}"] for q in found.quantities]
-    return table(["condition", "meaning", "value", "needed", "verdict"], conditions) + table(
-        ["quantity", "meaning", "value"], quantities
+    return (
+        table(["condition", "meaning", "value", "needed", "verdict"], conditions)
+        + table(["quantity", "meaning", "value"], quantities)
+        + "".join(f'<p class="doubt">{html.escape(doubt)}</p>' for doubt in doubts)
     )
 
 

@@ -16,8 +16,9 @@ from garrison.varying_network import VaryingNetwork
 from garrison.words import refusal
 
 Array = NDArray[np.float64]
+_R = "measurement_covariance_over_time"
 #: keys of [model] with one matrix per step, and what each replaces
-OVER_TIME = ["A_over_time", "B_over_time", "C_over_time", "process_covariance_over_time"]
+OVER_TIME = ["A_over_time", "B_over_time", "C_over_time", "process_covariance_over_time", _R]
 
 
 def read_varying(section: Section, model: _core.Model) -> VaryingModel | None:
@@ -26,15 +27,28 @@ def read_varying(section: Section, model: _core.Model) -> VaryingModel | None:
     shapes = {"A": (n, n), "B": (n, p), "C": (m, n), "process_covariance": (n, n)}
     parts: dict[str, Any] = {}
     for key in OVER_TIME:
-        if key in section:
+        if key in section and key != _R:
             part = key.removesuffix("_over_time")
             parts[part] = _below_each_other(section.place(key), section.numbers(key), shapes[part])
+    if _R in section:
+        parts["measurement_covariance"] = _noises(section, m, max(len(c) for c in model.C))
     if not parts:
         return None
     try:
         return VaryingModel(model, **parts)
     except _core.Error as error:
         raise renamed(error, section.where) from None
+
+
+def _noises(section: Section, outputs: int, most: int) -> Array:
+    """Variances of all outputs, a row per sample; or the blocks of all agents below each other, in every sample."""
+    given = section.numbers(_R)
+    if given.ndim == 3 or (given.ndim == 2 and given.shape[1] == outputs):
+        return given
+    if given.ndim == 2 and given.shape[1] == most and len(given) % outputs == 0:
+        return given.reshape(-1, outputs, most)
+    expected = f"{outputs} variances per sample, or {outputs} x {most} numbers (in a file: below each other)"
+    raise refusal(section.place(_R), f"shape {given.shape}", expected)
 
 
 def _below_each_other(where: str, given: Array, shape: tuple[int, int]) -> Array:

@@ -50,6 +50,7 @@ _MATRIX_KEYS = [
     "B_over_time",
     "C_over_time",
     "process_covariance_over_time",
+    "measurement_covariance_over_time",
 ]
 _VEHICLE_KEYS = ["vehicles", "period", "inputs", "names"]
 _FILE_KEYS = ["file"]

@@ -85,6 +85,13 @@ class Scenario:
         """Who hears whom, over time where that changes."""
         return self.present or self.network
 
+    def require_constant(self, command: str) -> None:
+        """Refuse a plant that changes in time, for a command that is about [model] alone. Raises InvalidInput."""
+        if self.varying is not None:
+            parts = ", ".join(f"{part}_over_time" for part in self.varying.parts)
+            advice = "garrison run takes it; leave these keys out to ask about the constant part"
+            raise refusal("[model]", parts, f"a constant plant for garrison {command}", advice)
+
     @property
     def steps(self) -> int:
         """Samples of a trial."""

@@ -77,13 +77,19 @@ WindowLevels AgentBank::levels() const noexcept {
   return {b.z1[std::min(epoch, b.z1.size() - 1)], b.z2, b.zc, kNaN};
 }
 
-void AgentBank::vary(const Matrix* rows) noexcept {
-  varied_ = rows != nullptr;
+void AgentBank::vary(const Change& change) noexcept {
+  change_ = change;
+  varied_ = change.rows != nullptr || change.variance != nullptr;
   if (!varied_) return;
+  const Matrix& C = change.rows != nullptr ? *change.rows : plan_->rows;
+  const Vector& R = change.variance != nullptr ? *change.variance : plan_->variance;
   std::size_t at = 0;
   for (BankSource& source : now_)
-    for (Eigen::Index k = 0; k < source.C.rows(); ++k, ++at)
-      source.C.row(k) = rows->col(static_cast<Eigen::Index>(row_[at])).transpose();
+    for (Eigen::Index k = 0; k < source.C.rows(); ++k, ++at) {
+      const auto row = static_cast<Eigen::Index>(row_[at]);
+      source.C.row(k) = C.col(row).transpose();
+      source.R(k) = R(row);
+    }
 }
 
 void AgentBank::take(std::int64_t t, std::span<const double> y) noexcept {
@@ -92,6 +98,8 @@ void AgentBank::take(std::int64_t t, std::span<const double> y) noexcept {
   step.ellipsoid = false;
   for (; t_ + 1 < t; ++t_) bank_.update(nothing_, levels(), step);
   if (bank_.overflows()) restart(t - 1, false);
+  step.A = change_.A;
+  step.Q = change_.Q;
   for (std::size_t k = 0; k < order_.size(); ++k) y_(static_cast<Eigen::Index>(k)) = y[order_[k]];
   if (varied_) {
     step.sources = &now_;

@@ -10,6 +10,7 @@
 #include "garrison/certificate/online/doubts.hpp"
 #include "garrison/certificate/online/plan.hpp"
 #include "garrison/core/certificate_kind.hpp"
+#include "garrison/core/change.hpp"
 #include "garrison/wire/archive.hpp"
 
 namespace garrison::certificate {
@@ -30,9 +31,9 @@ class AgentBank {
   /// What has become known of sample t, later than the last one by any number; NaN = missing.
   void take(std::int64_t t, std::span<const double> y) noexcept;
 
-  /// From the next sample on; rows: those of the whole network, each a column; null = the plan's. What the
-  /// plan has as a row of zeros is not used.
-  void vary(const Matrix* rows) noexcept;
+  /// From the next sample on; change.rows: of the whole network, each a column here; null = the plan's. What
+  /// the plan has as a row of zeros is not used.
+  void vary(const Change& change) noexcept;
   /// What the last sample says alone: its box, which assumes less. Where no state is in both, this bank's
   /// region was wrong.
   void compare(std::span<const double> center, std::span<const double> box) noexcept;
@@ -63,6 +64,7 @@ class AgentBank {
   Bank bank_;
   std::vector<BankSource> now_;  // its sources where rows are not the plan's
   bool varied_ = false;
+  Change change_;  // A and Q of the sample where they are not the plan's
   Vector y_, nothing_;
   std::int64_t t_ = 0;
   std::int64_t tests_ = 0;  // samples that the bank has seen since it started

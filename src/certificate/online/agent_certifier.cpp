@@ -111,6 +111,7 @@ void AgentCertifier::move_to(std::int64_t t) noexcept {
   const std::int64_t passed = t - memory_.t;
   memory_.t = t;
   memory_.radius = kInfinity;
+  if (now_.A != nullptr || (now_.Q != nullptr && !plan_->deterministic())) memory_.age = -1;
   if (memory_.age >= 0) {
     Eigen::Map<Vector> center(memory_.ball.data(), moved_.size());
     const int oldest = plan_->deterministic() ? memory_.age : memory_.fresh + kChoice;  // that it may be
@@ -133,10 +134,10 @@ void AgentCertifier::move_to(std::int64_t t) noexcept {
   if (bank_) bank_->wait();
 }
 
-void AgentCertifier::vary(const Matrix* rows) noexcept {
-  now_ = rows;
+void AgentCertifier::vary(const Change& change) noexcept {
+  now_ = change;
   gathered_ = false;
-  if (bank_) bank_->vary(rows);
+  if (bank_) bank_->vary(change);
 }
 
 void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
@@ -233,12 +234,13 @@ void AgentCertifier::gather() noexcept {
   }
   rows_.clear();
   const std::size_t n = memory_.center.size();
-  const Matrix& rows = now_ != nullptr ? *now_ : plan_->rows;
+  const Matrix& rows = now_.rows != nullptr ? *now_.rows : plan_->rows;
+  const Vector& variance = now_.variance != nullptr ? *now_.variance : plan_->variance;
   for (std::size_t k = 0; k < y_.size(); ++k) {
     const auto r = static_cast<Eigen::Index>(row_[k]);
-    used_[k] = static_cast<char>(
-        present_[k] != 0 && rows_.add(source_[k], {rows.data() + row_[k] * n, n}, y_[k], plan_->variance(r),
-                                      plan_->deterministic() ? plan_->width(r) : 0.0));
+    used_[k] = static_cast<char>(present_[k] != 0 &&
+                                 rows_.add(source_[k], {rows.data() + row_[k] * n, n}, y_[k], variance(r),
+                                           plan_->deterministic() ? plan_->width(r) : 0.0));
   }
 }
 

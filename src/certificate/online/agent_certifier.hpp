@@ -7,6 +7,7 @@
 #include "garrison/certificate/online/certifier.hpp"
 #include "garrison/certificate/online/plan.hpp"
 #include "garrison/certificate/subsets.hpp"
+#include "garrison/core/change.hpp"
 
 namespace garrison::certificate {
 
@@ -46,8 +47,8 @@ class AgentCertifier final : public Certifier {
   void hear_relayed(const AgentCertifier& other) noexcept;
   bool relays_the_same(const AgentCertifier& other) const;
   bool found_the_same(const AgentCertifier& other) const;
-  /// From the next sample on; rows: those of the whole network, each a column; null = the plan's.
-  void vary(const Matrix* rows) noexcept;
+  /// From the next sample on; change.rows: of the whole network, each a column here; null = the plan's.
+  void vary(const Change& change) noexcept;
   /// Takes over all that lasts to the next sample.
   void copy(const AgentCertifier& other) noexcept { memory_ = other.memory_; }
   bool has_bank() const { return bank_ != nullptr; }
@@ -85,7 +86,7 @@ class AgentCertifier final : public Certifier {
   int next_round_ = 0;            // in which what is heard now can be passed on
   int known_ = 0;
   bool one_row_each_ = true;          // no source has several rows
-  const Matrix* now_ = nullptr;       // rows of the sample where they are not the plan's
+  Change now_;                        // what of the sample is not the plan's; rows: each a column
   bool gathered_ = false;             // rows_ are those of now_
   std::vector<char> present_, used_;  // of each entry of y_: it was known, and is a row, in rows_
   Rows rows_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certificates of runs whose C changes from sample to sample: they hold at the edge of their promise, with
-// losses and liars; with rows that do not change they are the same bits; what they cannot rest on is refused.
+// Certificates of runs whose C, or every matrix, changes from sample to sample: they hold at the edge of
+// their promise, with losses and liars; with rows that do not change they are the same bits; what they cannot
+// rest on is refused.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -87,13 +88,46 @@ std::shared_ptr<const Prepared> prepared(const Case& d, int k) {
   return certified(*filter->prepare(d.model, d.network), wanted);
 }
 
-}  // namespace
+/// A, covariances of the process noise and variances of every sample, and roots of both.
+struct Motion {
+  std::vector<Matrix> A, root, deviation;
+};
+Motion motion(test::Rng& rng, const Case& d, bool moves) {
+  Motion found;
+  for (int t = 0; t < kSteps; ++t) {
+    const double by = moves ? test::uniform(rng, 0.3, 3.0) : 1.0;
+    const auto n = static_cast<int>(d.A.rows());
+    found.A.push_back(moves ? Matrix(d.A + 0.3 * test::normal_matrix(rng, n, n)) : d.A);
+    found.root.push_back(by * d.root);
+    found.deviation.emplace_back(d.deviation);
+    if (!moves) continue;
+    for (double& one : found.deviation.back().reshaped()) one *= test::uniform(rng, 0.3, 3.0);
+  }
+  return found;
+}
 
-TEST_CASE("certificates hold at the edge of their promise where rows change in every sample") {
-  test::Rng rng(kSeed);
+/// The blocks of all agents below each other.
+Matrix blocks(const Model& model, const Vector& deviation) {
+  Matrix all = Matrix::Zero(deviation.size(), 2);
+  for (int i = 0; i < model.agents(); ++i)
+    for (int r = 0; r < model.outputs(i); ++r)
+      all(model.offset(i) + r, r) = deviation(model.offset(i) + r) * deviation(model.offset(i) + r);
+  bool wide = false;
+  for (int i = 0; i < model.agents(); ++i) wide = wide || model.outputs(i) > 1;
+  return wide ? all : Matrix(all.leftCols(1));
+}
+
+struct Tally {
   int bounds = 0;
   int remembered = 0;
   double largest = 0.0;
+};
+
+/// Runs at the edge of their promise; moves: A and covariances change, too.
+Tally at_the_edge(bool moves) {
+  test::Rng rng(kSeed + (moves ? 10 : 0));
+  Tally tally;
+  auto& [bounds, remembered, largest] = tally;
   for (int k = 0; k < kSystems; ++k) {
     CAPTURE(k);
     const Case d = draw(rng);
@@ -101,6 +135,7 @@ TEST_CASE("certificates hold at the edge of their promise where rows change in e
     const auto n = static_cast<int>(d.A.rows());
     const int liar = test::whole(rng, 0, d.model.agents() - 1);
     const auto C = changing(rng, d.model);
+    const Motion now = motion(rng, d, moves);
     const Eigen::Index outputs = d.deviation.size();
     // Deviations of all noises of the run together: by Cauchy and Schwarz no event of any certificate fails.
     const Vector all = edge(*design->certificate()) *
@@ -115,9 +150,10 @@ TEST_CASE("certificates hold at the edge of their promise where rows change in e
     Vector x = 10.0 * test::normal_matrix(rng, n, 1);
     truth.row(0) = x.transpose();
     for (int t = 0; t < kSteps; ++t) {
-      x = d.A * x + d.root * next(d.root.cols());
+      const auto here = static_cast<std::size_t>(t);
+      x = now.A[here] * x + now.root[here] * next(d.root.cols());
       truth.row(t + 1) = x.transpose();
-      const Vector v = d.deviation.cwiseProduct(next(outputs));
+      const Vector v = now.deviation[here].cwiseProduct(next(outputs));
       y.row(t) = (C[static_cast<std::size_t>(t)] * x + v).transpose();
       for (int r = 0; r < d.outputs[static_cast<std::size_t>(liar)]; ++r)
         y(t, d.model.offset(liar) + r) += k % 4 < 2 ? 7.0 : 500.0;
@@ -128,6 +164,11 @@ TEST_CASE("certificates hold at the edge of their promise where rows change in e
     if (k % 5 > 1) o.link = {0.2, 0.1, 2, {{2, -1, 5, 9}}, {}};
     const auto series = std::make_shared<Series>();
     series->C = C;
+    if (moves) {
+      series->A = now.A;
+      for (const Matrix& root : now.root) series->process_covariance.emplace_back(root * root.transpose());
+      for (const Matrix& one : now.deviation) series->measurement_covariance.push_back(blocks(d.model, one));
+    }
     o.series = series;
     const Record record = replay(*design, Log{y.data(), truth.data(), 1, kSteps}, o);
     const auto N = static_cast<std::size_t>(d.model.agents());
@@ -150,11 +191,44 @@ TEST_CASE("certificates hold at the edge of their promise where rows change in e
       for (const auto& sources : proof.sets)
         for (const int source : sources) CHECK(source == liar);
   }
-  std::cout << "rows that change: " << bounds << " bounds, " << remembered
+  std::cout << (moves ? "all that changes: " : "rows that change: ") << bounds << " bounds, " << remembered
             << " of them with memory, largest error/bound " << largest << "\n";
-  CHECK(bounds > 60 * kSystems);
-  CHECK(remembered > 20 * kSystems);
-  CHECK(largest < 1.0);
+  return tally;
+}
+
+}  // namespace
+
+TEST_CASE("certificates hold at the edge of their promise where rows change in every sample") {
+  const Tally found = at_the_edge(false);
+  CHECK(found.bounds > 60 * kSystems);
+  CHECK(found.remembered > 20 * kSystems);
+  CHECK(found.largest < 1.0);
+}
+
+TEST_CASE("certificates hold where A, C and both covariances change in every sample") {
+  const Tally found = at_the_edge(true);
+  CHECK(found.bounds > 50 * kSystems);
+  CHECK(found.remembered > 20 * kSystems);
+  CHECK(found.largest < 1.0);
+}
+
+TEST_CASE("where A or the process noise changes, no region of an earlier sample is relayed") {
+  test::Rng rng(kSeed + 3);
+  const Case d = draw(rng);
+  const auto design = prepared(d, 1);  // direct: what is relayed is of earlier samples
+  for (const bool process : {false, true}) {
+    RunOptions o;
+    const auto series = std::make_shared<Series>();
+    if (process)
+      series->process_covariance.assign(kSteps, d.root * d.root.transpose());
+    else
+      series->A.assign(kSteps, d.A);
+    o.series = series;
+    const PlantOptions plant{kSteps, Vector::Ones(d.A.rows()), 0.0, "normal"};
+    const Record record = simulate(*design, plant, o);
+    for (const std::uint8_t kind : record.bound_kind)
+      CHECK(static_cast<CertificateKind>(kind) != CertificateKind::relayed);
+  }
 }
 
 TEST_CASE(
@@ -180,7 +254,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a certificate refuses plants whose A or process noise changes, and rows that were not counted") {
+TEST_CASE("a certificate refuses variances of zero, correlated outputs, and rows that were not counted") {
   test::Rng rng(kSeed + 2);
   const Case d = draw(rng);
   const auto design = prepared(d, 0);
@@ -191,11 +265,11 @@ TEST_CASE("a certificate refuses plants whose A or process noise changes, and ro
     CHECK_THROWS_WITH_AS(simulate(*design, plant, o), doctest::Contains(words), InvalidInput);
   };
   Series series;
-  series.A.assign(kSteps, d.A);
-  refused(series, "certificate: got a plant whose A or process_covariance changes in time");
-  series = {};
-  series.process_covariance.assign(kSteps, d.root * d.root.transpose());
-  refused(series, "certificate: got a plant whose A or process_covariance changes in time");
+  series.measurement_covariance.assign(kSteps, blocks(d.model, d.deviation));
+  series.measurement_covariance.back()(0, 0) = 0.0;
+  refused(series, "correlated outputs, or a variance of 0");
+  series.measurement_covariance.back()(0, 0) = -1.0;
+  refused(series, "measurement_covariance[24] of agent 0: got least eigenvalue");
   // A sensor that sees nothing in the model, but something in a sample.
   std::vector<Matrix> C;
   for (int i = 0; i < d.model.agents(); ++i) C.push_back(d.model.C(i));
