@@ -14,10 +14,10 @@ using certificate::Wanted;
 
 namespace {
 
-/// N agents with one sensor each, n = 4, s = 3.
+/// N agents with one sensor each, n = 4.
 class CertifiedStep {
  public:
-  CertifiedStep(int agents, int rounds, const std::string& spread, int subsets)
+  CertifiedStep(int agents, int rounds, const std::string& spread, int subsets, int attacked)
       : y_(static_cast<std::size_t>(agents)) {
     const Network network = Network::random_geometric(agents, 0.4, 1);
     const Matrix A = 0.95 * Matrix::Identity(4, 4);
@@ -29,7 +29,7 @@ class CertifiedStep {
                     ->prepare(model, network);
     const std::map<std::string, Spread> spreads{
         {"local", Spread::local}, {"flooded", Spread::flooded}, {"direct", Spread::direct}};
-    if (spread != "none") prepared_ = certified(*prepared_, {spreads.at(spread), 1e-6, 3, subsets});
+    if (spread != "none") prepared_ = certified(*prepared_, {spreads.at(spread), 1e-6, attacked, subsets});
     runner_ = prepared_->runner(1);
     runner_->reset(Matrix::Zero(4, agents), nullptr);
     for (int i = 0; i < agents; ++i) agents_.push_back(prepared_->agent(i));
@@ -94,8 +94,8 @@ class CertifiedStep {
 
 void bind_certificate(py::module_& m) {
   py::class_<CertifiedStep>(m, "CertifiedStep")
-      .def(py::init<int, int, const std::string&, int>(), py::arg("agents"), py::arg("rounds"),
-           py::arg("spread"), py::arg("subsets"))
+      .def(py::init<int, int, const std::string&, int, int>(), py::arg("agents"), py::arg("rounds"),
+           py::arg("spread"), py::arg("subsets"), py::arg("attacked"))
       .def("engine", &CertifiedStep::engine, py::arg("samples"))
       .def("agents", &CertifiedStep::agents, py::arg("samples"));
 }

@@ -2,6 +2,7 @@
 #include "garrison/engine/certified_network.hpp"
 
 #include "certificate/online/agent_certifier.hpp"
+#include "evidence_bytes.hpp"
 #include "flood.hpp"
 #include "garrison/wire/message.hpp"
 
@@ -12,48 +13,40 @@ using certificate::AgentCertifier;
 struct CertifiedNetwork::Agents {
   std::vector<std::unique_ptr<AgentCertifier>> certifiers;
   std::vector<certificate::Evidence> said;  // of this round
+  std::vector<char> silent;                 // of this round: who says nothing
   // Samples without losses are done at once where everybody learns everything in one.
   detail::Flood flood;
   bool reaches_all = false;
-  std::int64_t bare_bytes = 0;               // of such a sample, measurements and regions aside
-  std::int64_t region_bytes = 0;             // of the regions
-  std::int64_t bytes_of_region = 0;          // in one message
-  std::vector<std::int64_t> measured_bytes;  // and of each measurement
-  bool alike = false;  // all relay the same region, and where all is flooded also found the same
+  detail::EvidenceBytes bytes;
+  std::vector<int> since;  // round from which on each agent has a region to relay; rounds = never
+  bool alike = false;      // all relay the same region, and where all is flooded also found the same
 
-  void plan_at_once(const certificate::Plan& plan, const Network& network, int rounds,
-                    const std::vector<int>& listeners);
-  bool all_alike() const;
   /// Flooded, from one sample without losses on: one agent stands for all. Banks have a past of their own.
   bool one_for_all() const {
     return alike && certifiers.front()->flooded() && !certifiers.front()->has_bank();
   }
-  std::int64_t bytes_of_first_regions(int rounds, const std::vector<int>& listeners) const;
+  bool all_alike() const;
+  void plan_at_once(const certificate::Plan& plan, const Network& network, int rounds);
+  /// Fills `since`: a region comes from the nearest agent that found one after the first round.
+  void find_first_regions(int rounds);
 };
 
-/// Who hears what, and the bytes of it.
-void CertifiedNetwork::Agents::plan_at_once(const certificate::Plan& plan, const Network& network, int rounds,
-                                            const std::vector<int>& listeners) {
-  const bool flooded = certifiers.front()->flooded();
-  const bool direct = certifiers.front()->direct();
-  if (!direct) flood = detail::Flood(network, flooded ? rounds : rounds - 1);
-  reaches_all = rounds > 0 && (direct || flood.reaches_all());
+void CertifiedNetwork::Agents::plan_at_once(const certificate::Plan& plan, const Network& network,
+                                            int rounds) {
+  const AgentCertifier& first = *certifiers.front();
+  if (!first.direct()) flood = detail::Flood(network, first.flooded() ? rounds : rounds - 1);
+  reaches_all = rounds > 0 && (first.direct() || flood.reaches_all());
   if (!reaches_all) return;
-  for (int i = 0; i < network.agents(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const std::int64_t messages = static_cast<std::int64_t>(rounds) * listeners[at];
-    bytes_of_region = static_cast<std::int64_t>(8 * said[at].ball.size());
-    bare_bytes += messages * static_cast<std::int64_t>(wire::size(said[at], network.agents()));
-    region_bytes += static_cast<std::int64_t>(flooded ? std::min(rounds, certificate::kRepeats) : rounds) *
-                    listeners[at] * bytes_of_region;
-    std::int64_t heard = listeners[at];  // how often this agent's measurement is
-    if (flooded) {
-      heard = 0;
-      for (int j = 0; j < network.agents(); ++j)
-        heard += static_cast<std::int64_t>(listeners[static_cast<std::size_t>(j)]) *
-                 std::clamp(rounds - flood.hops(i, j), 0, certificate::kRepeats);
-    }
-    measured_bytes.insert(measured_bytes.end(), static_cast<std::size_t>(plan.outputs(i)), 8 * heard);
+  bytes = detail::EvidenceBytes(plan, network, rounds, flood, said);
+  since.assign(certifiers.size(), rounds);
+}
+
+void CertifiedNetwork::Agents::find_first_regions(int rounds) {
+  for (std::size_t i = 0; i < since.size(); ++i) {
+    since[i] = rounds;
+    for (std::size_t j = 0; j < since.size(); ++j)
+      if (certifiers[j]->memory().age >= 0)
+        since[i] = std::min(since[i], flood.hops(static_cast<int>(j), static_cast<int>(i)) + 1);
   }
 }
 
@@ -63,22 +56,6 @@ bool CertifiedNetwork::Agents::all_alike() const {
   for (const auto& one : certifiers)
     if (!one->relays_the_same(first) || (first.flooded() && !one->found_the_same(first))) return false;
   return true;
-}
-
-/// Of a sample from which on regions are relayed, each agent's from the round after that of its coming.
-std::int64_t CertifiedNetwork::Agents::bytes_of_first_regions(int rounds,
-                                                              const std::vector<int>& listeners) const {
-  std::int64_t bytes = 0;
-  const int N = static_cast<int>(certifiers.size());
-  for (int i = 0; i < N; ++i) {
-    int earliest = rounds - 1;  // round in which it comes
-    for (int j = 0; j < N; ++j)
-      if (certifiers[static_cast<std::size_t>(j)]->memory().age >= 0)
-        earliest = std::min(earliest, flood.hops(j, i));
-    const auto at = static_cast<std::size_t>(i);
-    bytes += static_cast<std::int64_t>(rounds - 1 - earliest) * listeners[at] * bytes_of_region;
-  }
-  return bytes;
 }
 
 CertifiedNetwork::CertifiedNetwork(std::shared_ptr<const certificate::Plan> plan, const Network& network,
@@ -95,7 +72,8 @@ CertifiedNetwork::CertifiedNetwork(std::shared_ptr<const certificate::Plan> plan
     all_->certifiers.back()->shape_evidence(i, empty);
     all_->said.push_back(std::move(empty));
   }
-  all_->plan_at_once(*plan, network_, rounds_, listeners_);
+  all_->silent.resize(all_->said.size());
+  all_->plan_at_once(*plan, network_, rounds_);
 }
 CertifiedNetwork::~CertifiedNetwork() = default;
 
@@ -150,6 +128,8 @@ void CertifiedNetwork::say() {
   start();
   for (std::size_t i = 0; i < listeners_.size(); ++i) {
     all_->certifiers[i]->say(round_, all_->said[i]);
+    all_->silent[i] = all_->said[i].silent() ? 1 : 0;
+    if (all_->silent[i] != 0) continue;
     bytes_ += static_cast<std::int64_t>(listeners_[i]) *
               static_cast<std::int64_t>(wire::size(all_->said[i], agents()));
   }
@@ -178,8 +158,10 @@ void CertifiedNetwork::hear(Workers& workers, const Routes& routes) {
       const int sender = heard.senders[j];
       const std::size_t slot = heard.begin + heard.slots[j];
       const bool honest = slot < routes.first_lie();
-      hear(routes.id(place), sender,
-           honest ? all_->said[static_cast<std::size_t>(sender)] : lies_[slot - routes.first_lie()]);
+      const certificate::Evidence& said =
+          honest ? all_->said[static_cast<std::size_t>(sender)] : lies_[slot - routes.first_lie()];
+      if (honest ? all_->silent[static_cast<std::size_t>(sender)] == 0 : !said.silent())
+        hear(routes.id(place), sender, said);
     }
   });
 }
@@ -192,7 +174,8 @@ void CertifiedNetwork::finish(Workers& workers) {
     say();
     hear_all(workers, [&](std::int64_t i, const auto& hear) {
       for (const int j : network_.neighbours(static_cast<int>(i)))
-        hear(static_cast<int>(i), j, all_->said[static_cast<std::size_t>(j)]);
+        if (all_->silent[static_cast<std::size_t>(j)] == 0)
+          hear(static_cast<int>(i), j, all_->said[static_cast<std::size_t>(j)]);
     });
   }
   all_->alike = lossless && all_->reaches_all && all_->all_alike();
@@ -218,16 +201,18 @@ void CertifiedNetwork::at_once(Workers& workers) {
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
         all[i + 1]->adopt(first);
     });
-  if (relaying && !first.direct())
-    bytes_ += all_->region_bytes;
-  else if (!first.flooded() && !first.direct())
-    bytes_ += all_->bytes_of_first_regions(rounds_, listeners_);
+  if (first.flooded()) {
+    bytes_ += all_->bytes.flooded(y_, relaying);
+  } else {
+    if (relaying)
+      std::fill(all_->since.begin(), all_->since.end(), 0);
+    else if (!first.direct())
+      all_->find_first_regions(rounds_);
+    bytes_ += all_->bytes.local(y_, all_->since);
+  }
   const std::int64_t sharing = first.direct() || first.flooded() ? 0 : others;
   for (std::size_t i = 1; i <= static_cast<std::size_t>(sharing); ++i) first.hear_relayed(*all[i]);
   for (std::size_t i = 1; i <= static_cast<std::size_t>(sharing); ++i) all[i]->copy_relayed(first);
-  bytes_ += all_->bare_bytes;
-  for (std::size_t k = 0; k < all_->measured_bytes.size(); ++k)
-    bytes_ += std::abs(y_[k]) < kHuge ? all_->measured_bytes[k] : 0;
   round_ = rounds_;
   y_ = nullptr;
 }

@@ -22,16 +22,30 @@ class AnyFields {
     for (const FieldInfo& info : letter.fields) {
       Slot slot;
       if (info.kind == FieldKind::numbers || info.kind == FieldKind::sparse)
-        slot.numbers.resize(static_cast<std::size_t>(info.size));
+        slot.numbers.resize(static_cast<std::size_t>(info.size), kNaN);
       if (info.kind == FieldKind::set) slot.set.resize(info.size);
       if (info.kind == FieldKind::labels) slot.labels = LabelSet(info.size);
       slots_.push_back(std::move(slot));
     }
+    const auto of_certificate = [](const FieldInfo& info) { return info.name.starts_with("certificate."); };
+    filters_ = static_cast<std::size_t>(
+        std::find_if(letter.fields.begin(), letter.fields.end(), of_certificate) - letter.fields.begin());
+    shown_ = slots_.size();
+  }
+
+  /// The fields of a certificate take no bytes where they say nothing: whether they are to be visited.
+  void show_certificate(bool shown) { shown_ = shown ? slots_.size() : filters_; }
+  bool has_certificate() const { return filters_ < slots_.size(); }
+  bool silent() const {
+    for (std::size_t k = filters_; k < slots_.size(); ++k)
+      for (const double v : slots_[k].numbers)
+        if (!std::isnan(v)) return false;
+    return true;
   }
 
   template <class V>
   void visit(V& v) {
-    for (std::size_t k = 0; k < slots_.size(); ++k) {
+    for (std::size_t k = 0; k < shown_; ++k) {
       Slot& slot = slots_[k];
       const FieldInfo& info = letter_.fields[k];
       switch (info.kind) {
@@ -158,11 +172,18 @@ class AnyFields {
 
   const Letter& letter_;
   std::vector<Slot> slots_;
+  std::size_t filters_ = 0;  // fields of the filter; those of a certificate follow
+  std::size_t shown_ = 0;
 };
 
 AnyFields decoded(const Letter& letter) {
   AnyFields fields(letter);
-  if (const Refusal refusal = decode(letter.body, letter.agents, fields); refusal != Refusal::none)
+  fields.show_certificate(false);
+  if (decode(letter.body, letter.agents, fields) == Refusal::none) return fields;
+  fields.show_certificate(true);
+  Refusal refusal = decode(letter.body, letter.agents, fields);
+  if (refusal == Refusal::none && fields.has_certificate() && fields.silent()) refusal = Refusal::size;
+  if (refusal != Refusal::none)
     refuse("message", "a body with a wrong " + std::string(word(refusal)), "the fields of " + letter.family);
   return fields;
 }
@@ -183,6 +204,7 @@ Letter Letter::with(const std::string& name, const FieldValue& value) const {
   const auto at = std::find(known.begin(), known.end(), name);
   if (at == known.end()) refuse_unknown("message of " + family, name, known);
   all.set_value(static_cast<std::size_t>(at - known.begin()), value);
+  all.show_certificate(!all.silent());
   Letter changed = *this;
   changed.body.resize(most_bytes(all, agents));
   changed.body.resize(encode(all, agents, changed.body.data()));

@@ -32,6 +32,12 @@ class EvidenceShelf {
     }
     return room_[lent_[place]];
   }
+  /// Nothing is said in this place.
+  void leave(std::size_t place, std::size_t neighbour) noexcept {
+    if (lent_[place] != kNothing) give_back(lent_[place], neighbour);
+    lent_[place] = kNothing;
+  }
+  bool has(std::size_t place) const noexcept { return lent_[place] != kNothing; }
   /// The message in this place, which was opened; its room may be lent again with the next `open`.
   const certificate::Evidence& take(std::size_t place, std::size_t neighbour) noexcept {
     const std::uint32_t lent = lent_[place];

@@ -125,6 +125,9 @@ class Decoder : public NumbersOf<Decoder> {
  public:
   Decoder(std::span<const std::byte> body, int agents)
       : at_(body.data()), end_(body.data() + body.size()), agents_(agents) {}
+  /// Whether the body ends here, nothing of it refused.
+  bool at_end() const { return refusal_ == Refusal::none && at_ == end_; }
+  void refuse_as(Refusal why) { refusal_ = why; }
   /// Once all fields are visited: whether the body was a message, to its last byte.
   Refusal end() const {
     if (refusal_ != Refusal::none) return refusal_;
@@ -134,25 +137,10 @@ class Decoder : public NumbersOf<Decoder> {
   using NumbersOf<Decoder>::numbers;
   using NumbersOf<Decoder>::sparse;
   void sparse(std::string_view, std::span<double> values) {
-    const std::size_t bytes = (values.size() + 7) / 8;
-    if (!has(bytes)) return;
-    const std::byte* const bits = at_;
-    at_ += bytes;
-    std::size_t present = 0;
-    for (std::size_t first = 0; first < bytes; first += 8) present += ones(word(bits, first, bytes));
-    const std::size_t beyond = 8 * bytes - values.size();
-    if (beyond > 0 && std::to_integer<unsigned>(bits[bytes - 1]) >> (8 - beyond) != 0)
-      return refuse_as(Refusal::set);
-    if (!has(8 * present)) return;
-    bool fine = true;
-    for (std::size_t k = 0; k < present; ++k) fine &= std::abs(load_double(at_ + 8 * k)) < kHuge;
-    if (!fine) return refuse_as(Refusal::number);
-    if (present < values.size()) std::fill(values.begin(), values.end(), kNaN);
-    for (std::size_t first = 0; first < bytes && present > 0; first += 8)
-      for (std::uint64_t rest = word(bits, first, bytes); rest != 0; rest &= rest - 1) {
-        values[8 * first + static_cast<std::size_t>(std::countr_zero(rest))] = load_double(at_);
-        at_ += 8;
-      }
+    if (values.size() <= 8)
+      few(values);
+    else
+      many(values);
   }
   void numbers(std::string_view, std::span<double> values) {
     if (!has(8 * values.size())) return;
@@ -206,6 +194,46 @@ class Decoder : public NumbersOf<Decoder> {
   }
 
  private:
+  /// Sparse numbers whose bits are one byte: those of most messages, and then often all there or none.
+  void few(std::span<double> values) {
+    if (values.empty() || !has(1)) return;
+    const auto bits = std::to_integer<unsigned>(*at_);
+    const unsigned whole = (1U << values.size()) - 1U;
+    if (bits > whole) return refuse_as(Refusal::set);
+    if (!has(1 + 8 * ones(bits))) return;
+    ++at_;
+    bool fine = true;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      values[k] = kNaN;
+      if ((bits >> k & 1U) == 0) continue;
+      values[k] = load_double(at_);
+      fine &= std::abs(values[k]) < kHuge;
+      at_ += 8;
+    }
+    if (!fine) refuse_as(Refusal::number);
+  }
+  /// Sparse numbers of any size.
+  void many(std::span<double> values) {
+    const std::size_t bytes = (values.size() + 7) / 8;
+    if (!has(bytes)) return;
+    const std::byte* const bits = at_;
+    at_ += bytes;
+    std::size_t present = 0;
+    for (std::size_t first = 0; first < bytes; first += 8) present += ones(word(bits, first, bytes));
+    const std::size_t beyond = 8 * bytes - values.size();
+    if (beyond > 0 && std::to_integer<unsigned>(bits[bytes - 1]) >> (8 - beyond) != 0)
+      return refuse_as(Refusal::set);
+    if (!has(8 * present)) return;
+    bool fine = true;
+    for (std::size_t k = 0; k < present; ++k) fine &= std::abs(load_double(at_ + 8 * k)) < kHuge;
+    if (!fine) return refuse_as(Refusal::number);
+    if (present < values.size()) std::fill(values.begin(), values.end(), kNaN);
+    for (std::size_t first = 0; first < bytes && present > 0; first += 8)
+      for (std::uint64_t rest = word(bits, first, bytes); rest != 0; rest &= rest - 1) {
+        values[8 * first + static_cast<std::size_t>(std::countr_zero(rest))] = load_double(at_);
+        at_ += 8;
+      }
+  }
   /// Up to eight bytes as a word, the first one in the lowest bits.
   static std::uint64_t word(const std::byte* bits, std::size_t first, std::size_t bytes) {
     std::uint64_t all = 0;
@@ -230,7 +258,6 @@ class Decoder : public NumbersOf<Decoder> {
     refuse_as(Refusal::size);
     return false;
   }
-  void refuse_as(Refusal why) { refusal_ = why; }
 
   const std::byte* at_;
   const std::byte* end_;

@@ -185,7 +185,8 @@ void AgentCertifier::say(int round, Evidence& out) const noexcept {
       out.measurements[k] = round == 0 ? y_[at_[me] + k] : kNaN;
   }
   if (direct_) return;
-  const bool has = memory_.age >= 0 && (!flooded_ || round < region_since_ + kRepeats);
+  const bool has =
+      memory_.age >= 0 && (flooded_ ? round < region_since_ + kRepeats : plan_->relays_in(round, rounds_));
   out.age = has ? memory_.age : 0;
   out.fresh = has ? memory_.fresh : 0;
   std::copy(memory_.ball.begin(), memory_.ball.end(), out.ball.begin());

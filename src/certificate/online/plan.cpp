@@ -9,6 +9,7 @@
 
 #include "certificate/memory/choices.hpp"
 #include "certificate/require.hpp"
+#include "core/hops.hpp"
 #include "garrison/certificate/online/evidence.hpp"
 #include "garrison/certificate/propagate.hpp"
 #include "garrison/certificate/quantiles.hpp"
@@ -167,6 +168,19 @@ void plan_banks(Plan& plan, const Model& model, const Network& network) {
   bank.zc = two_sided(0.5 * share / model.states());
 }
 
+/// Plan::reach. Not known of networks that are so large that it would take long.
+int reach_of(const Network& network) {
+  constexpr int kMostAgents = 1000;
+  if (network.agents() > kMostAgents) return kUnknownReach;
+  int reach = 0;
+  for (int i = 0; i < network.agents(); ++i) {
+    const garrison::detail::Hops hops = garrison::detail::hops_from(network, i);
+    if (!hops.reaches_all) return kUnknownReach;
+    reach = std::max(reach, hops.furthest);
+  }
+  return reach;
+}
+
 bool consistent_bank(const Plan& plan) {
   const BankPlan& bank = plan.bank;
   if (!plan.wanted.memory) return bank.Q.size() == 0 && bank.z1.empty();
@@ -228,6 +242,7 @@ Plan make_plan(const Wanted& wanted, const Model& model, const Network& network)
     plan.z2_full = chi(share, model.states());
     plan.z2_partial = chi(share / model.agents(), model.states());
   }
+  plan.reach = reach_of(network);
   age_table(plan, model);
   if (wanted.memory) plan_banks(plan, model, network);
   return plan;

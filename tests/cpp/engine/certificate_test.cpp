@@ -185,6 +185,34 @@ TEST_CASE("bytes of a certificate are counted as they travel") {
   }
 }
 
+TEST_CASE("a certificate that says nothing adds no bytes, and bytes that say nothing are refused") {
+  const Setup s = setup(3, 5);
+  Wanted direct;  // says its measurement in the first round, and nothing after it
+  direct.spread = Spread::direct;
+  direct.attacked = 1;
+  for (const auto& filter : test::every_filter()) {
+    const auto plain = filter->prepare(s.model, s.network);
+    const auto prepared = certified(*plain, direct);
+    const int hears = s.network.neighbours(3).front();
+    const auto bare = plain->agent(hears);
+    const auto says = prepared->agent(hears);
+    const auto listens = prepared->agent(3);
+    if (says->rounds() < 2) continue;
+    CAPTURE(filter->name());
+    std::vector<std::byte> small(bare->most_bytes());
+    std::vector<std::byte> body(says->most_bytes());
+    const double y = s.y(0, hears);
+    const std::size_t filters = bare->sense(1, {&y, 1}, small).bytes;
+    CHECK(says->sense(1, {&y, 1}, body).bytes == filters + 1 + 8);
+    const std::size_t next = says->fuse(body).bytes;
+    CHECK(next == bare->fuse(small).bytes);
+    body.resize(next);
+    CHECK(listens->deliver({hears, 1, 1}, body) == Refusal::none);
+    body.push_back(std::byte{0});  // no measurement is there
+    CHECK(prepared->agent(3)->deliver({hears, 1, 1}, body) == Refusal::size);
+  }
+}
+
 TEST_CASE(
     "an agent that loads a snapshot goes on with the same certificate, from the same part of a design") {
   const Setup s = setup(3, 8);

@@ -2,6 +2,7 @@
 // The certificate's part of a message.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "garrison/core/types.hpp"
@@ -15,11 +16,13 @@ inline constexpr int kMostAge = 1000;
 inline constexpr int kChoice = 3;
 
 /// Flooded, a measurement is passed on in so many rounds after it became known, and a region after the
-/// freshest that was to be had changed; both are decided by losses alone. One is enough where nothing is
+/// freshest that was to be had changed; both are decided by losses alone. Else a region is passed on until it
+/// has had so many rounds more than it needs to reach everybody, less one. One is enough where nothing is
 /// lost.
 inline constexpr int kRepeats = 3;
 
-/// Fields in the sense of core/fields.hpp; drivers put them behind those of the filter's message.
+/// Fields in the sense of core/fields.hpp; drivers put them behind those of the filter's message. Where
+/// nothing is said, nothing is put there: no bytes.
 struct Evidence {
   /// The sender's own measurements (local; in the first round only), or those of the whole network that have
   /// become known to it of late (flooded). NaN = absent.
@@ -30,6 +33,14 @@ struct Evidence {
   int age = 0;  ///< samples since
   /// Age of the freshest region that the sender could have had; losses alone decide it.
   int fresh = 0;
+
+  bool silent() const {
+    for (const double y : measurements)
+      if (!std::isnan(y)) return false;
+    for (const double v : ball)
+      if (!std::isnan(v)) return false;
+    return true;
+  }
 
   template <class V>
   void visit(V& v) {

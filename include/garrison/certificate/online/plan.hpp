@@ -2,9 +2,11 @@
 // The certificate of a run: what is asked for, and what design leaves of it for the agents.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "garrison/certificate/online/evidence.hpp"
 #include "garrison/core/error.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
@@ -51,6 +53,8 @@ struct Wanted {
 /// A bank takes at most so many filters, the sets of sources that may be attacked.
 inline constexpr int kMostBankMembers = 3000;
 
+inline constexpr int kUnknownReach = INT32_MAX;
+
 /// What the banks need; empty without Wanted::memory.
 struct BankPlan {
   Matrix Q{};
@@ -93,6 +97,9 @@ struct GARRISON_EXPORT Plan {
   double z2_full = kNaN;     ///< for all rows of the network
   double z2_partial = kNaN;  ///< for any other set of rows
   Matrix A;
+  /// Hops from any agent to any other at most, where all links are there; kUnknownReach = not known, or some
+  /// are never reached.
+  int reach = kUnknownReach;
   std::vector<double> norm;  ///< ||A^k||, for the ages k = 0..ages()
   BankPlan bank{};
   std::vector<double>
@@ -101,6 +108,11 @@ struct GARRISON_EXPORT Plan {
   /// Part of `failure` that W and R together may use.
   double own_failure() const;
   bool deterministic() const { return wanted.failure == 0.0; }
+  /// Whether messages of a round carry the region that is relayed. Not those of the first, if there are
+  /// enough: the regions of the sample follow from what they bring.
+  bool relays_in(int round, int rounds) const {
+    return round >= (reach < rounds ? 1 : 0) && round < std::min(reach, rounds) + kRepeats;
+  }
   int ages() const { return static_cast<int>(added.size()) - 1; }
   int states() const { return static_cast<int>(A.rows()); }
   /// Position of an agent in `ids`; -1 when its rows are not here.
@@ -124,6 +136,7 @@ struct GARRISON_EXPORT Plan {
     v("z2_full", z2_full);
     v("z2_partial", z2_partial);
     v("A", A);
+    v.range("reach", reach, 0, kUnknownReach);
     v("norm", norm);
     v("added", added);
     v("bank", bank);
