@@ -305,7 +305,7 @@ void bind_drivers(py::module_& m) {
       py::arg("noise"), py::arg("disturbances"), py::arg("trials"), py::arg("first_trial"), py::arg("seed"),
       py::arg("threads"), py::arg("start"), py::arg("attacks"), py::arg("link"), py::arg("keep"),
       py::arg("inputs"), py::arg("series"), py::arg("functions"), py::arg("progress"),
-      py::arg("sink") = py::none(), py::arg("block_bytes") = std::size_t{16} << 20,
+      py::arg("sink") = py::none(), py::arg("block_bytes") = RunOptions().block_bytes,
       "Arrays of a simulated run; use garrison.simulate.");
   m.def(
       "replay",
@@ -331,6 +331,6 @@ void bind_drivers(py::module_& m) {
       py::arg("design"), py::kw_only(), py::arg("measurements"), py::arg("truth"), py::arg("trials"),
       py::arg("first_trial"), py::arg("seed"), py::arg("threads"), py::arg("start"), py::arg("attacks"),
       py::arg("link"), py::arg("keep"), py::arg("inputs"), py::arg("series"), py::arg("functions"),
-      py::arg("progress"), py::arg("sink") = py::none(), py::arg("block_bytes") = std::size_t{16} << 20,
+      py::arg("progress"), py::arg("sink") = py::none(), py::arg("block_bytes") = RunOptions().block_bytes,
       "Arrays of a replayed run; use garrison.replay.");
 }

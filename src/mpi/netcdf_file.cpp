@@ -14,6 +14,7 @@
 #include "garrison/core/error.hpp"
 #include "garrison/core/types.hpp"
 #include "mpi/hash.hpp"
+#include "mpi/plain_file.hpp"
 
 namespace garrison::mpi {
 namespace {
@@ -28,10 +29,8 @@ std::string shape(std::span<const std::int64_t> sizes) {
 }
 
 std::ifstream opened(const std::string& path) {
-  std::error_code failed;
-  if (std::filesystem::is_directory(path, failed)) throw IoError(path + ": got a folder, expected " + kForm);
-  if (std::filesystem::exists(path, failed) && !std::filesystem::is_regular_file(path, failed))
-    throw IoError(path + ": got no plain file, expected " + kForm);  // a pipe would wait for ever
+  if (const std::string got = not_a_file(path); !got.empty())
+    throw IoError(path + ": got " + got + ", expected " + kForm);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError(path + ": got " + std::strerror(errno) + ", expected " + kForm);
   return file;

@@ -13,6 +13,7 @@
 
 #include "garrison/core/error.hpp"
 #include "mpi/checkpoint.hpp"
+#include "mpi/plain_file.hpp"
 #include "node/daemon/files.hpp"
 
 namespace garrison::mpi {
@@ -41,9 +42,8 @@ void require_results(const RunCommand& command) {
   std::error_code none;
   const files::path path(command.results);
   const bool exists = files::exists(path, none);
-  if (files::is_directory(path, none)) refuse("-o", command.results + ", a folder", "a file");
-  if (exists && !files::is_regular_file(path, none))
-    refuse("-o", command.results + ", no plain file", "a file");
+  if (const std::string got = not_a_file(command.results); !got.empty())
+    refuse("-o", command.results + ", " + got, "a file");
   if (path.has_parent_path() && !files::is_directory(path.parent_path(), none))
     refuse("-o", command.results, "a file in a folder that is there",
            "make the folder " + path.parent_path().string());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mpi/scenario.hpp"
 
-#include <filesystem>
 #include <limits>
 
 #include "garrison/attacks/registry.hpp"
@@ -88,9 +87,6 @@ void read_output(const Section& s, Scenario& out) {
 }  // namespace
 
 Scenario read_scenario(const std::string& path, const Bytes& bytes) {
-  std::error_code none;
-  if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none))
-    refuse(path, "no plain file", "a scenario (TOML)");  // every rank reads it
   const std::string text = node::read_text(path, "a scenario (TOML)");
   const Section file = node::parse_toml(text, path);
   file.only({"title", "model", "network", "filter", "attack", "link", "noise", "run", "partition", "output"});

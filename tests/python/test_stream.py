@@ -1,5 +1,6 @@
 """Runs that are written as they go: the bits of runs in memory, whole or not at all."""
 
+import functools
 import pickle
 import shutil
 import subprocess
@@ -10,8 +11,7 @@ from typing import Any
 import garrison as gr
 import numpy as np
 import pytest
-from garrison import growing, store
-from garrison.drivers import common
+from garrison import _core, growing, store
 from garrison.run_file import arrays_of
 
 pytest.importorskip("zarr", minversion="3")
@@ -41,7 +41,8 @@ FILTERS = [
 def sizes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Blocks and chunks so small that every trial has many, which do not end together; and the usual ones."""
     if request.param == "small":
-        monkeypatch.setattr(common, "BLOCK_BYTES", 5000)
+        for driver in (_core.simulate, _core.replay):
+            monkeypatch.setattr(_core, driver.__name__, functools.partial(driver, block_bytes=5000))
         monkeypatch.setattr(growing, "_CHUNK", 900)
 
 

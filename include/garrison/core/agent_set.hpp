@@ -37,7 +37,8 @@ class AgentSet {
   }
   int size() const {
     int count = 0;
-    for (std::size_t k = 1; k <= words(); ++k) count += std::popcount(data_[k]);
+    for (std::size_t k = 1; k <= words(); ++k)
+      if (data_[k] != 0) count += std::popcount(data_[k]);  // a call where the processor may not have it
     return count;
   }
   /// Both sets must have been sized for the same number of agents.

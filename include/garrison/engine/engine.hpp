@@ -117,6 +117,7 @@ class Engine final : public Runner {
     if (f.bound == nullptr || f.bound_kind == nullptr) return;
     if (!f.believed) std::fill_n(f.bound, N, kNaN);
     if (f.published != nullptr) std::copy_n(f.bound, N, f.published);
+    if (!certified_ && f.box == nullptr) return name_bounds(f, N);
     for (std::size_t i = 0; i < N; ++i) {
       const Vec<n>& x = F::template estimate<n>(states_[places_.of(static_cast<int>(i))]);  // or a value
       certify(f, i, certified_ ? certified_->of(static_cast<int>(i)) : nullptr,

@@ -30,6 +30,14 @@ struct Frame {
 
 /// No theorem of a family covers a plant that changes in time: there is no bound of any agent.
 GARRISON_EXPORT void disclaim(const Frame& frame, std::size_t agents, std::size_t states);
+/// Says where the bounds come from where there is nothing but the family's.
+inline void name_bounds(const Frame& frame, std::size_t agents) noexcept {
+  const double* const bound = frame.bound;
+  std::uint8_t* const kinds = frame.bound_kind;
+  for (std::size_t i = 0; i < agents; ++i)
+    kinds[i] = static_cast<std::uint8_t>(
+        certificate::least(bound[i], static_cast<CertificateKind>(kinds[i]), nullptr, {}).kind);
+}
 /// Says where the bound of agent i comes from, the family's or a better one, and what it is per coordinate;
 /// `estimate` is the agent's, n numbers.
 GARRISON_EXPORT void certify(const Frame& frame, std::size_t i, const certificate::Certifier* certifier,

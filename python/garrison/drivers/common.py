@@ -23,8 +23,6 @@ Attacks = _core.Attack | Iterable[_core.Attack]
 
 #: trials have numbers below this one
 MOST_TRIALS = 2**24
-#: of the blocks in which a run is written as it goes, one per trial that runs
-BLOCK_BYTES = 16 * 2**20
 
 
 #: bytes of one agent in the arrays of "report", and in that of the family's own bound with a certificate
@@ -139,7 +137,6 @@ def arguments_of_both(
         **known,
         "progress": arguments.callback("progress", progress),
         "sink": store and store.take,
-        "block_bytes": BLOCK_BYTES,
     }
 
 

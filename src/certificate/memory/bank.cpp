@@ -48,6 +48,16 @@ void require_sources(const std::vector<BankSource>& sources, Eigen::Index n) {
   }
 }
 
+void require_bank(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources, int s) {
+  const Eigen::Index n = A.rows();
+  if (n < 1) refuse("A", shape(A), "at least 1 x 1");
+  require_shape("A", A, n, n);
+  require_covariance("Q", Q, n);
+  require_sources(sources, n);
+  const auto m = static_cast<int>(sources.size());
+  if (s < 0 || s > m) refuse("s", std::to_string(s), "a number in 0.." + std::to_string(m));
+}
+
 }  // namespace detail
 
 Bank::Bank(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources, int s, int limit)
@@ -57,12 +67,8 @@ Bank::Bank(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>
       s_(s),
       frame_(std::make_unique<detail::ShapeFrame>(std::max<int>(1, static_cast<int>(A.rows())))) {
   const Eigen::Index n = A.rows();
-  if (n < 1) refuse("A", detail::shape(A), "at least 1 x 1");
-  detail::require_shape("A", A, n, n);
-  detail::require_covariance("Q", Q, n);
-  detail::require_sources(sources, n);
+  detail::require_bank(A, Q, sources, s);
   const int m = static_cast<int>(sources.size());
-  if (s < 0 || s > m) refuse("s", std::to_string(s), "a number in 0.." + std::to_string(m));
   detail::require_least("limit", limit, 1);
   const double count = detail::choices(m, s);
   if (!(count <= limit))

@@ -90,12 +90,8 @@ template <class Of>
 Vector worst_member(const MatrixRef& A, const MatrixRef& Q, const std::vector<BankSource>& sources, int s,
                     const WindowLevels& z, int limit, const Of& of) {
   const Eigen::Index n = A.rows();
-  if (n < 1) refuse("A", detail::shape(A), "at least 1 x 1");
-  detail::require_shape("A", A, n, n);
-  detail::require_covariance("Q", Q, n);
-  detail::require_sources(sources, n);
+  detail::require_bank(A, Q, sources, s);
   const int m = static_cast<int>(sources.size());
-  if (s < 0 || s > m) refuse("s", std::to_string(s), "a number in 0.." + std::to_string(m));
   detail::require_least("z1", z.z1, 0.0);
   detail::require_least("z2", z.z2, 0.0);
   detail::require_least("zc", z.zc, 0.0);

@@ -118,6 +118,7 @@ class SaturationTrials final : public TrialsRunner {
     clock_.started = false;
     clock_.rho = gains_->bounded ? gains_->setting.eta0 : kNaN;
     clock_.p = 0.0;
+    clock_.still = -1;
     for (int l = 0; l < kLanes; ++l)
       for (int k = 0; k < model_.agents(); ++k)
         for (int r = 0; r < n; ++r) at(k, r, l) = x0[l](r, plan_.order()[static_cast<std::size_t>(k)]);

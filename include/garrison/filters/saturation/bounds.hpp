@@ -49,16 +49,21 @@ inline bool exceeds(double h, double phi, double size) noexcept {
   return std::isinf(h) || h > phi + kRounding * (phi + size);
 }
 
+/// d of (14) for rho(t).
+inline int counted(const Gains& g, const Memory& s) noexcept {
+  return g.detector && g.sharp_index ? s.proved.size() : s.d;
+}
 /// rho(t) of (7), rhobar_i(t) of (14) or rho_t of the adaptive threshold, from the values at t-1.
 inline double rho_now(const Gains& g, const Memory& s) noexcept {
-  if (!g.bounded || !s.started) return s.rho;
+  const int d = counted(g, s);
+  if (!g.bounded || !s.started || d == s.still) return s.rho;
   if (g.adaptive) return adaptive_next(g.setting, g.varpi, s.rho, s.p).rho;
   if (!g.detector) return rho_bar_next(g.setting, g.q0, s.rho, g.p0, 0);  // (7): p0 instead of p(t-1)
-  return rho_bar_next(g.setting, g.q0, s.rho, s.p, g.sharp_index ? s.proved.size() : s.d);
+  return rho_bar_next(g.setting, g.q0, s.rho, s.p, d);
 }
 /// p(t) of (10), or of the adaptive threshold.
 inline double p_now(const Gains& g, const Memory& s) noexcept {
-  if (!g.bounded || !s.started) return s.p;
+  if (!g.bounded || !s.started || s.still >= 0) return s.p;
   // The level that all agents share; an agent's own may be lower.
   const double beta = g.adaptive ? adaptive_threshold(g.setting, s.rho, s.p) : g.beta;
   return disagreement_next(g.setting, s.p, beta);
@@ -66,9 +71,16 @@ inline double p_now(const Gains& g, const Memory& s) noexcept {
 
 /// Moves rho and p to t-1 and sets the level in force at t; data-free without the detector.
 inline void advance_bounds(const Gains& g, Memory& s) noexcept {
-  const double rho = rho_now(g, s);
-  s.p = p_now(g, s);
-  s.rho = rho;
+  const int d = counted(g, s);
+  if (d != s.still) {
+    const double rho = rho_now(g, s);
+    const double p = p_now(g, s);
+    // A recursion that has reached its limit, to the last bit, goes on with it: three divisions and a root
+    // less.
+    s.still = s.started && rho == s.rho && p == s.p ? d : -1;
+    s.rho = rho;
+    s.p = p;
+  }
   s.started = true;
   if (g.adaptive) s.level = adaptive_threshold(g.setting, s.rho, s.p);
   if (!g.detector) return;

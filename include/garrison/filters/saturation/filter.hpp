@@ -289,8 +289,7 @@ struct GARRISON_EXPORT Saturation {
   }
   template <int n>
   static const AgentSet* accused(const State<n>& s) noexcept {
-    static const AgentSet nobody;
-    return s.refuted ? &nobody : &s.proved;
+    return s.refuted ? &saturation::kNobody : &s.proved;
   }
   template <int n>
   static void expected(const Local& l, const Gains&, const State<n>& s, double* out) noexcept {

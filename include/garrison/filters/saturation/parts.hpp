@@ -49,12 +49,16 @@ struct Gains {
   }
 };
 
+/// Whom an agent accuses that holds a refuted assumption.
+inline const AgentSet kNobody;
+
 /// What an agent remembers besides its estimate.
 struct Memory {
   double innovation = kNaN;  // the largest of this agent's outputs
   double level = kNaN;       // in force at t: phi_i of the detector, or the adaptive beta
   double rho = kNaN;         // rho or rhobar_i at t-1
   double p = kNaN;           // p at t-1
+  int still = -1;            // with so many sensors proved rho and p stay as they are; not part of a snapshot
   double size = 0.0;         // largest number of the latest estimates, where there are bounds
   std::int64_t t = 0;        // sample of the estimate
   int d = 0;                 // |I_i(t-1)|
@@ -71,6 +75,7 @@ struct Memory {
 
   template <class V>
   void visit(V& v) {
+    still = -1;
     v("innovation", innovation);
     v("level", level);
     v("rho", rho);

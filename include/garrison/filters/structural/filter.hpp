@@ -111,6 +111,7 @@ struct GARRISON_EXPORT Structural {
       fresh.P.assign(structural::entries(nn), 0.0);
       fresh.work.assign(4 * structural::entries(nn), 0.0);
       fresh.whole = when_whole(l, g);
+      for (int k = 0; k < nn; ++k) fresh.usual.push_back(usual_variance(l, g, k));
     }
     fresh.pace = g.rho > 0.0 && g.rho < 1.0 ? -1.0 / std::log(g.rho) : 0.0;
     fresh.senders.assign(fresh.left_out.size(), 0);
@@ -119,9 +120,9 @@ struct GARRISON_EXPORT Structural {
     s = std::move(fresh);
     s.start = s.rest = g.settle;
     if (g.settle == 0)
-      settle(l, g, s.P);
+      settle(l, g, s);
     else
-      begin(l, g, s.P, kStartVariance);
+      begin(g, s, kStartVariance);
     m.measured = m.withheld = false;
     m.rest = g.settle;
     m.numbers.setZero(nn + 1);
@@ -194,7 +195,7 @@ struct GARRISON_EXPORT Structural {
     }
     if (!usable<n>(s.x)) s.x.setZero();
     s.prior = s.x;
-    begin(l, g, s.P, kStartVariance);
+    begin(g, s, kStartVariance);
     uncover<n>(g, s);
   }
   template <int n>
@@ -316,17 +317,21 @@ struct GARRISON_EXPORT Structural {
   /// c_i'K_i c_i
   static double reaction(const Gains& g, int id, int nn) noexcept;
   /// P of an estimate of which nothing is known: a diagonal, `factor` times the stationary variances.
-  static void begin(const Local& l, const Gains& g, std::vector<double>& P, double factor) noexcept;
+  static void begin(const Gains& g, Memory& s, double factor) noexcept;
   /// The variance of state k in the stationary error. One that is zero up to rounding, as where measurements
   /// have no noise, is no measure of what a gap does: then it is a small part of what one step adds.
-  static double variance(const Gains& g, const double* settled, int k, int nn) noexcept {
-    const std::size_t at = static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1);
-    return std::max(settled[at], 1e-9 * g.process[at]);
+  static double usual_variance(const Local& l, const Gains& g, int k) noexcept {
+    const std::size_t at = static_cast<std::size_t>(k) * (static_cast<std::size_t>(l.states) + 1);
+    return std::max(stationary(g, l.id, l.states)[at], 1e-9 * g.process[at]);
   }
   /// The largest of them.
-  static double largest_settled(const Local& l, const Gains& g) noexcept;
+  static double largest_usual(const Memory& s) noexcept {
+    double most = 0.0;
+    for (const double usual : s.usual) most = std::max(most, usual);
+    return most;
+  }
   /// P = the covariance of the stationary error.
-  static void settle(const Local& l, const Gains& g, std::vector<double>& P) noexcept;
+  static void settle(const Local& l, const Gains& g, Memory& s) noexcept;
   /// I - sum K_i c_j c_j', column by column, and sum R_jj K_i c_j (K_i c_j)', over all measurements that are
   /// due.
   static std::vector<double> when_whole(const Local& l, const Gains& g);
@@ -344,15 +349,19 @@ struct GARRISON_EXPORT Structural {
   /// Its sum over the messages, packed, into the third n x n of `work`.
   template <int n>
   static void mix_spreads(const Local& l, const Gains& g, Memory& s, const Inbox<Message<n>>& inbox) noexcept;
-  /// (4) where all that came is used: own measurement, then those of the others in order of id.
-  template <int n>
-  static void update_estimate(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
-                              bool used) noexcept;
-  /// (4); false when a measurement was left out.
-  /// Whose is not used is missing from then on. With `carried` also the bound of the error.
+  /// (4); false when a measurement was left out. Whose is not used is missing from then on. With `carried`
+  /// also the bound of the error.
   template <int n>
   static bool update(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, bool used,
                      bool carried) noexcept;
+  /// (4) with all that came: own measurement, then those of the others in order of id.
+  template <int n>
+  static void use_all(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox) noexcept;
+  /// (4) with `isolate`, in the same order; true when a measurement was left out. With `carried` also what
+  /// that adds to the bound before the update.
+  template <int n>
+  static bool use_trusted(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
+                          bool used, bool carried) noexcept;
   /// P_i = G prior G' + sum of what the noises add, G = I - sum K_i c_j c_j', over what is not missing.
   template <int B, int n>
   static void update_spread(const Local& l, const Gains& g, Memory& s) noexcept;

@@ -83,21 +83,20 @@ GARRISON_INLINE void add_congruence(const double* L, const double* S, int nn, do
     }
 }
 /// Whether no entry of S is larger than positive semidefinite matrices with its diagonal have it, and that
-/// diagonal is in [0, most * limit], all up to rounding. NaN is not. `diagonal`: room for n.
+/// diagonal is in [0, most * limit], all up to rounding. NaN is not.
 template <int B, int n>
-GARRISON_INLINE bool is_covariance(const double* S, double most, double limit, int nn,
-                                   double* __restrict__ diagonal) noexcept {
+GARRISON_INLINE bool is_covariance(const double* S, double most, double limit, int nn) noexcept {
   const int size = n == Dynamic ? nn : n;
   constexpr int W = n == Dynamic ? 1 : block_of(n, B);
   using V = typename Block<W>::type;
   V bad{};
-  for (int i = 0; i < size; ++i) diagonal[i] = S[static_cast<std::ptrdiff_t>(i) * (size + 1)];
   for (int j = 0; j < size; j += W) {
-    const V d = *Block<W>::of(diagonal + j);
+    V d{};  // put together in a register: what was stored number by number is slow to read as a block
+    for (int lane = 0; lane < W; ++lane) d[lane] = S[static_cast<std::ptrdiff_t>(j + lane) * (size + 1)];
     bad += ((d >= -1e-9 * most) & (d <= limit * most)) ? V{} : V{} + 1.0;
     for (int i = 0; i < size; ++i) {
       const V entry = *Block<W>::of(S + static_cast<std::ptrdiff_t>(i) * size + j);
-      const V largest = diagonal[i] * d;
+      const V largest = S[static_cast<std::ptrdiff_t>(i) * (size + 1)] * d;
       bad += entry * entry <= largest + 1e-9 * (largest + most * most) ? V{} : V{} + 1.0;
     }
   }

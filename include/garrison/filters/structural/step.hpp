@@ -23,30 +23,16 @@ inline double Structural::reaction(const Gains& g, int id, int nn) noexcept {
   return sum;
 }
 
-inline void Structural::begin(const Local& l, const Gains& g, std::vector<double>& P,
-                              double factor) noexcept {
+inline void Structural::begin(const Gains& g, Memory& s, double factor) noexcept {
   if (!carries(g)) return;
-  const int nn = l.states;
-  const double* settled = stationary(g, l.id, nn);
-  const double most = largest_settled(l, g);
-  std::fill(P.begin(), P.end(), 0.0);
-  for (int k = 0; k < nn; ++k) {
-    const double usual = variance(g, settled, k, nn);
-    P[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] =
-        factor * (usual > 0.0 ? usual : most);
-  }
+  const double most = largest_usual(s);
+  std::fill(s.P.begin(), s.P.end(), 0.0);
+  for (std::size_t k = 0; k < s.usual.size(); ++k)
+    s.P[k * (s.usual.size() + 1)] = factor * (s.usual[k] > 0.0 ? s.usual[k] : most);
 }
 
-inline double Structural::largest_settled(const Local& l, const Gains& g) noexcept {
-  const int nn = l.states;
-  const double* settled = stationary(g, l.id, nn);
-  double most = 0.0;
-  for (int k = 0; k < nn; ++k) most = std::max(most, variance(g, settled, k, nn));
-  return most;
-}
-
-inline void Structural::settle(const Local& l, const Gains& g, std::vector<double>& P) noexcept {
-  if (carries(g)) std::copy_n(stationary(g, l.id, l.states), P.size(), P.data());
+inline void Structural::settle(const Local& l, const Gains& g, Memory& s) noexcept {
+  if (carries(g)) std::copy_n(stationary(g, l.id, l.states), s.P.size(), s.P.data());
 }
 
 inline std::vector<double> Structural::when_whole(const Local& l, const Gains& g) {
@@ -113,8 +99,8 @@ Structural::Seen Structural::predict(const Local& l, const Gains& g, State<n>& s
     for (int k = 0; k < nn; ++k) mean[k] += j.weight * letter.numbers[k];
   }
   s.rest = rest;
-  const double own = own_weight(heard, s);
-  for (int k = 0; k < nn; ++k) mean[k] += own * s.x[k];
+  s.own = own_weight(heard, s);
+  for (int k = 0; k < nn; ++k) mean[k] += s.own * s.x[k];
   for (int i = 0; i < nn; ++i) {
     double next = 0.0;
     for (int k = 0; k < nn; ++k) next += l.A[static_cast<std::ptrdiff_t>(k) * nn + i] * mean[k];
@@ -151,7 +137,7 @@ GARRISON_INLINE void Structural::predict_spread(const Local& l, const Gains& g, 
   double* mean = prior + size;
   double* half = mean + size;
   structural::unpack<n>(half, nn, mean);
-  const double own = own_weight(g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)], s);
+  const double own = s.own;
   for (std::size_t k = 0; k < size; ++k) mean[k] += own * s.P[k];
   std::copy_n(g.process.data(), size, prior);
   structural::add_congruence<B, n>(l.A, mean, nn, half, prior);
@@ -160,6 +146,54 @@ GARRISON_INLINE void Structural::predict_spread(const Local& l, const Gains& g, 
 template <int n>
 bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
                         bool used, bool carried) noexcept {
+  bool out = false;
+  if (g.isolate)
+    out = use_trusted(l, g, s, inbox, used, carried);
+  else
+    use_all(l, g, s, inbox);
+  if (!carried) return !out;
+  constexpr int like = spread_dimension(n);
+  run_widest_of<UpdateSpread<like>, like>(&l, &g, static_cast<Memory*>(&s));
+  return !out;
+}
+
+template <int n>
+void Structural::use_all(const Local& l, const Gains& g, State<n>& s,
+                         const Inbox<Message<n>>& inbox) noexcept {
+  const int nn = dimension<n>(l);
+  const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
+  int* const missing = s.missing.data();
+  int gone = s.gone;
+  structural::Sums<n> sums(s.x.data());
+  double* const x = sums.data();
+  for (int k = 0; k < nn; ++k) x[k] = s.prior[k];
+  if (std::isnan(s.y)) {
+    missing[gone++] = 0;
+  } else {
+    const double* column = g.columns.data() + heard->first;
+    for (int k = 0; k < nn; ++k) x[k] += column[k] * s.innovation;
+  }
+  for (std::size_t at = 0; at < inbox.size(); ++at) {
+    const int e = s.senders[at];
+    const Heard& j = heard[e];
+    const auto& letter = inbox[at];
+    if (j.first < 0) continue;
+    if (!letter.measured) {
+      missing[gone++] = e;
+      continue;
+    }
+    const double* column = g.columns.data() + j.first;
+    const double innovation = letter.numbers[nn] - dot(g, j.id, s.prior, nn);
+    for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
+  }
+  s.gone = gone;
+  if constexpr (n != Dynamic)
+    for (int k = 0; k < nn; ++k) s.x[k] = x[k];
+}
+
+template <int n>
+bool Structural::use_trusted(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox,
+                             bool used, bool carried) noexcept {
   const int nn = dimension<n>(l);
   const std::size_t size = structural::entries(nn);
   const Heard* heard = g.heard.data() + g.offsets[static_cast<std::size_t>(l.id)];
@@ -168,13 +202,13 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
   structural::Sums<n> sums(s.x.data());
   double* const x = sums.data();
   for (int k = 0; k < nn; ++k) x[k] = s.prior[k];
-  if (carried && g.isolate) std::fill_n(more, size, 0.0);
+  if (carried) std::fill_n(more, size, 0.0);
   Doubts doubts{carried};
   const auto use = [&](int e, double innovation) {
     doubts.heeded = true;
     const double* column = g.columns.data() + heard[e].first;
     for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
-    if (g.isolate) take_back(l, g, s, e, carried);
+    take_back(l, g, s, e, carried);
   };
   const auto miss = [&](int e) { s.missing[static_cast<std::size_t>(s.gone++)] = e; };
   if (used) {
@@ -189,12 +223,12 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     const auto& letter = inbox[at];
     if (j.first < 0) continue;
     if (!letter.measured) {
-      if (letter.withheld && g.isolate) leave(l, g, s, e, false, doubts);
+      if (letter.withheld) leave(l, g, s, e, false, doubts);
       miss(e);
       continue;
     }
     const double innovation = letter.numbers[nn] - dot(g, j.id, s.prior, nn);
-    if (g.isolate && carried && s.start == 0 && surprising<n>(g, j, prior, innovation, nn)) {
+    if (carried && s.start == 0 && surprising<n>(g, j, prior, innovation, nn)) {
       leave(l, g, s, e, true, doubts);
       miss(e);
     } else {
@@ -202,13 +236,10 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     }
   }
   if constexpr (n != Dynamic) std::copy_n(x, nn, s.x.data());
-  if (!carried) return !doubts.out;
+  if (!carried) return doubts.out;
   if (doubts.out && !doubts.heeded) doubts.growth = std::max(doubts.growth, kNobody);
-  if (g.isolate)
-    for (std::size_t k = 0; k < size; ++k) prior[k] = doubts.growth * (prior[k] + more[k]);
-  constexpr int like = spread_dimension(n);
-  run_widest_of<UpdateSpread<like>, like>(&l, &g, static_cast<Memory*>(&s));
-  return !doubts.out;
+  for (std::size_t k = 0; k < size; ++k) prior[k] = doubts.growth * (prior[k] + more[k]);
+  return doubts.out;
 }
 
 inline void Structural::leave(const Local& l, const Gains& g, Memory& s, int e, bool by_level,
@@ -269,8 +300,8 @@ GARRISON_INLINE void Structural::update_spread(const Local& l, const Gains& g, M
   }
   structural::add_congruence<B, n>(G, prior, nn, half, s.P.data());
   // Messages of a liar may have made it anything.
-  if (!structural::is_covariance<B, n>(s.P.data(), largest_settled(l, g), kMostVariance, nn, half))
-    begin(l, g, s.P, kMostVariance);
+  if (!structural::is_covariance<B, n>(s.P.data(), largest_usual(s), kMostVariance, nn))
+    begin(g, s, kMostVariance);
 }
 
 template <int n>
@@ -283,21 +314,16 @@ bool Structural::surprising(const Gains& g, const Heard& j, const double* prior,
 
 inline void Structural::pass(const Local& l, const Gains& g, Memory& s, bool whole) noexcept {
   if (s.start > 0) --s.start;
-  const int nn = l.states;
   if (!whole) {
     double ratio = 1.0;
-    const double* settled = carries(g) ? stationary(g, l.id, nn) : nullptr;
-    for (int k = 0; k < nn && settled != nullptr; ++k) {
-      const double usual = variance(g, settled, k, nn);
-      const std::size_t at = static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1);
-      if (usual > 0.0) ratio = std::max(ratio, s.P[at] / usual);
-    }
+    for (std::size_t k = 0; k < s.usual.size(); ++k)
+      if (s.usual[k] > 0.0) ratio = std::max(ratio, s.P[k * (s.usual.size() + 1)] / s.usual[k]);
     const double more = ratio > 1.0 ? std::ceil(0.5 * std::log(ratio) * s.pace) : 0.0;
     const double most = std::min<double>(structural::kMostRest, std::max(1, g.recover) + more);
     s.rest = std::max(s.rest, static_cast<int>(most));
     return;
   }
-  if (s.rest > 0 && --s.rest == 0) settle(l, g, s.P);
+  if (s.rest > 0 && --s.rest == 0) settle(l, g, s);
 }
 
 }  // namespace garrison
