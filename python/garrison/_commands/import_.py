@@ -197,6 +197,12 @@ def _csv(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
         type=whole_number,
         help="harmonics of the yearly season (2 from two years on, else 0)",
     )
+    own.add_argument(
+        "--standardise",
+        action=argparse.BooleanOptionalAction,
+        help="take every column in units of its own spread; --no-standardise: all columns have one unit (default: "
+        "standardise where the header names different units)",
+    )
     own.add_argument("--stations", type=Path, help="CSV file with code, latitude and longitude of the sensors")
     own.add_argument("--radius", type=number, metavar="KM", help="sensors at most so far apart are neighbours")
     own.add_argument("--false-alarm", type=number, default=1e-4, help="false-alarm rate of a test, per sample (1e-4)")
@@ -209,5 +215,5 @@ def _make_csv(args: argparse.Namespace) -> Bundle:
     from garrison.scenario.section import moment
 
     end = moment("--to", args.to, last=True) if args.to is not None else None
-    rest = args.factors, args.harmonics, args.stations, args.radius, args.false_alarm
+    rest = args.factors, args.harmonics, args.stations, args.radius, args.false_alarm, args.standardise
     return import_csv(args.file, Choice(end, *rest))
