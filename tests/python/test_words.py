@@ -38,6 +38,11 @@ BANNED = {
     "output of unit length": "one measurement row of norm 1 per agent",
     "believes all of them": "uses every measurement as it comes",
     "are used up to this size": "innovations above this are clipped",
+    "can be told": "can be determined",
+    "could not be told": "could not be determined",
+    "is not told": "is not reported",
+    "always the same lie": "the liars are always the same",
+    "lie told to": "lie sent to",
     "filter was told": "what the model or a parameter says",
     "same arguments, same bits": "equal arguments give bit-identical results",
 }

@@ -55,7 +55,7 @@ def do(args: argparse.Namespace) -> int:
 
 def _openacc(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     own = kinds.add_parser(
-        "openacc", help="cars in a row: an OpenACC file, or one file per follower", allow_abbrev=False
+        "openacc", help="read cars in a row: an OpenACC file, or one file per follower", allow_abbrev=False
     )
     own.add_argument("files", nargs="+", type=Path, help="CSV files of one recording")
     own.add_argument("--attacked", type=whole_number, default=1, help="most odometers that may be wrong (1)")
@@ -86,7 +86,7 @@ def _make_openacc(args: argparse.Namespace) -> Bundle:
 def _adsb(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     own = kinds.add_parser(
         "adsb",
-        help="the track of an aircraft: state vectors, or a trace of readsb or ADS-B Exchange",
+        help="read the track of an aircraft: state vectors, or a trace of readsb or ADS-B Exchange",
         allow_abbrev=False,
     )
     own.add_argument("file", type=Path, help="JSON or CSV file, also as .gz")
@@ -116,7 +116,9 @@ def _make_adsb(args: argparse.Namespace) -> Bundle:
 
 
 def _rosbag(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    own = kinds.add_parser("rosbag", help="a robot: ROS 1 bags, or a ROS 2 bag (needs rosbags)", allow_abbrev=False)
+    own = kinds.add_parser(
+        "rosbag", help="read a robot: ROS 1 bags, or a ROS 2 bag (needs rosbags)", allow_abbrev=False
+    )
     own.add_argument("files", nargs="+", type=Path, help=".bag files, or the folder of a ROS 2 bag")
     _robot(own)
     own.set_defaults(make=_make_rosbag)
@@ -124,7 +126,9 @@ def _rosbag(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParse
 
 
 def _mcap(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    own = kinds.add_parser("mcap", help="a robot: an MCAP file (needs mcap, and rosbags for ROS)", allow_abbrev=False)
+    own = kinds.add_parser(
+        "mcap", help="read a robot: an MCAP file (needs mcap, and rosbags for ROS)", allow_abbrev=False
+    )
     own.add_argument("file", type=Path, help="MCAP file")
     _robot(own)
     own.set_defaults(make=_make_mcap)
@@ -164,7 +168,7 @@ def _robot_assumptions(args: argparse.Namespace) -> "Assumptions":
 
 
 def _pandapower(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    own = kinds.add_parser("pandapower", help="a power grid: a file or a case of pandapower", allow_abbrev=False)
+    own = kinds.add_parser("pandapower", help="read a power grid: a file or a case of pandapower", allow_abbrev=False)
     own.add_argument("case", metavar="CASE", help="JSON file of pandapower, or a case that it ships, as case118")
     chosen = own.add_mutually_exclusive_group()
     chosen.add_argument(
@@ -188,7 +192,7 @@ def _make_pandapower(args: argparse.Namespace) -> Bundle:
 
 
 def _csv(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    own = kinds.add_parser("csv", help="records: a column of times and a column per sensor", allow_abbrev=False)
+    own = kinds.add_parser("csv", help="read records: a column of times and a column per sensor", allow_abbrev=False)
     own.add_argument("file", type=Path, help="CSV file, with any separator")
     own.add_argument("--to", metavar="TIME", help="end of the clean part that the model is fitted to (the first half)")
     own.add_argument("--factors", type=whole_number, default=1, help="states of the model (1)")

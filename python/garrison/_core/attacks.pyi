@@ -266,7 +266,7 @@ def Equivocate(
     agents : sequence of int, optional
         Ids that are attacked from `start` on; or give `schedule`.
     size : float, optional
-        length of the lie told to each neighbour [state], >= 0
+        length of the lie sent to each neighbour [state], >= 0
     start : int, optional
         First sample that is attacked, >= 1; default 1.
     stop : int, optional
