@@ -298,15 +298,15 @@ inputs : p names, optional | One per column of B.
 < Model | From sample to sample.
 ! InvalidInput | As Model, or a period that is not > 0.)")
               .c_str())
-      .def_property_readonly("A", &Model::A, "(n, n)")
+      .def_property_readonly("A", &Model::A, "(n, n), of the plant.")
       .def_property_readonly("C", &matrices, "One (m_i, n) array per agent.")
       .def_property_readonly("B", &Model::B, "(n, p); no columns where there are no known inputs.")
-      .def_property_readonly("inputs", &Model::inputs, "p")
+      .def_property_readonly("inputs", &Model::inputs, "p, how many known inputs.")
       .def_property_readonly(
           "input_names", [](const Model& x) { return x.labels().inputs; },
           "One name per known input; empty where none were given.")
-      .def_property_readonly("states", &Model::states, "n")
-      .def_property_readonly("agents", &Model::agents, "N")
+      .def_property_readonly("states", &Model::states, "n, how many states.")
+      .def_property_readonly("agents", &Model::agents, "N, how many agents.")
       .def_property_readonly("outputs", &Model::total_outputs,
                              "Scalar measurements per sample of the whole network.")
       .def_property_readonly("state_names", &Model::state_names, "n names; x1, x2, .. where none were given.")

@@ -247,7 +247,7 @@ class Model:
     @property
     def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (n, n)
+        (n, n), of the plant.
         """
     @property
     def B(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -262,7 +262,7 @@ class Model:
     @property
     def agents(self) -> int:
         """
-        N
+        N, how many agents.
         """
     @property
     def input_names(self) -> list[str]:
@@ -272,7 +272,7 @@ class Model:
     @property
     def inputs(self) -> int:
         """
-        p
+        p, how many known inputs.
         """
     @property
     def measurement_bound(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -317,7 +317,7 @@ class Model:
     @property
     def states(self) -> int:
         """
-        n
+        n, how many states.
         """
     @property
     def units(self) -> dict[str, str]:
