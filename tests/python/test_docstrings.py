@@ -2,6 +2,7 @@
 
 import ast
 import dataclasses
+import importlib
 import inspect
 import re
 from collections.abc import Callable, Iterator
@@ -52,7 +53,21 @@ def _taken(function: Any) -> list[str]:
     return [name for name in found if name not in ("self", "cls")]
 
 
-EVERYTHING = {path: (function, doc) for path, function, doc in _public("garrison", gr, set()) if _taken(function)}
+def _shown() -> Iterator[tuple[str, Any, str]]:
+    """What pages and examples import from submodules."""
+    files = [*(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.py"), ROOT / "README.md"]
+    for path in (p for p in files if "generated" not in p.parts):
+        text = path.read_text(encoding="utf-8")
+        for module, names in re.findall(r"^from (garrison\.[a-z_.]+) import ([\w, ]+)$", text, flags=re.MULTILINE):
+            for name in names.split(", "):
+                thing = getattr(importlib.import_module(module), name.partition(" ")[0])
+                if inspect.isfunction(thing):
+                    yield f"{module}.{name}", thing, inspect.getdoc(thing) or ""
+
+
+EVERYTHING = {
+    path: (function, doc) for path, function, doc in (*_public("garrison", gr, set()), *_shown()) if _taken(function)
+}
 
 
 def section(function: Callable[..., Any] | str, name: str) -> list[str]:
@@ -105,7 +120,13 @@ def test_everything_that_takes_arguments_says_what_they_are(path: str) -> None:
 
 
 def test_everything_public_is_looked_at() -> None:
-    for path in ("attacks.Bias", "filters.Saturation.__init__", "saturation.design", "structure.System.mitigate"):
+    for path in (
+        "attacks.Bias",
+        "filters.Saturation.__init__",
+        "saturation.design",
+        "structure.System.mitigate",
+        "tables.read_records",
+    ):
         assert f"garrison.{path}" in EVERYTHING
     assert len(EVERYTHING) > 250
 

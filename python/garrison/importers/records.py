@@ -73,7 +73,27 @@ class RecordsBundle(Bundle):
 
 
 def import_csv(path: Path, choice: Choice | None = None) -> Bundle:
-    """A column of times and a column per sensor. Raises IoError or InvalidInput with the line where it is none."""
+    """Records of several sensors: a column of times and a column per sensor.
+
+    Parameters
+    ----------
+    path : Path
+        Of a CSV file.
+    choice : Choice, optional
+        End of the clean part, states and season of the model, places of the sensors, false-alarm rate.
+
+    Returns
+    -------
+    Bundle
+        What `write(folder)` writes: scenario.toml and the files beside it; facts and notes for people.
+
+    Raises
+    ------
+    IoError
+        A file cannot be read.
+    InvalidInput
+        With the line: the content does not fit; when it is written, also what a run would refuse.
+    """
     choice = choice or Choice()
     records = read_records(path)
     sensors = len(records.stations)
