@@ -64,11 +64,11 @@ def _openacc(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentPars
         type=number,
         help="bound on that of odometers and gaps, m (default: 2, or what admits all but --attacked)",
     )
-    own.add_argument("--process-noise", type=number, default=0.06, help="its bound per sample, m and m/s (0.06)")
+    own.add_argument("--process-noise", type=number, default=0.06, help="bound on that of a sample, m and m/s (0.06)")
     own.add_argument(
         "--initial-error",
         type=number,
-        help="its bound, m (10 times the measurement noise)",
+        help="bound on that of the first estimate, m (10 times the measurement noise)",
     )
     own.add_argument("--from", dest="start", type=number, metavar="SECONDS", help="first time that is used")
     own.add_argument("--to", dest="end", type=number, metavar="SECONDS", help="last time that is used")
@@ -95,8 +95,8 @@ def _adsb(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     own.add_argument("--to", dest="end", metavar="TIME", help="last time that is used, UTC")
     own.add_argument("--period", type=number, default=1.0, help="sampling period, s (1)")
     own.add_argument("--oldest", type=number, default=2.0, help="age of a position above which it is missing, s (2)")
-    own.add_argument("--position-noise", type=number, default=200.0, help="standard deviation, m (200)")
-    own.add_argument("--velocity-noise", type=number, default=3.0, help="standard deviation, m/s (3)")
+    own.add_argument("--position-noise", type=number, default=200.0, help="standard deviation of positions, m (200)")
+    own.add_argument("--velocity-noise", type=number, default=3.0, help="standard deviation of velocities, m/s (3)")
     own.add_argument("--manoeuvre", type=number, default=10.0, help="standard deviation of accelerations, m/s^2 (10)")
     own.add_argument("--false-alarm", type=number, default=1e-6, help="false-alarm rate of a test, per sample (1e-6)")
     own.set_defaults(make=_make_adsb)
@@ -139,11 +139,13 @@ def _robot(own: argparse.ArgumentParser) -> None:
     own.add_argument("--topic", action="append", default=[], help="use this topic, as often as wanted; default all")
     own.add_argument("--period", type=number, default=0.1, help="sampling period, s (0.1)")
     own.add_argument("--align", type=number, default=60.0, help="s from the start in which frames are aligned (60)")
-    own.add_argument("--position-noise", type=number, default=0.5, help="standard deviation, m (0.5)")
-    own.add_argument("--heading-noise", type=number, default=0.1, help="standard deviation, rad (0.1)")
-    own.add_argument("--velocity-noise", type=number, default=0.3, help="standard deviation, m/s (0.3)")
-    own.add_argument("--rate-noise", type=number, default=0.1, help="standard deviation, rad/s (0.1)")
-    own.add_argument("--acceleration", type=number, default=1.0, help="standard deviation, m/s^2 and rad/s^2 (1)")
+    own.add_argument("--position-noise", type=number, default=0.5, help="standard deviation of positions, m (0.5)")
+    own.add_argument("--heading-noise", type=number, default=0.1, help="standard deviation of headings, rad (0.1)")
+    own.add_argument("--velocity-noise", type=number, default=0.3, help="standard deviation of velocities, m/s (0.3)")
+    own.add_argument("--rate-noise", type=number, default=0.1, help="standard deviation of turn rates, rad/s (0.1)")
+    own.add_argument(
+        "--acceleration", type=number, default=1.0, help="standard deviation of accelerations, m/s^2 and rad/s^2 (1)"
+    )
     own.add_argument("--false-alarm", type=number, default=1e-4, help="false-alarm rate of a test, per sample (1e-4)")
 
 
@@ -176,8 +178,12 @@ def _pandapower(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentP
     )
     chosen.add_argument("--at", nargs="+", metavar="BUS", help="buses with a phasor unit; default all")
     own.add_argument("--steps", type=whole_number, help="samples to simulate (50; 10 from 200 buses on)")
-    own.add_argument("--angle-noise", type=number, default=0.002, help="standard deviation, rad (0.002)")
-    own.add_argument("--flow-noise", type=number, default=0.02, help="standard deviation, per unit (0.02)")
+    own.add_argument(
+        "--angle-noise", type=number, default=0.002, help="standard deviation of measured angles, rad (0.002)"
+    )
+    own.add_argument(
+        "--flow-noise", type=number, default=0.02, help="standard deviation of measured flows, per unit (0.02)"
+    )
     own.add_argument("--wander", type=number, default=0.001, help="how far an angle moves per sample, rad (0.001)")
     own.add_argument("--areas", type=whole_number, metavar="COUNT", help="divide the buses among so many agents")
     own.set_defaults(make=_make_pandapower)
