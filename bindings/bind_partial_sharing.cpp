@@ -495,7 +495,8 @@ k : int, optional | For step k alone (37); default: for the periodic steady stat
       .def(
           "steady_attack_matrix",
           [](const Analysis& a) { return steady_attack_matrix(a.setting, a.steady()); },
-          "N of note 13 for all agents: tr(Sigma N) is what any Sigma adds to the cycle-averaged NMSE.")
+          "N of docs/filters/partial_sharing.md#m13 for all agents: tr(Sigma N) is what any Sigma adds to "
+          "the cycle-averaged NMSE.")
       .def(
           "spread",
           [](const Analysis& a, const std::vector<int>& byzantine, const Matrix& block) {

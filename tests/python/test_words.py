@@ -74,3 +74,9 @@ def test_a_phrase_is_found_across_lines_of_a_comment(phrase: str, tmp_path: Path
     path = tmp_path / "x.hpp"
     path.write_text("/// Some words " + phrase.replace(" ", "\n/// ") + " and more.\n")
     assert _hits(path) == {phrase}
+
+
+def test_nothing_refers_to_a_note_by_its_number() -> None:
+    by_number = re.compile(r"\bnotes? \d+\b")
+    found = [str(p.relative_to(ROOT)) for p in _files() if by_number.search(p.read_text(encoding="utf-8"))]
+    assert not found, "better: docs/filters/<family>.md#anchor, in " + ", ".join(found)

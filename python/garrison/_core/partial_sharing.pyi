@@ -437,7 +437,7 @@ class Analysis:
         """
     def steady_attack_matrix(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        N of note 13 for all agents: tr(Sigma N) is what any Sigma adds to the cycle-averaged NMSE.
+        N of docs/filters/partial_sharing.md#m13 for all agents: tr(Sigma N) is what any Sigma adds to the cycle-averaged NMSE.
         """
     def steady_gains(self) -> dict:
         """
