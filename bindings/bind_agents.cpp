@@ -114,12 +114,20 @@ auto per_state(const PyAgent& a, void (Agent::*fill)(std::span<double>) const no
 }  // namespace
 
 void bind_agents(py::module_& m) {
-  py::class_<PyAgent>(m, "Agent",
-                      "One agent on its own: `sense` once per sample, then `fuse` once per round, with the "
-                      "same bits as inside\n"
-                      "simulate and replay. Time is the caller's: it may start at any sample, and says "
-                      "nothing that a gap may have\n"
-                      "broken.")
+  py::class_<PyAgent>(
+      m, "Agent",
+      numpydoc(
+          R"(One agent on its own: `sense` once per sample, then `fuse` once per round, with the same bits as inside
+simulate and replay. Time is the caller's: it may start at any sample, and says nothing that a gap may have
+broken.
+
+model : Model | The plant and all sensors.
+network : Network | Who hears whom.
+filter : Filter | A family of garrison.filters, or a filter of your own.
+id : int | Which agent, 0..N-1.
+! InvalidInput | Sizes do not fit, or there is no such agent.
+! DesignInfeasible | The filter cannot be designed for this model and network.)")
+          .c_str())
       .def(py::init([](const Model& model, const Network& network, const FilterHandle& filter, int id) {
              return agent_from(filter.filter->prepare(model, network), id);
            }),
@@ -132,8 +140,13 @@ void bind_agents(py::module_& m) {
             return a;
           },
           py::arg("data"), py::arg("snapshot") = py::none(),
-          "The agent whose part of a design Prepared.part(id) wrote; nothing is designed.\n"
-          "snapshot: of `save`; it goes on from there.")
+          numpydoc(R"(The agent whose part of a design Prepared.part(id) wrote; nothing is designed.
+
+data : bytes | The part.
+snapshot : bytes, optional | Of `save`; the agent goes on from there. Default: at the beginning of a run.
+< Agent
+! InvalidInput | No part of a design, or a snapshot of another agent or design.)")
+              .c_str())
       .def_property_readonly(
           "id", [](const PyAgent& a) { return a->id(); }, "Its number, 0..N-1.")
       .def_property_readonly(
@@ -170,12 +183,15 @@ void bind_agents(py::module_& m) {
             a.refused = 0;
           },
           py::arg("x0"), py::arg("t") = py::none(),
-          "Start anew with the estimate x0, (n,), of sample t. Without t: at the beginning of a run. At any\n"
-          "other t nothing is known of how far x0 is off: there is no bound and no test until the family "
-          "can\n"
-          "vouch again, and in its next sample the agent sends nothing (None) and takes an estimate from "
-          "what\n"
-          "its neighbours send.")
+          numpydoc(
+              R"(Start anew with an estimate. At any t but the beginning nothing is known of how far x0 is off: there is no
+bound and no test until the family can vouch again, and in its next sample the agent sends nothing (None)
+and takes an estimate from what its neighbours send.
+
+x0 : (n,) array | Estimate of the state, in its units; finite, at most 1e150.
+t : int, optional | The sample that x0 is the estimate of. Default: the beginning of a run.
+! InvalidInput | A wrong size, a number that is not finite, or a sample before the beginning of a run.)")
+              .c_str())
       .def(
           "sense",
           [](PyAgent& a, std::int64_t t, const std::vector<double>& y) -> std::optional<Letter> {
@@ -190,11 +206,16 @@ void bind_agents(py::module_& m) {
             return letter_of(a, body, 0);
           },
           py::arg("t"), py::arg("y"),
-          "Sample t with one number per row of C_i, nan = missing. Returns the first message of this sample; "
-          "None where\n"
-          "the estimate is of no use (not finite). Samples missed since the last one are made up for, "
-          "without\n"
-          "measurements and messages.")
+          numpydoc(
+              R"(Take the measurement of sample t. Samples missed since the last one are made up for, without measurements
+and messages.
+
+t : int | The sample; later than the last one.
+y : (m_i,) floats | One number per row of C[id], in its unit; nan = missing.
+< Message or None | The first message of this sample; None where the estimate is of no use (not finite).
+! InvalidInput | A wrong size, a round that is not finished, or a sample that is not after the last one or
+  too long after it.)")
+              .c_str())
       .def(
           "fuse",
           [](PyAgent& a, const std::vector<std::optional<Letter>>& inbox) -> std::optional<Letter> {
@@ -209,11 +230,16 @@ void bind_agents(py::module_& m) {
             return letter_of(a, body, a->round());
           },
           py::arg("inbox"),
-          "End the round with the neighbours' messages of it, in any order; leave missing ones out. Messages "
-          "of an earlier\n"
-          "sample or round are dropped and counted, as are bodies that no agent could have sent. Returns the "
-          "next\n"
-          "message.")
+          numpydoc(
+              R"(End the round with the neighbours' messages of it. Messages of an earlier sample or round are dropped and
+counted, as are bodies that no agent could have sent.
+
+inbox : sequence of Message or None | At most one per neighbour, in any order; leave missing ones out, or
+  give None.
+< Message or None | The next message.
+! InvalidInput | Called before `sense`, or a message of a stranger, another design or a later sample, or two
+  of one neighbour.)")
+              .c_str())
       .def(
           "join",
           [](PyAgent& a, std::int64_t t, const std::vector<Letter>& inbox, bool speak) {
@@ -223,12 +249,17 @@ void bind_agents(py::module_& m) {
             a->join(speak);
           },
           py::arg("t"), py::arg("inbox"), py::arg("speak") = false,
-          "Take over an estimate from what the neighbours sent in the first round of sample t, as an agent "
-          "that starts in\n"
-          "a running network: its next sample is t + 1. Where nobody was heard the agent keeps its own, and "
-          "says\n"
-          "nothing until it hears somebody; speak: it says it, for networks in which nobody else speaks, "
-          "either.")
+          numpydoc(
+              R"(Take over an estimate from what the neighbours sent in the first round of a sample, as an agent that starts
+in a running network: its next sample is t + 1. Where nobody was heard the agent keeps its own, and says
+nothing until it hears somebody.
+
+t : int | The sample.
+inbox : sequence of Message | At most one per neighbour.
+speak : bool | Send the own estimate although nobody was heard, for networks in which nobody else speaks,
+  either.
+! InvalidInput | As `fuse`, or a sample that is not after the last one.)")
+              .c_str())
       .def(
           "uncover", [](PyAgent& a) { a->uncover(); },
           "Something was missed that only the caller knows of, such as more than `attacked` measurements of\n"
@@ -273,7 +304,11 @@ void bind_agents(py::module_& m) {
           "save", [](const PyAgent& a) { return to_python(a.snapshot()); },
           "A snapshot as bytes, between samples only; the agent that loads it goes on with the same bits.")
       .def("load", &take_snapshot, py::arg("data"),
-           "Go on from a snapshot. Raises InvalidInput for one of another agent or design.")
+           numpydoc(R"(Go on from a snapshot.
+
+data : bytes | Of `save`, of this agent and design.
+! InvalidInput | A snapshot of another agent or design, damaged bytes, or within a sample.)")
+               .c_str())
       .def(
           "__eq__",
           [](const PyAgent& a, const py::object& other) {

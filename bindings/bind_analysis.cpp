@@ -14,8 +14,16 @@ namespace {
 void bind_subsets(py::module_& m) {
   py::class_<SubsetBound> bound(
       m, "SubsetBound",
-      "Result of a search over the s removed sensors; the true value lies in [lower, upper].\n"
-      "Safe in theorems: lower of lambda0, upper of varpi and tau0.");
+      numpydoc(
+          R"(Result of a search over the s removed sensors; the true value lies in [lower, upper]. Safe in theorems:
+lower of lambda0, upper of varpi and tau0.
+
+lower, upper : float | The value lies between them.
+exact : bool | The search finished.
+removed : sequence of int | Worst set found, sorted.
+nodes : int | Sets, or parts of sets, that were looked at.
+method : str | How it was found, in words.)")
+          .c_str());
   using B = SubsetBound;
   keep_fields<B>(bound, "garrison.SubsetBound", KeptField{"lower", &B::lower}, KeptField{"upper", &B::upper},
                  KeptField{"exact", &B::exact}, KeptField{"removed", &B::removed},
@@ -36,7 +44,15 @@ void bind_subsets(py::module_& m) {
       },
       py::arg("C"), py::arg("s"), py::arg("max_nodes") = limits.max_nodes,
       py::arg("max_seconds") = limits.max_seconds,
-      "(6) of the saturation paper: least lambda_min(sum C_i'C_i) over all sets of N - s rows of C, (N, n).");
+      numpydoc(R"((6) of the saturation paper: least lambda_min(sum C_i'C_i) over all sets of N - s rows of C.
+
+C : (N, n) array | One row per sensor.
+s : int | Rows that are left out, 0..N.
+max_nodes : int | The search ends after so many sets, >= 1, with an interval.
+max_seconds : float | Or after so many seconds, >= 0.
+< SubsetBound | Its `lower` is safe in every theorem.
+! InvalidInput | A number out of range, or not finite.)")
+          .c_str());
   m.def(
       "varpi", [](const MatrixRef& C, const MatrixRef& A, int s) { return varpi(C, A, s); }, py::arg("C"),
       py::arg("A"), py::arg("s"),
@@ -47,9 +63,14 @@ void bind_subsets(py::module_& m) {
   m.def("lambda0_orthogonal", &lambda0_orthogonal, py::arg("C"), py::arg("s"),
         "Closed form of lambda0 for rows that are parallel or orthogonal; None for others.");
   m.def("observable", &observable, py::arg("A"), py::arg("C"),
-        "(A, C) is observable, C (m, n). Raises InvalidInput where rounding of the numbers decides and one "
-        "cannot "
-        "tell;\nstructure.visibility says how far that is.");
+        numpydoc(R"(Whether (A, C) is observable.
+
+A : (n, n) array | Of the plant.
+C : (m, n) array | All rows.
+< bool
+! InvalidInput | Shapes do not fit, or rounding of the numbers decides and one cannot tell;
+  structure.visibility says how far that is.)")
+            .c_str());
   m.def("surely_observable", &surely_observable, py::arg("A"), py::arg("C"),
         "The same, False where one cannot tell.");
   m.def(
@@ -58,15 +79,29 @@ void bind_subsets(py::module_& m) {
         return within_budget(seconds, [&] { return s_sparse_observable(A, C, s); });
       },
       py::arg("A"), py::arg("C"), py::arg("s"), py::arg("seconds") = 30.0,
-      "(A, kept rows) is observable whichever s rows of C are lost. Raises InvalidInput where seconds do not "
-      "suffice.");
+      numpydoc(R"(Whether (A, kept rows) is observable whichever s rows of C are lost.
+
+A : (n, n) array | Of the plant.
+C : (N, n) array | One row per sensor.
+s : int | Rows that are lost, 0..N.
+seconds : float | Time that the search may take.
+< bool
+! InvalidInput | A number out of range, rounding decides, or `seconds` do not suffice.)")
+          .c_str());
   m.def(
       "one_step_sparse_observable",
       [](const MatrixRef& C, int s) {
         require_range("s", s, 0.0, static_cast<double>(C.rows()));
         return one_step_sparse_observable(C, s);
       },
-      py::arg("C"), py::arg("s"), "Any N - s rows of C span the state; s in 0..N.");
+      py::arg("C"), py::arg("s"),
+      numpydoc(R"(Whether any N - s rows of C span the state.
+
+C : (N, n) array | One row per sensor.
+s : int | Rows that are lost, 0..N.
+< bool
+! InvalidInput | A number out of range, or not finite.)")
+          .c_str());
 }
 
 }  // namespace

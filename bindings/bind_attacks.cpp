@@ -116,16 +116,19 @@ std::string documentation(const AttackInfo& info) {
   doc += ", start: " + whole + " | None = None, stop: " + whole +
          " | None = None, schedule: collections.abc.Sequence[tuple[" + whole + ", " + many +
          "]] | None = None, probability: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> "
-         "garrison._core.Attack\n\n" +
-         info.doc + " (" + info.target + " attack).\n";
-  for (const ParamInfo& p : info.params)
-    doc += "\n" + p.name + ": " + p.doc + (p.unit.empty() ? "" : " [" + p.unit + "]");
-  doc +=
-      "\nagents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) "
-      "phases in\n"
-      "order of time; stop: first sample that is not attacked any more; probability: chance that an agent "
-      "is\n"
-      "attacked at a sample. Raises InvalidInput when something does not fit.";
+         "garrison._core.Attack\n\n";
+  std::string body = info.doc + " (" + info.target + " attack).\n\n" +
+                     "agents : sequence of int, optional | Ids that are attacked from `start` on; or give "
+                     "`schedule`.\n";
+  for (const ParamInfo& p : info.params) body += described(p) + "\n";
+  body +=
+      R"(start : int, optional | First sample that is attacked, >= 1; default 1.
+stop : int, optional | First sample that is not attacked any more; default: never.
+schedule : sequence of (start, agents), optional | Phases in order of time, instead of agents and start.
+probability : float | Chance that an agent is attacked at a sample, 0..1.
+< Attack
+! InvalidInput | A number out of range, or both or neither of agents and schedule.)";
+  doc += numpydoc(body);
   return doc;
 }
 

@@ -55,10 +55,14 @@ void bind_quantiles(py::module_& m) {
         return std::array<double, 3>{q.value, q.lower, q.upper};
       },
       py::arg("measured"), py::arg("delta"), py::arg("confidence") = 0.95,
-      "(value, lower, upper): a level that a share `delta` of clean numbers `measured` (T,) exceeds, and "
-      "where the true "
-      "one is "
-      "with that confidence if they are independent; nan where T is too small. nan = missing.");
+      numpydoc(R"(A level that a share of clean numbers exceeds.
+
+measured : (T,) array | Clean numbers; nan = missing.
+delta : float | The share, above 0 and below 1.
+confidence : float | Of the interval, above 0 and below 1, if the numbers are independent.
+< (value, lower, upper) | The level, and where the true one is; nan where T is too small.
+! InvalidInput | A number out of range.)")
+          .c_str());
   m.def(
       "whiteness",
       [](const MatrixRef& residuals, int lags) {
@@ -66,45 +70,104 @@ void bind_quantiles(py::module_& m) {
         return std::tuple(w.statistic, w.correlation, w.p_value);
       },
       py::arg("residuals"), py::arg("lags") = 10,
-      "(statistic (N,), lag-1 correlation (N,), p-value) of the Ljung-Box test of residuals (T, N), nan = "
-      "missing; "
-      "the p-value is that of the worst sensor times N: small = a residual depends on its past.");
-  m.def("two_sided", &two_sided, py::arg("delta"), "z with P(|N(0,1)| > z) = delta; delta in (0, 1).");
+      numpydoc(R"(Ljung-Box test of residuals against "each is independent of its past".
+
+residuals : (T, N) array | Of N sensors; nan = missing.
+lags : int | 1..T-1.
+< (statistic (N,), correlation (N,), p_value) | The correlation is that of lag 1; p_value is that of the
+  worst sensor times N: small = a residual depends on its past.
+! InvalidInput | No sensor, or lags out of range.)")
+          .c_str());
+  m.def("two_sided", &two_sided, py::arg("delta"),
+        numpydoc(R"(z with P(|N(0,1)| > z) = delta.
+
+delta : float | Above 0 and below 1.
+< float
+! InvalidInput | delta is out of range.)")
+            .c_str());
   m.def("chi", &chi, py::arg("delta"), py::arg("degrees"),
-        "c with P(chi-square > c^2) = delta; delta in (0, 1), degrees >= 1.");
+        numpydoc(R"(c with P(chi-square > c^2) = delta: the length that a standard Gaussian vector exceeds.
+
+delta : float | Above 0 and below 1.
+degrees : int | Numbers of the vector, >= 1.
+< float
+! InvalidInput | A number out of range.)")
+            .c_str());
   m.def("sub_gaussian_two_sided", &sub_gaussian_two_sided, py::arg("delta"),
-        "sqrt(2 ln(2/delta)): two_sided for noise with a sub-Gaussian proxy variance.");
-  m.def("sub_gaussian_chi", &sub_gaussian_chi, py::arg("delta"), py::arg("degrees"),
-        "sqrt(n + 2 sqrt(n u) + 2 u), u = ln(1/delta) (Hsu, Kakade, Zhang 2012): chi for such noise.");
+        numpydoc(R"(sqrt(2 ln(2/delta)): two_sided for noise with a sub-Gaussian proxy variance.
+
+delta : float | Above 0 and below 1.
+< float
+! InvalidInput | delta is out of range.)")
+            .c_str());
+  m.def(
+      "sub_gaussian_chi", &sub_gaussian_chi, py::arg("delta"), py::arg("degrees"),
+      numpydoc(
+          R"(sqrt(n + 2 sqrt(n u) + 2 u), u = ln(1/delta) (Hsu, Kakade, Zhang 2012): chi for noise with a sub-Gaussian
+proxy variance.
+
+delta : float | Above 0 and below 1.
+degrees : int | n >= 1.
+< float
+! InvalidInput | A number out of range.)")
+          .c_str());
   m.def(
       "gaussian_levels",
       [](double delta, int rows, int states) { return from_levels(gaussian_levels(delta, rows, states)); },
       py::arg("delta"), py::arg("rows"), py::arg("states"),
-      "(z1, z2) of the witnesses that fail together with probability <= delta, half for each.");
+      numpydoc(R"(Levels of the witnesses that fail together with probability <= delta, half for each.
+
+delta : float | Above 0 and below 1.
+rows : int | Measurements of one sample, >= 1.
+states : int | n >= 1.
+< (z1, z2) | Of every single measurement, and of the least-squares vector.
+! InvalidInput | A number out of range.)")
+          .c_str());
   m.def(
       "sub_gaussian_levels",
       [](double delta, int rows, int states) {
         return from_levels(sub_gaussian_levels(delta, rows, states));
       },
-      py::arg("delta"), py::arg("rows"), py::arg("states"), "The same for sub-Gaussian noise.");
+      py::arg("delta"), py::arg("rows"), py::arg("states"),
+      numpydoc(R"(gaussian_levels for sub-Gaussian noise.
+
+delta : float | Above 0 and below 1.
+rows : int | Measurements of one sample, >= 1.
+states : int | n >= 1.
+< (z1, z2) | Of every single measurement, and of the least-squares vector.
+! InvalidInput | A number out of range.)")
+          .c_str());
   m.def(
       "calibrated_levels",
       [](const MatrixRef& V, const VectorRef& R, int s, double delta) {
         return from_levels(calibrated_levels(V, R, s, delta));
       },
       py::arg("V"), py::arg("R"), py::arg("s"), py::arg("delta"),
-      "Distribution-free (z1, z2) for one state from clean residuals V (T, N), times C = +-1; R (N,) "
-      "variances.\n"
-      "Exact for exchangeable samples; delta >= 2/(T+1). Raises InvalidInput, also beyond 2e8 sums.");
+      numpydoc(R"(Distribution-free levels for one state and rows C = +-1. Exact for exchangeable samples.
+
+V : (T, N) array | Clean residuals, times C.
+R : (N,) array | Variances, > 0.
+s : int | Attacked sensors, 0..N-1.
+delta : float | At least 2/(T+1), below 1.
+< (z1, z2) | As of gaussian_levels.
+! InvalidInput | A number out of range, or more than 2e8 sums would be needed.)")
+          .c_str());
 }
 
 void bind_regions(py::module_& m) {
-  py::class_<Region>(m, "Region",
-                     "||x - center|| <= radius, |x_k - center_k| <= box_k where there is a box, and\n"
-                     "(x - center)' shape^-1 (x - center) <= stretch^2 where there is a shape.\n"
-                     "radius inf: the rows at hand cannot answer; nan: the data refute the assumption.")
-      .def(py::init(&given_region), py::arg("center"), py::arg("radius"), py::arg("box") = py::none(),
-           "center (n,), radius >= 0, box (n,) >= 0. Raises InvalidInput.")
+  py::class_<Region>(
+      m, "Region",
+      numpydoc(
+          R"(||x - center|| <= radius, |x_k - center_k| <= box_k where there is a box, and (x - center)' shape^-1 (x -
+center) <= stretch^2 where there is a shape. radius inf: the rows at hand cannot answer; nan: the data
+refute the assumption.
+
+center : (n,) array | Finite.
+radius : float | >= 0, inf or nan.
+box : (n,) array, optional | Half widths, finite and >= 0.
+! InvalidInput | A number out of range, or a wrong size.)")
+          .c_str())
+      .def(py::init(&given_region), py::arg("center"), py::arg("radius"), py::arg("box") = py::none())
       .def_property_readonly("center", &center_of, "(n,), None without an answer")
       .def_readonly("radius", &Region::radius,
                     "||x - center|| is at most this; inf = the rows at hand cannot answer, nan = the data "
@@ -115,7 +178,12 @@ void bind_regions(py::module_& m) {
       .def_property_readonly("answered", &Region::answered, "radius is finite")
       .def_property_readonly("refuted", &Region::refuted, "radius is nan: more than s are attacked")
       .def("bound_around", &checked_bound_around, py::arg("estimate"),
-           "Bound on ||estimate - x|| for any estimate (n,); inf without an answer, nan when refuted.");
+           numpydoc(R"(Bound on ||estimate - x|| for any estimate.
+
+estimate : (n,) array | Finite.
+< float | inf without an answer, nan when refuted.
+! InvalidInput | A wrong size, or a number that is not finite.)")
+               .c_str());
   py::class_<Witness>(m, "Witness", "Answer of leverage_ball and witness_subsets.")
       .def_readonly("region", &Witness::region, "Where the state is.")
       .def_property_readonly(
@@ -152,12 +220,20 @@ void bind_witness(py::module_& m) {
       py::arg("y"), py::arg("C"), py::arg("R"), py::arg("s"), py::arg("z1") = 0.0, py::arg("z2") = 0.0,
       py::kw_only(), py::arg("widths") = py::none(), py::arg("prior") = py::none(), py::arg("proved") = Ids(),
       py::arg("sources") = Ids(),
-      "W2: region of the state from one sample's rows y (m,), nan = missing; C (m, n); variances R (m,).\n"
-      "At most s of all sources lie. z1, z2: gaussian_levels(); widths (m,): bounded noise |v| <= width "
-      "instead.\n"
-      "prior: a Region that contains x. sources (m,): of each row, empty = its position; proved: sources "
-      "known to\n"
-      "be attacked, which then must never change. Returns a Witness; raises InvalidInput.");
+      numpydoc(R"(W2: region of the state from the rows of one sample. At most s of all sources lie.
+
+y : (m,) array | Measurements; nan = missing.
+C : (m, n) array | Their rows.
+R : (m,) array | Variances, > 0.
+s : int | >= 0.
+z1, z2 : float | gaussian_levels(), >= 0; 0 with bounded noise.
+widths : (m,) array, optional | Bounded noise |v| <= width instead, >= 0.
+prior : Region, optional | Contains x.
+proved : sequence of int | Sources known to be attacked, which then must never change.
+sources : sequence of m int | Of each row; empty = its position.
+< Witness
+! InvalidInput | A number out of range, or sizes that differ.)")
+          .c_str());
   m.def(
       "witness_subsets",
       [](const VectorRef& y, const MatrixRef& C, const VectorRef& R, int s, double z1, double z2,
@@ -171,31 +247,68 @@ void bind_witness(py::module_& m) {
       py::arg("y"), py::arg("C"), py::arg("R"), py::arg("s"), py::arg("z1"), py::arg("z2"), py::kw_only(),
       py::arg("z3") = py::none(), py::arg("proved") = Ids(), py::arg("sources") = Ids(),
       py::arg("limit") = kMostSubsets,
-      "W3: the same by all sets of sources that may be the honest ones, C(sources, s) of them; sharper.\n"
-      "z3: chi(delta3, m - s - n), only where the law of the noise is known. Raises InvalidInput, also when "
-      "there\n"
-      "are more than `limit` sets.");
+      numpydoc(
+          R"(W3: the region of leverage_ball by all sets of sources that may be the honest ones, C(sources, s) of them;
+sharper.
+
+y : (m,) array | Measurements; nan = missing.
+C : (m, n) array | Their rows.
+R : (m,) array | Variances, > 0.
+s : int | >= 0.
+z1, z2 : float | gaussian_levels(), >= 0.
+z3 : float, optional | chi(delta3, m - s - n), only where the law of the noise is known.
+proved : sequence of int | Sources known to be attacked, which then must never change.
+sources : sequence of m int | Of each row; empty = its position.
+limit : int | Most sets, >= 1.
+< Witness
+! InvalidInput | A number out of range, sizes that differ, or more than `limit` sets.)")
+          .c_str());
   m.def(
       "order_rule", [](const VectorRef& values, int f) { return order_rule(values, f); }, py::arg("values"),
       py::arg("f"),
-      "The (f+1)-th smallest of upper bounds of which at most f are wrong; inf with f or fewer, nan = none.");
-  m.def(
-      "order_bound", &order_bound, py::arg("r"), py::arg("width"), py::arg("s"),
-      "W0, one state: bound on |xhat - x| from r (m,) = C (y - C xhat) and widths (m,), at most s attacked.");
+      numpydoc(R"(The (f+1)-th smallest of upper bounds on one number, of which at most f are wrong.
+
+values : (q,) array | Bounds; nan = none.
+f : int | >= 0.
+< float | inf with f or fewer bounds.
+! InvalidInput | f < 0.)")
+          .c_str());
+  m.def("order_bound", &order_bound, py::arg("r"), py::arg("width"), py::arg("s"),
+        numpydoc(R"(W0, one state: bound on |xhat - x| with at most s attacked.
+
+r : (m,) array | C (y - C xhat) of sensors with C = +-1; nan = missing.
+width : (m,) array | Bounds of their noise, >= 0.
+s : int | >= 0.
+< float | inf with s or fewer sensors.
+! InvalidInput | Sizes that differ, or a number out of range.)")
+            .c_str());
   m.def(
       "interval",
       [](const VectorRef& y, const VectorRef& width, int s) { return from_interval(interval(y, width, s)); },
       py::arg("y"), py::arg("width"), py::arg("s"),
-      "W0, one state: (lo, hi) of the points in at least m - s of the intervals y +- width, y (m,) = C y, "
-      "nan =\n"
-      "missing. (nan, nan): more than s attacked; (-inf, inf): not enough rows.");
+      numpydoc(R"(W0, one state: the points that lie in at least m - s of the intervals y +- width.
+
+y : (m,) array | C y of sensors with C = +-1; nan = missing.
+width : (m,) array | Bounds of their noise, >= 0.
+s : int | >= 0.
+< (lo, hi) | (nan, nan): more than s attacked; (-inf, inf): not enough rows.
+! InvalidInput | Sizes that differ, or a number out of range.)")
+          .c_str());
   m.def(
       "scan",
       [](const VectorRef& r, const VectorRef& R, int s, double z1, double z2) {
         return from_interval(scan(r, R, s, z1, z2));
       },
       py::arg("r"), py::arg("R"), py::arg("s"), py::arg("z1"), py::arg("z2"),
-      "W1, one state, Gaussian noise: (lo, hi) of x - xhat from r (m,) = C (y - C xhat); R (m,) variances.");
+      numpydoc(R"(W1, one state, Gaussian noise: interval of x - xhat.
+
+r : (m,) array | C (y - C xhat) of sensors with C = +-1; nan = missing.
+R : (m,) array | Variances, > 0.
+s : int | >= 0.
+z1, z2 : float | gaussian_levels(), >= 0.
+< (lo, hi) | (nan, nan): more than s attacked; (-inf, inf): not enough rows.
+! InvalidInput | Sizes that differ, or a number out of range.)")
+          .c_str());
 }
 
 py::array_t<double> stacked(const std::vector<Gains>& gains) {
@@ -217,8 +330,15 @@ void bind_system(py::module_& m) {
         return error_system(A, C, J, silent);
       },
       py::arg("A"), py::arg("C"), py::arg("J"), py::arg("silent") = Ids(),
-      "Lemma 1. A (n, n); C (N, n), rows of length 1 or 0; J (N, N), the averaging of one step, row sums 1;\n"
-      "silent: sensors that inject nothing. Raises InvalidInput.");
+      numpydoc(R"(Lemma 1: the errors of all agents as one system.
+
+A : (n, n) array | Of the plant.
+C : (N, n) array | Rows of length 1, or 0.
+J : (N, N) array | The averaging of one step, row sums 1.
+silent : sequence of int | Sensors that inject nothing.
+< ErrorSystem
+! InvalidInput | Shapes do not fit, or a row is not as said.)")
+          .c_str());
   py::class_<Kernels>(m, "Kernels",
                       "What k steps of the error system do: gb, ge (K, N, N), wb, we (K, N),\n"
                       "Rb, Re (K+1, N, N).")
@@ -237,7 +357,13 @@ void bind_system(py::module_& m) {
           "(K + 1, N, N): [k, j, l] = |C_j A (M^k)_jl|.")
       .def_property_readonly("window", &Kernels::window, "K, how many powers.");
   m.def("kernels", &kernels, py::arg("system"), py::arg("window"), py::call_guard<py::gil_scoped_release>(),
-        "Kernels of K = window lags, best so many that Rb[K].sum(1) < 1e-3. Raises InvalidInput.");
+        numpydoc(R"(What so many steps of an error system do.
+
+system : ErrorSystem | Of error_system().
+window : int | K >= 1 steps, best so many that Rb[K].sum(1) < 1e-3.
+< Kernels
+! InvalidInput | K < 1, too large, or powers that overflow.)")
+            .c_str());
 }
 
 py::object steady_of(const Table& t) {
@@ -263,9 +389,19 @@ void bind_tables(py::module_& m) {
       },
       py::arg("kernels"), py::kw_only(), py::arg("s"), py::arg("start"), py::arg("T"), py::arg("bw"),
       py::arg("bv"), py::arg("beta") = py::none(), py::arg("fixed") = false,
-      "Theorem T, bounded noise ||w|| <= bw, |v_j| <= bv[j] (N,). start: bound on all ||e_i(0)||; beta: "
-      "fixed level,\n"
-      "None = adaptive; fixed: the attacked set never changes. Raises InvalidInput.");
+      numpydoc(R"(Theorem T, bounded noise: bounds on every agent's error without data.
+
+kernels : Kernels | Of kernels().
+s : int | Sensors attacked at a time, >= 0.
+start : float | Bound on all ||e_i(0)||, >= 0.
+T : int | Last step, >= 1.
+bw : float | ||w|| <= bw, >= 0.
+bv : (N,) array | |v_j| <= bv[j], >= 0.
+beta : float, optional | Fixed level, >= 0; None = adaptive.
+fixed : bool | The attacked set never changes.
+< Table
+! InvalidInput | A number out of range, or more than memory is meant for.)")
+          .c_str());
   py::class_<GaussianTable>(m, "GaussianTable",
                             "Table for Gaussian noise; d and eta without the noise itself.")
       .def_readonly("table", &GaussianTable::table,
@@ -273,7 +409,13 @@ void bind_tables(py::module_& m) {
       .def_readonly("deviation", &GaussianTable::deviation,
                     "(T+1, N): sqrt of the largest eigenvalue of P_ii")
       .def("bound", &GaussianTable::bound, py::arg("t"), py::arg("delta"),
-           "(N,): fails with probability <= N T P(|N(0,1)| > z) + delta for each agent and step.");
+           numpydoc(R"(Bounds at one step; each fails with probability <= N T P(|N(0,1)| > z) + delta.
+
+t : int | 0..T.
+delta : float | Above 0 and below 1.
+< (N,) array | On ||e_i(t)||.
+! InvalidInput | A number out of range.)")
+               .c_str());
   m.def(
       "gaussian_table",
       [](const Kernels& k, int s, double start, int T, const Matrix& Q, const Vector& R, double z,
@@ -283,9 +425,29 @@ void bind_tables(py::module_& m) {
       },
       py::arg("kernels"), py::kw_only(), py::arg("s"), py::arg("start"), py::arg("T"), py::arg("Q"),
       py::arg("R"), py::arg("z"), py::arg("beta") = py::none(), py::arg("fixed") = false,
-      "Theorem TG: w ~ N(0, Q) (n, n), v_j ~ N(0, R[j]) (N,); z: level of the event. Raises InvalidInput.");
+      numpydoc(R"(Theorem TG: the table for Gaussian noise.
+
+kernels : Kernels | Of kernels().
+s : int | Sensors attacked at a time, >= 0.
+start : float | Bound on all ||e_i(0)||, >= 0.
+T : int | Last step, >= 1.
+Q : (n, n) array | w ~ N(0, Q).
+R : (N,) array | v_j ~ N(0, R[j]), >= 0.
+z : float | Level of the event, in deviations, >= 0.
+beta : float, optional | Fixed level, >= 0; None = adaptive.
+fixed : bool | The attacked set never changes.
+< GaussianTable
+! InvalidInput | A number out of range, or no covariance.)")
+          .c_str());
   m.def("lists_complete", &lists_complete, py::arg("step"), py::arg("diameter"), py::arg("rounds"),
-        "t0 of theorem I: the step from which all lists are complete.");
+        numpydoc(R"(t0 of theorem I: the step from which all lists are complete.
+
+step : int | At whose end the first list was complete, >= 0.
+diameter : int | Of the network, >= 0.
+rounds : int | Hops per step, >= 1.
+< int
+! InvalidInput | A number out of range.)")
+            .c_str());
   m.def(
       "informed",
       [](const ErrorSystem& x, const Vector& start, int steps, double bw, const Vector& bv) {
@@ -293,9 +455,16 @@ void bind_tables(py::module_& m) {
         return informed(x, start, steps, bw, bv);
       },
       py::arg("system"), py::arg("start"), py::arg("steps"), py::arg("bw"), py::arg("bv"),
-      "Theorem I, bounded noise: (steps, N), row k-1 bounds ||e_i(t0 + k)||. system: with the proved sensors "
-      "silent;\n"
-      "start (N,): bounds at t0. Raises InvalidInput.");
+      numpydoc(R"(Theorem I, bounded noise: bounds once all agents have proved all attackers.
+
+system : ErrorSystem | With the proved sensors silent.
+start : (N,) array | Bounds on all ||e_l(t0)||, >= 0.
+steps : int | >= 1.
+bw : float | ||w|| <= bw, >= 0.
+bv : (N,) array | |v_j| <= bv[j], >= 0.
+< (steps, N) array | Row k-1 bounds ||e_i(t0 + k)||.
+! InvalidInput | A number out of range, or sizes that differ.)")
+          .c_str());
   m.def(
       "informed_gaussian",
       [](const ErrorSystem& x, const Vector& start, int steps, const Matrix& Q, const Vector& R,
@@ -305,7 +474,18 @@ void bind_tables(py::module_& m) {
       },
       py::arg("system"), py::arg("start"), py::arg("steps"), py::arg("Q"), py::arg("R"), py::arg("P0"),
       py::arg("delta"),
-      "Theorem I, Gaussian noise. P0 (N n, N n): zero unless t0 was fixed in advance. Raises InvalidInput.");
+      numpydoc(R"(Theorem I, Gaussian noise; each bound fails with probability delta.
+
+system : ErrorSystem | With the proved sensors silent.
+start : (N,) array | Bounds on all ||e_l(t0)||, >= 0.
+steps : int | >= 1.
+Q : (n, n) array | w ~ N(0, Q).
+R : (N,) array | v_j ~ N(0, R[j]), >= 0.
+P0 : (N n, N n) array | Covariance of the noise part at t0: zero unless t0 was fixed in advance.
+delta : float | Above 0 and below 1.
+< (steps, N) array | Row k-1 bounds ||e_i(t0 + k)||.
+! InvalidInput | A number out of range, no covariance, or sizes that differ.)")
+          .c_str());
 }
 
 }  // namespace

@@ -43,23 +43,43 @@ std::optional<T> of_region(const WindowWitness& w, const T Region::* field) {
 void bind_window(py::module_& m) {
   py::class_<Window>(
       m, "Window",
-      "The measurements of several steps as one regression z = N theta + o. Call begin, a prior, then "
-      "for each step add its\nrows and advance. x(k+1) = A x(k) + u + Gam w~(k).")
+      numpydoc(
+          R"(The measurements of several steps as one regression z = N theta + o, for x(k+1) = A x(k) + u + Gam w~(k).
+Call begin, a prior, then for each step add its rows and advance.
+
+states : int | n >= 1.
+noise : int | Columns of Gam, >= 0.
+steps : int | Most steps, >= 1.
+sources : int | Sources are 0..sources-1, >= 1.
+capacity : int | Most measurements, >= 1.
+! InvalidInput | A number out of range, or more than memory is meant for.)")
+          .c_str())
       .def(py::init<int, int, int, int, int>(), py::arg("states"), py::arg("noise"), py::arg("steps"),
-           py::arg("sources"), py::arg("capacity"),
-           "For at most `steps` steps of `states` numbers, Gam (states, noise), and `capacity` measurements "
-           "of "
-           "sources 0..sources-1.\nRaises InvalidInput.")
+           py::arg("sources"), py::arg("capacity"))
       .def("begin", &Window::begin, py::arg("steps"), py::arg("process_bound") = kNaN,
-           "Empties the window. w~ ~ N(0, I), or |w~_i| <= process_bound. Raises InvalidInput.")
+           numpydoc(R"(Empties the window.
+
+steps : int | Of this window, 1..the most.
+process_bound : float | |w~_i| <= process_bound, > 0; nan: w~ ~ N(0, I).
+! InvalidInput | A number out of range.)")
+               .c_str())
       .def("prior_gaussian", &Window::prior_gaussian, py::arg("c0"), py::arg("P0"),
-           "x(0) - c0 ~ N(0, P0); c0 (n,), P0 (n, n) positive definite; right after begin. Raises "
-           "InvalidInput.")
+           numpydoc(R"(x(0) - c0 ~ N(0, P0), right after begin.
+
+c0 : (n,) array | Finite.
+P0 : (n, n) array | Positive definite.
+! InvalidInput | A wrong size, no such covariance, or not right after begin.)")
+               .c_str())
       .def("prior_set", &Window::prior_set, py::arg("c0"), py::arg("P0"), py::arg("r0"),
            py::arg("weight") = 4.0,
-           "(x(0) - c0)' P0^-1 (x(0) - c0) <= r0^2 for certain; weight: as how many deviations r0 counts. "
-           "Raises "
-           "InvalidInput.")
+           numpydoc(R"((x(0) - c0)' P0^-1 (x(0) - c0) <= r0^2 for certain, right after begin.
+
+c0 : (n,) array | Finite.
+P0 : (n, n) array | Positive definite.
+r0 : float | >= 0.
+weight : float | As how many deviations r0 counts, > 0.
+! InvalidInput | A wrong size, a number out of range, or not right after begin.)")
+               .c_str())
       .def(
           "add",
           [](Window& w, int source, const VectorRef& c, double y, double variance, double bias,
@@ -68,12 +88,24 @@ void bind_window(py::module_& m) {
           },
           py::arg("source"), py::arg("c"), py::arg("y"), py::arg("variance"), py::arg("bias") = 0.0,
           py::arg("bounded") = false,
-          "A measurement y = c x + v of the present step: c (n,), v ~ N(0, variance) and at most bias on "
-          "top, or\n"
-          "bounded: |v| <= bias alone. False: it says nothing (nan, c = 0, no such source, full, ..) and is "
-          "left out.")
+          numpydoc(R"(A measurement y = c x + v of the present step.
+
+source : int | Whose it is, 0..sources-1.
+c : (n,) array | Its row.
+y : float | nan = missing.
+variance : float | v ~ N(0, variance), > 0.
+bias : float | At most so much on top, >= 0.
+bounded : bool | |v| <= bias alone.
+< bool | False: it says nothing (nan, c = 0, no such source, full, ..) and is left out.)")
+              .c_str())
       .def("advance", &Window::advance, py::arg("A"), py::arg("Gam"), py::arg("u"),
-           "To the next step: A (n, n), Gam (n, noise), u (n,). Raises InvalidInput.")
+           numpydoc(R"(To the next step.
+
+A : (n, n) array | Of the plant.
+Gam : (n, noise) array | How the noise enters.
+u : (n,) array | Known input.
+! InvalidInput | Shapes do not fit, or beyond the last step.)")
+               .c_str())
       .def_property_readonly("rows", &Window::rows, "how many, process noise and prior included")
       .def_property_readonly(
           "N",
@@ -176,8 +208,14 @@ void bind_window_witnesses(py::module_& m) {
         return std::tuple(z.z1, z.z2, z.zc);
       },
       py::arg("delta"), py::arg("rows"), py::arg("states"),
-      "(z1, z2, zc) of the window certificates that fail together with probability <= delta. Raises "
-      "InvalidInput.");
+      numpydoc(R"(Levels of the window certificates that fail together with probability <= delta.
+
+delta : float | Above 0 and below 1.
+rows : int | Measurements of the window, >= 1.
+states : int | n >= 1.
+< (z1, z2, zc) | Of every single measurement, of the vector, and of each coordinate.
+! InvalidInput | A number out of range.)")
+          .c_str());
   m.def(
       "leverage_window",
       [](const Window& w, int s, double z1, double z2, double zc, bool moving, const Ids& proved,
@@ -187,11 +225,16 @@ void bind_window_witnesses(py::module_& m) {
       },
       py::arg("window"), py::arg("s"), py::arg("z1"), py::arg("z2"), py::arg("zc"), py::kw_only(),
       py::arg("moving") = false, py::arg("proved") = Ids(), py::arg("honest") = Ids(),
-      "W2M: the state of the window's last step, at most s sources lie (moving: s in each step). z1, z2, "
-      "zc:\n"
-      "window_levels(), 0 with bounded noise. proved, honest: sources known to be so. Returns a "
-      "WindowWitness; raises "
-      "InvalidInput.");
+      numpydoc(R"(W2M: region of the state of the window's last step, at most s sources lie.
+
+window : Window | Filled up to its last step.
+s : int | >= 0.
+z1, z2, zc : float | window_levels(), >= 0; 0 with bounded noise.
+moving : bool | s sources in each step, else one set for the whole window.
+proved, honest : sequence of int | Sources known to be so.
+< WindowWitness
+! InvalidInput | A number out of range, `proved` with a moving set, or a window that is not filled.)")
+          .c_str());
   m.def(
       "subsets_window",
       [](const Window& w, int s, double z1, double z2, double zc, std::optional<double> z3, const Ids& proved,
@@ -202,9 +245,19 @@ void bind_window_witnesses(py::module_& m) {
       },
       py::arg("window"), py::arg("s"), py::arg("z1"), py::arg("z2"), py::arg("zc"), py::kw_only(),
       py::arg("z3") = py::none(), py::arg("proved") = Ids(), py::arg("limit") = kMostWindowSubsets,
-      "W3M: the same by all sets of s sources left out, the attacked set fixed in the window; sharper. z3: "
-      "chi of all\n"
-      "residuals of such a set. Raises InvalidInput, also when there are more than `limit` sets.");
+      numpydoc(
+          R"(W3M: the region of leverage_window by all sets of s sources left out, the attacked set fixed in the window;
+sharper.
+
+window : Window | Filled up to its last step.
+s : int | >= 0.
+z1, z2, zc : float | window_levels(), >= 0.
+z3 : float, optional | chi of all residuals of such a set.
+proved : sequence of int | Sources known to be attacked.
+limit : int | Most sets, >= 1.
+< WindowWitness
+! InvalidInput | A number out of range, a window that is not filled, or more than `limit` sets.)")
+          .c_str());
   m.def(
       "subsets_window_width",
       [](const Window& w, int s, double z1, double zc, std::optional<double> z3, int limit) {
@@ -213,9 +266,16 @@ void bind_window_witnesses(py::module_& m) {
       },
       py::arg("window"), py::arg("s"), py::arg("z1"), py::arg("zc"), py::kw_only(),
       py::arg("z3") = py::none(), py::arg("limit") = 20 * kMostWindowSubsets,
-      "W3D, design time: (n,) half widths that subsets_window never exceeds whatever s attackers do; inf: "
-      "not\n"
-      "observable without some 2s sources. Raises InvalidInput.");
+      numpydoc(R"(W3D, design time: half widths that subsets_window never exceeds whatever s attackers do.
+
+window : Window | Filled up to its last step; its data are not read.
+s : int | >= 0.
+z1, zc : float | As of subsets_window, at delta / C(sources, s).
+z3 : float, optional | As of subsets_window.
+limit : int | Most pairs of sets, >= 1.
+< (n,) array | inf: not observable without some 2s sources.
+! InvalidInput | A number out of range, a window that is not filled, or more than `limit` pairs.)")
+          .c_str());
   m.def(
       "anytime_window",
       [](const Window& w, int s, double z1, double z2, double zc, int leaves, const Ids& proved,
@@ -225,8 +285,16 @@ void bind_window_witnesses(py::module_& m) {
       },
       py::arg("window"), py::arg("s"), py::arg("z1"), py::arg("z2"), py::arg("zc"), py::kw_only(),
       py::arg("leaves"), py::arg("proved") = Ids(), py::arg("honest") = Ids(),
-      "A: from leverage_window (1 leaf) to subsets_window (all), within a budget of `leaves`. Raises "
-      "InvalidInput.");
+      numpydoc(R"(A: from leverage_window (1 leaf) to subsets_window (all), within a budget.
+
+window : Window | Filled up to its last step.
+s : int | >= 0.
+z1, z2, zc : float | window_levels(), >= 0; 0 with bounded noise.
+leaves : int | Budget, >= 1: the cost is that of so many leverage_window.
+proved, honest : sequence of int | Sources known to be so.
+< WindowWitness
+! InvalidInput | A number out of range, or a window that is not filled.)")
+          .c_str());
 }
 
 void bind_hull(py::module_& m) {
@@ -238,9 +306,16 @@ void bind_hull(py::module_& m) {
         return std::pair(box.lo, box.hi);
       },
       py::arg("window"), py::arg("s"), py::arg("limit") = 2000,
-      "Bounded noise, exactly: (lo, hi), (n,) each, by linear programs over all sets of s sources left out. "
-      "nan: more\n"
-      "than s are attacked; inf: the rows cannot answer. Raises InvalidInput.");
+      numpydoc(
+          R"(Bounded noise, exactly: hull of the states that explain the rows, by linear programs over all sets of s
+sources left out.
+
+window : Window | Of bounded rows only, without a prior, filled up to its last step.
+s : int | >= 0.
+limit : int | Most sets, >= 1.
+< (lo, hi), (n,) arrays | nan: more than s are attacked; inf: the rows cannot answer.
+! InvalidInput | Another window, a number out of range, or more than `limit` sets.)")
+          .c_str());
 }
 
 }  // namespace

@@ -24,7 +24,13 @@ void bind_certificate_meters(py::module_& m) {
   m.def(
       "meters", [](const MatrixRef& H, const Ids& source) { return meters(H, source); }, py::arg("H"),
       py::arg("source") = Ids(),
-      "H (rows, n), divided by the deviations, reference removed; source (rows,). Raises InvalidInput.");
+      numpydoc(R"(What a static set of meters withstands.
+
+H : (rows, n) array | Divided by the deviations, reference removed.
+source : sequence of int | Of each row; empty = its position.
+< Meters
+! InvalidInput | Shapes do not fit, or the rows do not determine the state.)")
+          .c_str());
   py::class_<SmallestAttack>(m, "SmallestAttack", "The smallest set of meters that can lie unseen.")
       .def_readonly("size", &SmallestAttack::size, "None: none found")
       .def_readonly("example", &SmallestAttack::example, "Such a set of meters; empty = none was found.")
@@ -32,7 +38,14 @@ void bind_certificate_meters(py::module_& m) {
                     "no smaller one than this, or as large, for certain");
   m.def("smallest_undetectable", &smallest_undetectable, py::arg("H"), py::arg("most"),
         py::arg("tries") = 1e7, py::call_guard<py::gil_scoped_release>(),
-        "Exact search up to `most` meters, given up after `tries` sets. Raises InvalidInput.");
+        numpydoc(R"(Exact search for the smallest set of meters that can lie unseen.
+
+H : (rows, n) array | As of meters; no row of zeros.
+most : int | Largest set that is looked for, >= 1.
+tries : float | Sets that are looked at before the search ends.
+< SmallestAttack
+! InvalidInput | Shapes do not fit, or a number is out of range.)")
+            .c_str());
   m.def(
       "range_row",
       [](const VectorRef& p, const VectorRef& c0, double rho) {
@@ -40,10 +53,20 @@ void bind_certificate_meters(py::module_& m) {
         return row ? std::optional(std::tuple(row->h, row->offset, row->remainder)) : std::nullopt;
       },
       py::arg("p"), py::arg("c0"), py::arg("rho"),
-      "(h, offset, bias): |x - p| = offset + h x within bias for x in the proved ball (c0, rho); None when "
-      "it reaches p.");
+      numpydoc(R"(A distance to a known point as a row of the regression: |x - p| = offset + h x within bias.
+
+p : (n,) array | The point.
+c0 : (n,) array | Centre of a ball that is proved to hold x.
+rho : float | Its radius, >= 0.
+< (h, offset, bias) or None | None when the ball reaches p.
+! InvalidInput | Sizes that differ, or a number out of range.)")
+          .c_str());
   m.def("accepted", &accepted, py::arg("paths"), py::arg("liars"),
-        "Whether a flooded number is its owner's, for paths (owner, relay, ..) that brought the same one; "
-        "the budget is "
-        "then\ns + liars. Raises InvalidInput.");
+        numpydoc(R"(Whether a flooded number is its owner's; the budget of the certificates is then s + liars.
+
+paths : sequence of sequences of int | (owner, relay, ..) of each that brought the same number.
+liars : int | Agents that may lie, >= 0.
+< bool
+! InvalidInput | liars < 0, an empty path, or paths of different owners.)")
+            .c_str());
 }

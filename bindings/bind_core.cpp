@@ -18,9 +18,13 @@ py::object value_to_python(const ParamValue& value) {
 void bind_budget(py::module_& m) {
   py::class_<TimeLimit, std::shared_ptr<TimeLimit>>(
       m, "budget",
-      "`with budget(seconds) as b:` is the time of everything computed in the block (> 0, inf = no "
-      "limit).\nSearches end with what they have proved; what has no partial result raises "
-      "InvalidInput. Ctrl-C ends both.")
+      numpydoc(
+          R"(`with budget(seconds) as b:` is the time of everything computed in the block. Searches end with what they
+have proved; what has no partial result raises InvalidInput. Ctrl-C ends both.
+
+seconds : float | > 0; inf = no limit.
+! InvalidInput | Not a number above 0.)")
+          .c_str())
       .def(py::init<double>(), py::arg("seconds") = kInfinity)
       .def("__enter__",
            [](const std::shared_ptr<TimeLimit>& self) {
@@ -110,6 +114,18 @@ py::list from_infos(const std::vector<ParamInfo>& infos) {
   return all;
 }
 
+std::string described(const ParamInfo& info) {
+  constexpr const char* types[] = {"bool", "int", "float", "str", "sequence of float"};
+  std::string words = info.name + " : " + types[info.initial.index()] + (info.required ? "" : ", optional") +
+                      " | " + info.doc;
+  if (!info.unit.empty()) words += " [" + info.unit + "]";
+  if (std::isfinite(info.least)) words += (info.open ? ", > " : ", >= ") + text(info.least);
+  if (std::isfinite(info.most)) words += ", <= " + text(info.most);
+  std::string choices;
+  for (const std::string& choice : info.choices) choices += (choices.empty() ? "" : ", ") + choice;
+  return words + (choices.empty() ? "" : "; one of: " + choices);
+}
+
 void bind_core(py::module_& m) {
   auto& error = py::register_exception<Error>(m, "Error");
   error.doc() = "What garrison refuses, and cannot do; catch this one for all.";
@@ -133,8 +149,15 @@ void bind_core(py::module_& m) {
         return py::make_tuple(std::move(split.model), std::move(split.network), std::move(split.owner));
       },
       py::arg("model"), py::arg("network"),
-      "(model, network, owner) with an agent per output: m agents that hear each other for one with m "
-      "outputs.");
+      numpydoc(
+          R"(The same plant with an agent per output: an agent with m outputs becomes m agents that hear each other.
+
+model : Model | Agents with any number of outputs.
+network : Network | Of the same agents.
+< (Model, Network, list of int) | The model and network of the single outputs, and per new agent the one
+  that it came from.
+! InvalidInput | Model and network have another number of agents.)")
+          .c_str());
   m.def(
       "nearest_name",
       [](const std::string& unknown, const std::vector<std::string>& known) {

@@ -13,20 +13,11 @@ using namespace garrison;
 
 namespace {
 
-std::string number_range(const ParamInfo& info) {
-  std::string words;
-  if (std::isfinite(info.least)) words += (info.open ? ", > " : ", >= ") + text(info.least);
-  if (std::isfinite(info.most)) words += ", <= " + text(info.most);
-  return words;
-}
-
 template <class F>
 std::string class_doc() {
-  std::string doc = std::string(F::title) + ".\n\nSource: " + std::string(F::source) + "\n\n";
-  for (const ParamInfo& info : describe<typename F::Params>())
-    doc += info.name + ": " + info.doc + (info.unit.empty() ? "" : " [" + info.unit + "]") +
-           number_range(info) + "\n";
-  return doc;
+  std::string doc = std::string(F::title) + ".\nSource: " + std::string(F::source) + "\n\n";
+  for (const ParamInfo& info : describe<typename F::Params>()) doc += described(info) + "\n";
+  return numpydoc(doc + "! InvalidInput | A parameter is out of range.");
 }
 
 template <class F>
@@ -194,7 +185,13 @@ void bind_filters(py::module_& m) {
       },
       py::arg("model"), py::arg("network"), py::arg("filter"), "Parents of every agent in an Lfre filter.");
   m.def("make_filter", &named_filter, py::arg("name"), py::arg("params") = py::dict(),
-        "The filter `name`; unknown names are refused with the nearest one.");
+        numpydoc(R"(The filter of this name; unknown names are refused with the nearest one.
+
+name : str | As in `garrison list`.
+params : dict | Parameters by name; the rest have their defaults.
+< Filter | An object of the family's class.
+! InvalidInput | An unknown name, or a parameter that is unknown or out of range.)")
+            .c_str());
   m.def(
       "filter_infos",
       [] {

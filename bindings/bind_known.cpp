@@ -106,25 +106,25 @@ void bind_kalman(py::module_& m) {
 }  // namespace
 
 void bind_known(py::module_& m) {
-  py::class_<Response>(m, "Response",
-                       R"(What known inputs alone do to a plant: s(t+1) = A s(t) + B u(t), s(0) = 0.
+  py::class_<Response>(
+      m, "Response",
+      numpydoc(
+          R"(What known inputs alone do to a plant: s(t+1) = A s(t) + B u(t), s(0) = 0. With x = z + s, z is a plant
+without inputs of which y - C s is measured: an agent driven by hand gets `without` of its measurement, and
+its estimate plus `state` is one of x, with the same error and bound (docs/adr/0016).
 
-With x = z + s, z is a plant without inputs of which y - C s is measured: an agent driven by hand gets `without` of its
-measurement, and its estimate plus `state` is one of x, with the same error and bound (docs/adr/0016).
-
-Parameters
-----------
-model : Model
-    With B.
-)")
+model : Model | With B.)")
+          .c_str())
       .def(py::init<const Model&>(), py::arg("model"))
       .def_property_readonly("state", &Response::state, "s, (n,).")
       .def_property_readonly("sample", &Response::sample, "The present sample, from 0.")
       .def(
           "advance", [](Response& r, const Vector& inputs) { r.advance(inputs); }, py::arg("inputs"),
-          "Moves to the next sample with u, one number per column of B. Raises InvalidInput when the "
-          "response "
-          "overflows.")
+          numpydoc(R"(Moves to the next sample.
+
+inputs : (p,) array | u of this sample, one number per column of B.
+! InvalidInput | A wrong size, a number that is not finite, or a response that overflows.)")
+              .c_str())
       .def(
           "without",
           [](const Response& r, const Vector& y, const Matrix& C) {
@@ -134,7 +134,13 @@ model : Model
             return Vector(y - C * r.state());
           },
           py::arg("y"), py::arg("C"),
-          "y - C s, what a filter without inputs is to get of the measurement y (m,); C (m, n).");
+          numpydoc(R"(What a filter without inputs is to get of a measurement: y - C s.
+
+y : (m,) array | The measurement; nan = missing.
+C : (m, n) array | Its rows.
+< (m,) array
+! InvalidInput | Sizes do not fit.)")
+              .c_str());
   m.def(
       "driven",
       [](const Matrix& A, const Vector& x, const Matrix& B, const Vector& u) { return driven(A, x, B, u); },

@@ -103,14 +103,27 @@ void bind_messages(py::module_& m) {
             if (at == known.end()) refuse_unknown("message of " + l.family, field, known);
             return l.with(field, field_value(l.fields[static_cast<std::size_t>(at - known.begin())], value));
           },
-          py::arg("field"), py::arg("value"), "The same message with another value in one field: a lie.")
+          py::arg("field"), py::arg("value"),
+          numpydoc(R"(The same message with another value in one field: a lie.
+
+field : str | Name of a field, as in `fields`.
+value : array, float, bool or set of int | Of the kind and size that the field has.
+< Message
+! InvalidInput | No such field, or a value that does not fit it.)")
+              .c_str())
       .def(
           "to_bytes", [](const Letter& l) { return to_python(l.to_bytes()); },
           "Everything, to be kept or sent by other means; see from_bytes.")
       .def_static(
           "from_bytes",
           [](const py::object& data) { return Letter::from_bytes(from_python(data, "message")); },
-          py::arg("data"), "The message that to_bytes() wrote. Raises InvalidInput for anything else.")
+          py::arg("data"),
+          numpydoc(R"(The message that to_bytes() wrote.
+
+data : bytes | All of it.
+< Message
+! InvalidInput | Anything else.)")
+              .c_str())
       .def(
           "__eq__",
           [](const Letter& l, const py::object& other) {

@@ -281,24 +281,32 @@ InvalidInput
           py::arg("states") = py::none(), py::arg("outputs") = py::none(), py::arg("sources") = py::none(),
           py::arg("units") = py::none(), py::arg("exposed") = py::none(), py::arg("B") = py::none(),
           py::arg("inputs") = py::none(),
-          "The model of dx/dt = A x + B u + white noise, u held between samples, sampled every `period` (> "
-          "0, in the unit of time of A), "
-          "exactly\n"
-          "(C. F. Van Loan, IEEE TAC 23 (3), 1978). process_intensity: spectral density of the noise, (n, n) "
-          "or "
-          "a\n"
-          "number (times the identity), in state^2 per time; the model then has its process_covariance. "
-          "process_bound:\n"
-          "of the noise from sample to sample, as in Model; the rest, too. Raises InvalidInput.")
-      .def_property_readonly("A", &Model::A, "(n, n)")
+          numpydoc(
+              R"(The model of dx/dt = A x + B u + white noise, u held between samples, sampled exactly (C. F. Van Loan, IEEE
+TAC 23 (3), 1978).
+
+A : (n, n) array | Of the differential equation, per unit of time.
+C : sequence of (m_i, n) arrays, or (N, n) array | As in Model.
+period : float | Time between samples, > 0, in the unit of time of A.
+process_intensity : (n, n) array or float, optional | Spectral density of the noise, state^2 per time; a
+  number is times the identity. The model then has its process_covariance.
+process_bound : float, optional | Of the noise from sample to sample, as in Model.
+measurement_bound, measurement_covariance, states, outputs, sources, units, exposed : optional | As in
+  Model.
+B : (n, p) array, optional | What known inputs u do to dx/dt.
+inputs : p names, optional | One per column of B.
+< Model | From sample to sample.
+! InvalidInput | As Model, or a period that is not > 0.)")
+              .c_str())
+      .def_property_readonly("A", &Model::A, "(n, n), of the plant.")
       .def_property_readonly("C", &matrices, "One (m_i, n) array per agent.")
       .def_property_readonly("B", &Model::B, "(n, p); no columns where there are no known inputs.")
-      .def_property_readonly("inputs", &Model::inputs, "p")
+      .def_property_readonly("inputs", &Model::inputs, "p, how many known inputs.")
       .def_property_readonly(
           "input_names", [](const Model& x) { return x.labels().inputs; },
           "One name per known input; empty where none were given.")
-      .def_property_readonly("states", &Model::states, "n")
-      .def_property_readonly("agents", &Model::agents, "N")
+      .def_property_readonly("states", &Model::states, "n, how many states.")
+      .def_property_readonly("agents", &Model::agents, "N, how many agents.")
       .def_property_readonly("outputs", &Model::total_outputs,
                              "Scalar measurements per sample of the whole network.")
       .def_property_readonly("state_names", &Model::state_names, "n names; x1, x2, .. where none were given.")

@@ -36,26 +36,78 @@ int index_of(const Network& network, const py::object& agent) {
 
 template <class Class>
 void bind_generators(Class& network) {
-  network.def_static("ring", &Network::ring, py::arg("agents"), "i hears i - 1 and i + 1, around.")
-      .def_static("path", &Network::path, py::arg("agents"), "i hears i - 1 and i + 1, from end to end.")
+  network
+      .def_static("ring", &Network::ring, py::arg("agents"),
+                  numpydoc(R"(i hears i - 1 and i + 1, around.
+
+agents : int | How many, N >= 1.
+< Network
+! InvalidInput | No agent, or more than memory holds.)")
+                      .c_str())
+      .def_static("path", &Network::path, py::arg("agents"),
+                  numpydoc(R"(i hears i - 1 and i + 1, from end to end.
+
+agents : int | How many, N >= 1.
+< Network
+! InvalidInput | No agent, or more than memory holds.)")
+                      .c_str())
       .def_static("band", &Network::band, py::arg("agents"), py::arg("range"),
-                  "i and j hear each other when |i - j| <= range.")
+                  numpydoc(R"(i and j hear each other when |i - j| <= range.
+
+agents : int | How many, N >= 1.
+range : int | How many places away an agent hears, >= 1.
+< Network
+! InvalidInput | A number out of range, or more edges than memory holds.)")
+                      .c_str())
       .def_static("star", &Network::star, py::arg("agents"),
-                  "Agent 0 and each of the others hear each other.")
-      .def_static("complete", &Network::complete, py::arg("agents"), "Everybody hears everybody.")
-      .def_static("grid", &Network::grid, py::arg("rows"), py::arg("columns"),
-                  "rows x columns agents, row by row; neighbours in a row or column hear each other.")
+                  numpydoc(R"(Agent 0 and each of the others hear each other.
+
+agents : int | How many, N >= 1.
+< Network
+! InvalidInput | No agent, or more than memory holds.)")
+                      .c_str())
+      .def_static("complete", &Network::complete, py::arg("agents"),
+                  numpydoc(R"(Everybody hears everybody.
+
+agents : int | How many, N >= 1.
+< Network
+! InvalidInput | No agent, or more edges than memory holds.)")
+                      .c_str())
+      .def_static(
+          "grid", &Network::grid, py::arg("rows"), py::arg("columns"),
+          numpydoc(R"(rows x columns agents, row by row; neighbours in a row or column hear each other.
+
+rows : int | How many, >= 1.
+columns : int | How many, >= 1.
+< Network
+! InvalidInput | A number out of range, or more agents than memory holds.)")
+              .c_str())
       .def_static(
           "random_geometric",
           [](int agents, double radius, std::uint64_t seed) {
             return Network::random_geometric(agents, radius, seed);
           },
           py::arg("agents"), py::arg("radius"), py::arg("seed") = 0,
-          "Points uniform in the unit square, edges below `radius`; it need not be connected (see "
-          "`connected`).")
-      .def_static("erdos_renyi", &Network::erdos_renyi, py::arg("agents"), py::arg("probability"),
-                  py::arg("seed") = 0,
-                  "Every pair is a link with this probability; it need not be connected (see `connected`).");
+          numpydoc(
+              R"(Points uniform in the unit square, edges below `radius`; it need not be connected (see `connected`).
+
+agents : int | How many, N >= 1.
+radius : float | Agents closer than this hear each other, > 0; the square has sides of 1.
+seed : int | Of the positions, >= 0; equal seeds give equal networks.
+< Network
+! InvalidInput | A number out of range.)")
+              .c_str())
+      .def_static(
+          "erdos_renyi", &Network::erdos_renyi, py::arg("agents"), py::arg("probability"),
+          py::arg("seed") = 0,
+          numpydoc(R"(Every pair is a link with this probability; it need not be connected (see `connected`).
+
+agents : int | How many, N >= 1.
+probability : float | Of each link, 0..1.
+seed : int | >= 0; equal seeds give equal networks.
+< Network
+! InvalidInput | A number out of range.)")
+              .c_str());
 }
 
 template <class Class>
@@ -70,7 +122,13 @@ void bind_matrices(Class& network) {
           "(lambda_2, lambda_max) of the Laplacian; undirected networks only.")
       .def("laplacian", &Network::laplacian,
            "(N, N): how many an agent hears on the diagonal, -1 for each of them.")
-      .def("laplacian_weights", &Network::laplacian_weights, py::arg("step"), "I - step * Laplacian")
+      .def("laplacian_weights", &Network::laplacian_weights, py::arg("step"),
+           numpydoc(R"(I - step * Laplacian
+
+step : float | What an agent takes of each difference to a neighbour, > 0.
+< (N, N) array | Weights; rows sum to 1.
+! InvalidInput | A step that is not finite and > 0.)")
+               .c_str())
       .def("metropolis_weights", &Network::metropolis_weights,
            "Doubly stochastic (N, N) weights; undirected only.")
       .def("max_degree_weights", &Network::max_degree_weights, "I - Laplacian / (1 + largest degree)");
@@ -110,11 +168,16 @@ InvalidInput
                                             names.is_none() ? Names() : convert::names("names", names));
           },
           py::arg("matrix"), py::arg("directed") = false, py::arg("names") = py::none(),
-          "From a square matrix of zeros and ones, dense or sparse: entry (i, j) says that i hears j. "
-          "Explicit\n"
-          "zeros are no links; the diagonal is ignored. Names of a DataFrame's columns become the agents'.\n"
-          "Raises InvalidInput when it is not square, not symmetric (unless directed) or holds another "
-          "number.")
+          numpydoc(
+              R"(From a square matrix of zeros and ones. Explicit zeros are no links; the diagonal is ignored.
+
+matrix : (N, N) array, sparse matrix or DataFrame | Entry (i, j) says that i hears j. Names of a DataFrame's
+  columns become the agents'.
+directed : bool | Entries are one way; else the matrix is symmetric.
+names : names, optional | One per agent.
+< Network
+! InvalidInput | Not square, not symmetric (unless directed), or another number.)")
+              .c_str())
       .def_property_readonly("agents", &Network::agents, "How many, N.")
       .def_property_readonly("names", &Network::names, "One per agent; empty where none were given.")
       .def_property_readonly("directed", &Network::directed, "Whether a pair of edges is one way.")
@@ -122,14 +185,26 @@ InvalidInput
                              "Each link once: (smaller, larger) number, or (sender, receiver) when directed.")
       .def_property_readonly("connected", &Network::connected,
                              "Everybody can reach everybody (directed: along the links).")
-      .def("index", &index_of, py::arg("agent"), "The number of the agent with this name (or number).")
+      .def("index", &index_of, py::arg("agent"),
+           numpydoc(R"(The number of the agent with this name (or number).
+
+agent : str or int | A name of the network, or a number 0..N-1.
+< int | 0..N-1.
+! InvalidInput | There is no such agent.)")
+               .c_str())
       .def(
           "neighbours",
           [](const Network& net, const py::object& agent) {
             const auto heard = net.neighbours(index_of(net, agent));
             return std::vector<int>(heard.begin(), heard.end());
           },
-          py::arg("agent"), "Sorted ids of the agents that `agent` (a number or name) hears.")
+          py::arg("agent"),
+          numpydoc(R"(The agents that one agent hears.
+
+agent : str or int | A name of the network, or a number 0..N-1.
+< list of int | Sorted.
+! InvalidInput | There is no such agent.)")
+              .c_str())
       .def("__repr__", [](const Network& net) { return as_code("garrison.Network", arguments(net)); })
       .def("__str__", [](const Network& net) {
         return std::string(net.directed() ? "Directed network" : "Network") + " of " +

@@ -17,10 +17,21 @@ namespace {
 py::tuple pair(const Interval& i) { return py::make_tuple(i.lo, i.hi); }
 
 void bind_setting(py::module_& p) {
-  py::class_<Setting> setting(
-      p, "Setting",
-      "What Assumptions 1 and 2 and the observer's tuning say: N vehicles, range L, period T,\n"
-      "b attacked sensors, noise bounds eps and mu, initial error q, threshold beta.");
+  py::class_<Setting> setting(p, "Setting",
+                              numpydoc(R"(What Assumptions 1 and 2 and the observer's tuning say.
+
+vehicles : int | N >= 2 L + 1, at least 3.
+range : int | L >= 1: vehicles hear those at most L places away.
+period : float | T > 0, s.
+attacked : int | b, most absolute sensors attacked, 1..L.
+eps : float | Bound on the process noise (m and m/s), >= 0.
+mu : float | Bound on the measurement noise (m and m/s), >= 0.
+q : float | Bound on the initial error (m and m/s), > 0.
+varpi : float | 1/varpi is the gain of vehicles outside V_1; in (1, ||A||/(||A|| - 1)).
+beta : float | Static threshold, or beta_{i,0} of (25), > 0.
+adaptive : bool | Threshold of (25); False: beta throughout.
+! InvalidInput | A number out of range.)")
+                                  .c_str());
   setting
       .def(py::init([](int vehicles, int range, double period, int attacked, double eps, double mu, double q,
                        double varpi, double beta, bool adaptive) {
@@ -67,24 +78,81 @@ Known known(const Setting& s, int free_in_reach, int proved, int distance) {
 }
 
 void bind_theorems(py::module_& p) {
-  bind_of_omega<&beta1_bar>(p, "beta1_bar", "(20); omega > 0.");
-  bind_of_omega<&beta2_bar>(p, "beta2_bar", "(20); omega > 0.");
-  bind_of_omega<&proposition2>(p, "proposition2", "(23); omega > 0.");
-  bind_of_omega<&f3>(p, "f3", "(24); omega > 0.");
-  bind_of_omega<&f4>(p, "f4", "(24); omega > 0.");
+  bind_of_omega<&beta1_bar>(p, "beta1_bar",
+                            numpydoc(R"(Least threshold of (20).
+
+setting : Setting | All but beta.
+omega : float | > 0; the theorems take it below 1.
+< float
+! InvalidInput | omega is not > 0.)")
+                                .c_str());
+  bind_of_omega<&beta2_bar>(p, "beta2_bar",
+                            numpydoc(R"(Largest threshold of (20).
+
+setting : Setting | All but beta.
+omega : float | > 0; the theorems take it below 1.
+< float
+! InvalidInput | omega is not > 0.)")
+                                .c_str());
+  bind_of_omega<&proposition2>(
+      p, "proposition2",
+      numpydoc(R"(Whether (23) holds: equivalent to 0 < beta1_bar < beta2_bar (docs/filters/platoon.md#e6).
+
+setting : Setting | All but beta.
+omega : float | > 0; the theorems take it below 1.
+< bool
+! InvalidInput | omega is not > 0.)")
+          .c_str());
+  bind_of_omega<&f3>(p, "f3",
+                     numpydoc(R"(f_3 of (24).
+
+setting : Setting | All of it.
+omega : float | > 0; the theorems take it below 1.
+< float
+! InvalidInput | omega is not > 0.)")
+                         .c_str());
+  bind_of_omega<&f4>(p, "f4",
+                     numpydoc(R"(f_4 of (24).
+
+setting : Setting | All of it.
+omega : float | > 0; the theorems take it below 1.
+< float
+! InvalidInput | omega is not > 0.)")
+                         .c_str());
   p.def(
       "omega_interval", [](const Setting& s) { return pair(omega_interval(s)); }, py::arg("setting"),
-      "All omega with 0 < beta1_bar < beta2_bar; (nan, nan) when there is none.");
+      numpydoc(R"(All omega with 0 < beta1_bar < beta2_bar.
+
+setting : Setting | All but beta.
+< (float, float) | An open interval; nan when there is none.)")
+          .c_str());
   p.def(
       "beta_interval", [](const Setting& s) { return pair(beta_interval(s)); }, py::arg("setting"),
-      "All thresholds that Theorem 1 admits for some omega.");
+      numpydoc(R"(All thresholds that Theorem 1 admits for some omega.
+
+setting : Setting | All but beta.
+< (float, float) | nan when there is none.)")
+          .c_str());
   p.def(
       "beta_interval_safe", [](const Setting& s) { return pair(beta_interval_safe(s)); }, py::arg("setting"),
-      "All thresholds with which the bound that holds contracts.");
+      numpydoc(R"(All thresholds with which the bound that holds contracts.
+
+setting : Setting | All but beta.
+< (float, float) | nan when there is none.)")
+          .c_str());
   p.def("safe_limit", &safe_limit, py::arg("setting"),
-        "Limit of the bound that holds, nobody identified; nan when it grows for ever.");
+        numpydoc(R"(Limit of the bound that holds, nobody identified.
+
+setting : Setting | All of it.
+< float | On the error of every vehicle (m and m/s); nan when it grows for ever.)")
+            .c_str());
   p.def("best_threshold", &best_threshold, py::arg("setting"),
-        "Threshold with the least such limit under the adaptive rule. Raises DesignInfeasible.");
+        numpydoc(R"(Threshold of beta_interval_safe with the least safe_limit under the adaptive rule.
+
+setting : Setting | All but beta.
+< float
+! DesignInfeasible | There is none.)")
+            .c_str());
   p.def(
       "theorem1",
       [](const Setting& s, int free_in_reach, int proved, int distance) {
@@ -94,7 +162,16 @@ void bind_theorems(py::module_& p) {
                         py::arg("alpha3") = b.alpha3);
       },
       py::arg("setting"), py::kw_only(), py::arg("free_in_reach") = 0, py::arg("proved") = 0,
-      py::arg("distance") = 1, "(21), (22) as printed.");
+      py::arg("distance") = 1,
+      numpydoc(R"(Theorem 1, (21) and (22) as printed; safe_limit is the bound that holds.
+
+setting : Setting | All of it.
+free_in_reach : int | |S_{i,1}|, sensors in reach known to be free, 0..2 L.
+proved : int | |S^a_i|, sensors proved to be attacked, 0..b.
+distance : int | |j_i - i|, places to the next vehicle of V_1, 1..N.
+< dict | k_star, Q, m, and alpha1, alpha2, alpha3: asymptotic bounds (m and m/s).
+! InvalidInput | A number out of range.)")
+          .c_str());
   p.def(
       "theorem2",
       [](const Setting& s, int free_in_reach, int proved, int distance) {
@@ -104,15 +181,39 @@ void bind_theorems(py::module_& p) {
                         py::arg("alpha3") = b.alpha3);
       },
       py::arg("setting"), py::kw_only(), py::arg("free_in_reach") = 0, py::arg("proved") = 0,
-      py::arg("distance") = 1, "(26), with 2L+1-b in h1.");
+      py::arg("distance") = 1,
+      numpydoc(R"(Theorem 2, (26), with 2L + 1 - b in h1, as (D.2) has it.
+
+setting : Setting | All of it.
+free_in_reach : int | |S_{i,1}|, sensors in reach known to be free, 0..2 L.
+proved : int | |S^a_i|, sensors proved to be attacked, 0..b.
+distance : int | |j_i - i|, places to the next vehicle of V_1, 1..N.
+< dict | k0, h1, h2, and alpha1, alpha2, alpha3: asymptotic bounds (m and m/s).
+! InvalidInput | A number out of range.)")
+          .c_str());
 }
 
 void bind_loop(py::module_& p) {
-  p.def("grounded_eigenvalues", &grounded_eigenvalues, py::arg("vehicles"), "Of L_g, upwards.");
-  p.def("assumption4", &assumption4, py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"),
-        "Assumption 4: gv > T gs > 0 and T^2 gs - 2 T gv > -4/sigma_max(L_g); the string's own loop is "
-        "stable exactly then.\n"
-        "Raises InvalidInput.");
+  p.def("grounded_eigenvalues", &grounded_eigenvalues, py::arg("vehicles"),
+        numpydoc(R"(Eigenvalues of the grounded Laplacian L_g.
+
+vehicles : int | N >= 1.
+< list of N float | Upwards.
+! InvalidInput | vehicles < 1.)")
+            .c_str());
+  p.def(
+      "assumption4", &assumption4, py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"),
+      numpydoc(
+          R"(Assumption 4: gv > T gs > 0 and T^2 gs - 2 T gv > -4/sigma_max(L_g); the string's own loop is stable exactly
+then.
+
+vehicles : int | N >= 1.
+period : float | T > 0, s.
+gs : float | Gain on positions, 1/s^2.
+gv : float | Gain on velocities, 1/s.
+< bool
+! InvalidInput | A number out of range, or not finite.)")
+          .c_str());
   p.def(
       "loop_factors",
       [](int vehicles, double period, double gs, double gv) {
@@ -121,7 +222,16 @@ void bind_loop(py::module_& p) {
                         py::arg("kappa") = f.kappa, py::arg("xi") = f.xi, py::arg("l1") = f.l1);
       },
       py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"),
-      "Factors of Lemma 2 for P_0 of (31) by 2 x 2 blocks; all but rho nan when P_0 is not Schur.");
+      numpydoc(R"(Factors of Lemma 2 for P_0 of (31), by 2 x 2 blocks.
+
+vehicles : int | N >= 1.
+period : float | T > 0, s.
+gs : float | Gain on positions, 1/s^2.
+gv : float | Gain on velocities, 1/s.
+< dict | rho (spectral radius of P_0), M_max, M_min, kappa, xi as printed, and l1, the sharper factor; all
+  but rho nan when P_0 is not Schur.
+! InvalidInput | A number out of range, or not finite.)")
+          .c_str());
   p.def(
       "theorem4",
       [](int vehicles, double period, double gs, double gv, double eps, double alpha) {
@@ -131,7 +241,18 @@ void bind_loop(py::module_& p) {
                         py::arg("spacing") = b.spacing);
       },
       py::arg("vehicles"), py::arg("period"), py::arg("gs"), py::arg("gv"), py::arg("eps"), py::arg("alpha"),
-      "Limsup of (4): as printed, with the corrected (31), and with the sharper factor.");
+      numpydoc(R"(Limsup of phi (4), the mean deviation from the formation.
+
+vehicles : int | N >= 1.
+period : float | T > 0, s.
+gs : float | Gain on positions, 1/s^2.
+gv : float | Gain on velocities, 1/s.
+eps : float | Bound on the process noise (m and m/s), >= 0.
+alpha : float | Limsup of every vehicle's estimation error, >= 0.
+< dict | eta and bound as printed; eta_safe and bound_safe with the corrected (31)
+  (docs/filters/platoon.md#e5); bound_sharp with the sharper factor; spacing, of |gap - desired gap| (m).
+! InvalidInput | A number out of range, or not finite.)")
+          .c_str());
 }
 
 void require_vehicle(int vehicle, int vehicles) {
@@ -147,16 +268,36 @@ void bind_pieces(py::module_& p) {
         require_range("range", range, 1.0);
         return in_V1(vehicle, vehicles, range);
       },
-      py::arg("vehicle"), py::arg("vehicles"), py::arg("range"), "(5): hears 2L others.");
+      py::arg("vehicle"), py::arg("vehicles"), py::arg("range"),
+      numpydoc(R"((5): whether a vehicle hears 2 L others.
+
+vehicle : int | 0..N-1.
+vehicles : int | N >= 1.
+range : int | L >= 1.
+< bool
+! InvalidInput | A number out of range.)")
+          .c_str());
   p.def("nearest", &nearest, py::arg("vehicle"), py::arg("vehicles"),
-        "(30): the next ones; -1 stands for the reference, on both sides.");
+        numpydoc(R"((30): the vehicles next to one; -1 stands for the reference, on both sides.
+
+vehicle : int | -1 (the reference)..N-1.
+vehicles : int | N >= 1.
+< list of int
+! InvalidInput | A number out of range.)")
+            .c_str());
   p.def(
       "runs",
       [](std::vector<int> labels) {
         std::sort(labels.begin(), labels.end());
         return py::make_tuple(runs(labels), count_runs(labels));
       },
-      py::arg("labels"), "Maximal runs of successive labels, and the left side of (29).");
+      py::arg("labels"),
+      numpydoc(
+          R"(Maximal runs of successive labels, and the left side of (29): at least how many attacked sensors they take.
+
+labels : sequence of int | In any order.
+< (list of lists of int, int))")
+          .c_str());
   p.def(
       "gain",
       [](double beta, double eta_s, double eta_v, bool attacked, bool free) {
@@ -166,7 +307,16 @@ void bind_pieces(py::module_& p) {
         return gain(beta, length(eta_s, eta_v), attacked, free);
       },
       py::arg("beta"), py::arg("eta_s"), py::arg("eta_v"), py::kw_only(), py::arg("attacked") = false,
-      py::arg("free") = false, "(14) of one innovation.");
+      py::arg("free") = false,
+      numpydoc(R"((14): what is used of one innovation.
+
+beta : float | Threshold, > 0; may be inf.
+eta_s, eta_v : float | The innovation: position (m) and velocity (m/s), finite.
+attacked : bool | The sensor is proved to be attacked: 0.
+free : bool | It is known to be free: 1.
+< float | 0..1.
+! InvalidInput | A number out of range.)")
+          .c_str());
   p.def(
       "best_source",
       [](int vehicle, int vehicles, int range, const std::vector<int>& free, bool by_bound,
@@ -186,7 +336,18 @@ void bind_pieces(py::module_& p) {
         return best.id();
       },
       py::arg("vehicle"), py::arg("vehicles"), py::arg("range"), py::arg("free"), py::kw_only(),
-      py::arg("by_bound"), py::arg("alpha"), "j_i of (13); -1 when there is none.");
+      py::arg("by_bound"), py::arg("alpha"),
+      numpydoc(R"(j_i of (13): the vehicle from which one without enough sensors in reach takes its estimate.
+
+vehicle : int | 0..N-1.
+vehicles : int | N.
+range : int | L >= 1.
+free : sequence of int | Vehicles whose sensors are known to be free.
+by_bound : bool | Of two that are equally near take the one with the smaller alpha, else the lower one.
+alpha : (N,) floats | Bound on the error of every vehicle.
+< int | -1 when there is none.
+! InvalidInput | A number out of range.)")
+          .c_str());
 }
 
 }  // namespace
@@ -194,13 +355,19 @@ void bind_pieces(py::module_& p) {
 void bind_platoon(py::module_& m) {
   py::module_ p = m.def_submodule(
       "platoon", "Vehicles in a string: model and analysis. Ids 0..N-1 are the paper's 1..N.");
-  p.def("model", &model, py::arg("vehicles"), py::arg("period"), py::arg("inputs") = false,
-        "Model of N vehicles (position m, velocity m/s) sampled every `period` s. Outputs per vehicle: "
-        "absolute\n"
-        "position and velocity (attackable); relative ones to the vehicle ahead (secured, not of vehicle 0); "
-        "with\n"
-        "`inputs`, for recorded data, the input applied from this sample on (nan = what the filter "
-        "commanded).");
+  p.def(
+      "model", &model, py::arg("vehicles"), py::arg("period"), py::arg("inputs") = false,
+      numpydoc(
+          R"(Model of vehicles in a string. Outputs per vehicle: absolute position (m) and velocity (m/s), which can be
+attacked; the same relative to the vehicle ahead, which cannot (not of vehicle 0).
+
+vehicles : int | N >= 3.
+period : float | Between samples, s, > 0.
+inputs : bool | One output more, for recorded data: the input applied from this sample on (nan = what the
+  filter commanded).
+< Model
+! InvalidInput | A number out of range.)")
+          .c_str());
   p.attr("DISTURBANCES") = kDisturbances;
   bind_setting(p);
   bind_theorems(p);

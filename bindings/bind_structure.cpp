@@ -96,15 +96,20 @@ py::dict arguments(const Pattern& pattern) {
 
 void bind_pattern(py::module_& s) {
   py::class_<Pattern> pattern(s, "Pattern",
-                              "Zero pattern of a matrix: which entries are not zero. Immutable.");
+                              numpydoc(R"(Zero pattern of a matrix: which entries are not zero. Immutable.
+
+rows, columns : int | >= 0.
+entries : sequence of (column, row) pairs | Which are not zero; of a system matrix, (j, i) is the link j ->
+  i.
+! InvalidInput | An index out of range, or more than memory holds.)")
+                                  .c_str());
   pattern
       .def(py::init([](int rows, int columns, const Edges& entries) {
              require_memory("rows x columns", std::to_string(rows) + " x " + std::to_string(columns),
                             4.0 * (static_cast<double>(rows) + columns));
              return Pattern(rows, columns, entries);
            }),
-           py::arg("rows"), py::arg("columns"), py::arg("entries"),
-           "entries: (column, row) pairs; of a system matrix, (j, i) is the link j -> i.")
+           py::arg("rows"), py::arg("columns"), py::arg("entries"))
       .def_static(
           "of",
           [](const MatrixRef& matrix, double tolerance) {
@@ -112,7 +117,13 @@ void bind_pattern(py::module_& s) {
             return Pattern::of(matrix, tolerance);
           },
           py::arg("matrix"), py::arg("tolerance") = 0.0,
-          "Entries with |value| > tolerance of a dense matrix.")
+          numpydoc(R"(The pattern of a dense matrix.
+
+matrix : (m, n) array | Finite.
+tolerance : float | Entries with |value| > tolerance are not zero; >= 0.
+< Pattern
+! InvalidInput | A number that is not finite, or tolerance < 0.)")
+              .c_str())
       .def_static(
           "csc",
           [](int rows, const Ints& indptr, const Ints& indices) {
@@ -120,7 +131,14 @@ void bind_pattern(py::module_& s) {
                            std::vector<int>(indices.data(), indices.data() + indices.size()));
           },
           py::arg("rows"), py::arg("indptr"), py::arg("indices"),
-          "Compressed columns (scipy.sparse.csc_array's indptr and indices), without doubles.")
+          numpydoc(R"(From compressed columns, as scipy.sparse.csc_array has them, without its numbers.
+
+rows : int | >= 0.
+indptr : (columns + 1,) int array | Where each column begins.
+indices : int array | Row of every entry, column by column.
+< Pattern
+! InvalidInput | Arrays that do not fit.)")
+              .c_str())
       .def_property_readonly("rows", &Pattern::rows, "How many.")
       .def_property_readonly("columns", &Pattern::columns, "How many.")
       .def_property_readonly("entries", &Pattern::entries, "How many may be other than zero.")
@@ -135,7 +153,12 @@ void bind_pattern(py::module_& s) {
         }();
         return py::make_tuple(m.size, numbers(m.row_of), numbers(m.column_of));
       },
-      py::arg("pattern"), "(size, row of each column, column of each row); -1 = unmatched.");
+      py::arg("pattern"),
+      numpydoc(R"(The largest set of entries of which no two share a row or column.
+
+pattern : Pattern | Of a matrix (m, n).
+< (int, (n,) int array, (m,) int array) | Size, row of each column, column of each row; -1 = unmatched.)")
+          .c_str());
   s.def(
       "strong_components",
       [](const Pattern& p) {
@@ -145,7 +168,13 @@ void bind_pattern(py::module_& s) {
         }();
         return py::make_tuple(c.count, numbers(std::move(c.of)));
       },
-      py::arg("pattern"), "(count, component of each vertex) of the digraph with links column -> row.");
+      py::arg("pattern"),
+      numpydoc(R"(Strong components of the digraph with links column -> row.
+
+pattern : Pattern | Of a square matrix (n, n).
+< (int, (n,) int array) | How many, and the component of each vertex.
+! InvalidInput | Not square.)")
+          .c_str());
   s.def(
       "dulmage_mendelsohn",
       [](const Pattern& p) {
@@ -163,16 +192,26 @@ void bind_pattern(py::module_& s) {
                         py::arg("block_start") = numbers(std::move(d.block_start)));
       },
       py::arg("pattern"),
-      "Dulmage-Mendelsohn: coarse parts (hor: more columns than rows, sq: matched, ver: more rows than\n"
-      "columns) and the square part in fine blocks; block b holds sq_rows and sq_cols [block_start[b],\n"
-      "block_start[b+1]).");
+      numpydoc(
+          R"(Dulmage-Mendelsohn decomposition: coarse parts (hor: more columns than rows, sq: matched, ver: more rows
+than columns), and the square part in fine blocks.
+
+pattern : Pattern | Of any matrix.
+< dict | structural_rank; int arrays hor_rows, hor_cols, sq_rows, sq_cols, ver_rows, ver_cols; block_start:
+  block b holds sq_rows and sq_cols [block_start[b], block_start[b+1]).)")
+          .c_str());
 }
 
 void bind_system(py::module_& s) {
   py::class_<System> system(
       s, "System",
-      "Structure of a system matrix, worked out once. `measured`: per agent the state that it\n"
-      "measures, a list of states, or None. States from 0; a pattern entry (j, i) is j -> i.");
+      numpydoc(
+          R"(Structure of a system matrix, worked out once. States are numbered from 0; a pattern entry (j, i) is the
+link j -> i. Methods take `measured`: per agent the state that it measures, a list of states, or None.
+
+pattern : Pattern | Square.
+! InvalidInput | Not square.)")
+          .c_str());
   keep_as_code<System>(system, "garrison.structure.System",
                        [](const System& x) { return py::dict(py::arg("pattern") = x.pattern()); });
   system.def(py::init<Pattern>(), py::arg("pattern"))
@@ -208,7 +247,13 @@ void bind_system(py::module_& s) {
               refuse("state", std::to_string(state), "a state of the system");
             return x.in_contraction(state);
           },
-          py::arg("state"), "Whether the state is in some contraction: a set of more columns than rows.")
+          py::arg("state"),
+          numpydoc(R"(Whether the state is in some contraction: a set of more columns than rows.
+
+state : int | 0..n-1.
+< bool
+! InvalidInput | There is no such state.)")
+              .c_str())
       .def(
           "in_parent",
           [](const System& x, int state) {
@@ -216,32 +261,68 @@ void bind_system(py::module_& s) {
               refuse("state", std::to_string(state), "a state of the system");
             return x.in_parent(state);
           },
-          py::arg("state"), "Whether the state is in a strong component that no link leaves.")
+          py::arg("state"),
+          numpydoc(R"(Whether the state is in a strong component that no link leaves.
+
+state : int | 0..n-1.
+< bool
+! InvalidInput | There is no such state.)")
+              .c_str())
       .def(
           "observability",
           [](const System& x, const py::iterable& m) {
             return from_observability(x.observability(sensors_from(m)));
           },
-          py::arg("measured"), "Structural observability and its two conditions.")
+          py::arg("measured"),
+          numpydoc(R"(Structural observability and its two conditions.
+
+measured : sequence of int, list of int or None | What each agent measures.
+< dict | observable, output_connected, rank_condition: bools.
+! InvalidInput | There is no such state.)")
+              .c_str())
       .def(
           "classes",
           [](const System& x, const py::iterable& m) { return names_of(x.classes(sensors_from(m))); },
-          py::arg("measured"), "alpha, beta or gamma per agent.")
+          py::arg("measured"),
+          numpydoc(R"(Class of each agent, by what it measures (section II-B of the structural paper).
+
+measured : sequence of int, list of int or None | What each agent measures.
+< list of str | alpha (it measures a state of a contraction), beta (one of a parent component) or gamma
+  (neither), per agent.
+! InvalidInput | There is no such state.)")
+              .c_str())
       .def(
           "necessary",
           [](const System& x, const py::iterable& m) { return bools(x.necessary(sensors_from(m))); },
-          py::arg("measured"), "Structurally observable, but not without this one agent.")
+          py::arg("measured"),
+          numpydoc(R"(Which agents cannot be missed: structurally observable, but not without this one.
+
+measured : sequence of int, list of int or None | What each agent measures.
+< list of bool | Per agent.
+! InvalidInput | There is no such state.)")
+              .c_str())
       .def(
           "substitutes",
           [](const System& x, const py::iterable& m) { return x.substitutes(sensors_from(m)); },
-          py::arg("measured"), "Per agent, every state that it could measure instead.")
+          py::arg("measured"),
+          numpydoc(R"(What each agent could measure instead.
+
+measured : sequence of int, list of int or None | What each agent measures.
+< list of lists of int | States, per agent.
+! InvalidInput | There is no such state.)")
+              .c_str())
       .def(
           "contraction_of_measured",
           [](const System& x, const py::iterable& m) { return x.contraction_of_measured(sensors_from(m)); },
           py::arg("measured"),
-          "Measured state -> its contraction, sorted. Empty unless there are as many alpha agents, measuring "
-          "one state\n"
-          "each, as the structural rank lacks.")
+          numpydoc(
+              R"(The contraction of each measured state. Empty unless there are as many alpha agents, measuring one state
+each, as the structural rank lacks.
+
+measured : sequence of int, list of int or None | What each agent measures.
+< dict | Measured state -> states of its contraction, sorted.
+! InvalidInput | There is no such state.)")
+              .c_str())
       .def(
           "class_candidates",
           [](const System& x, const py::iterable& m, int agent, const std::string& type) {
@@ -250,7 +331,15 @@ void bind_system(py::module_& s) {
               refuse("agent", std::to_string(agent), "0.." + std::to_string(measured.size() - 1));
             return x.class_candidates(measured, static_cast<std::size_t>(agent), class_from(type));
           },
-          py::arg("measured"), py::arg("agent"), py::arg("type"), "Other states of the agent's class.")
+          py::arg("measured"), py::arg("agent"), py::arg("type"),
+          numpydoc(R"(Other states of an agent's class.
+
+measured : sequence of int or None | The one state that each agent measures.
+agent : int | Which agent, 0..
+type : str | "alpha", "beta" or "gamma".
+< list of int
+! InvalidInput | There is no such agent, state or class.)")
+              .c_str())
       .def(
           "mitigate",
           [](const System& x, const py::iterable& m, const std::vector<int>& alarms,
@@ -275,9 +364,17 @@ void bind_system(py::module_& s) {
           },
           py::arg("measured"), py::arg("alarms"), py::arg("types") = py::none(), py::arg("choice") = "exact",
           py::arg("cost") = py::none(),
-          "Algorithm 1: (new measured states, log of (agent, type, before, after)), one alarmed agent at a\n"
-          "time. choice: \"class\" as printed, or \"exact\", the cheapest state that keeps the system\n"
-          "structurally observable; cost is (agents, states), None: all alike.");
+          numpydoc(R"(Algorithm 1: alarmed agents measure another state, one after the other.
+
+measured : sequence of int or None | The one state that each agent measures.
+alarms : sequence of int | Alarmed agents.
+types : sequence of str, optional | Class of each agent; default: `classes`.
+choice : str | "class" as printed, or "exact", the cheapest state that keeps the system structurally
+  observable.
+cost : (agents, states) array, optional | Of measuring a state; default: all alike.
+< (list, list) | The new measured states, and (agent, type, before, after) of every change.
+! InvalidInput | There is no such agent, state or class, or a wrong size.)")
+              .c_str());
 }
 
 void bind_networks(py::module_& s) {
@@ -287,20 +384,40 @@ void bind_networks(py::module_& s) {
         return from_observability(distributed_observability(A, sensors_from(m), W, U));
       },
       py::arg("A"), py::arg("measured"), py::arg("W"), py::arg("U"),
-      "Structural observability of the pattern pair (W kron A, D_C).");
+      numpydoc(
+          R"(Structural observability of the pattern pair (W kron A, D_C): by every agent, from what it hears.
+
+A : Pattern | Of the system matrix, n states.
+measured : sequence of int, list of int or None | What each of the N agents measures.
+W : (N, N) array | Whose estimates agents mix: entries that are not 0.
+U : (N, N) array | Whose measurements agents get: entries that are not 0.
+< dict | observable, output_connected, rank_condition: bools.
+! InvalidInput | Shapes do not fit.)")
+          .c_str());
   s.def(
       "cheapest_per_class",
       [](const MatrixRef& cost, const std::vector<std::vector<int>>& classes) {
         return from_picks(cheapest_per_class(cost, classes));
       },
       py::arg("cost"), py::arg("classes"),
-      "Remark 9: {cost, picks (agent, state, class)} of one agent per class; None when there is none.");
+      numpydoc(R"(Remark 9: the cheapest agents, one per class of states.
+
+cost : (agents, states) array | Of measuring a state; inf = impossible.
+classes : sequence of sequences of int | States of each class.
+< dict or None | cost, and picks, (agent, state, class) tuples; None when there is no such choice.
+! InvalidInput | There is no such state, or a cost is negative or nan.)")
+          .c_str());
   s.def(
       "cheapest_rank_sensors",
       [](const Pattern& A, const MatrixRef& cost) { return from_picks(cheapest_rank_sensors(A, cost)); },
       py::arg("A"), py::arg("cost"),
-      "{cost, picks (agent, state)} of the cheapest sensors that restore the rank; None when there are "
-      "none.");
+      numpydoc(R"(The cheapest sensors that restore the structural rank.
+
+A : Pattern | Of the system matrix, n states.
+cost : (agents, n) array | Of measuring a state; inf = impossible.
+< dict or None | cost, and picks, (agent, state) pairs; None when there are none.
+! InvalidInput | A wrong size, or a cost is negative or nan.)")
+          .c_str());
   s.def(
       "cheapest_strong_subgraph",
       [](int agents, const Edges& edges, const std::vector<double>& weights, long long max_nodes) {
@@ -312,11 +429,26 @@ void bind_networks(py::module_& s) {
                         py::arg("exact") = found.exact);
       },
       py::arg("agents"), py::arg("edges"), py::arg("weights"), py::arg("max_nodes") = 2'000'000,
-      "Cheapest strongly connected network from (from, to) edges, weights >= 0. The problem is NP-hard:\n"
-      "exact says whether max_nodes choices sufficed for cost = lower_bound; nothing cheaper than\n"
-      "lower_bound exists.");
+      numpydoc(
+          R"(Cheapest strongly connected network from given links. The problem is NP-hard: nothing cheaper than
+lower_bound exists.
+
+agents : int | >= 1.
+edges : sequence of (from, to) pairs | Links that can be had.
+weights : sequence of float | Cost of each, >= 0.
+max_nodes : int | Choices that are looked at before the search ends, >= 1.
+< dict | exists; edges, cost; lower_bound; exact: whether max_nodes sufficed for cost = lower_bound.
+! InvalidInput | A number out of range, or sizes that differ.)")
+          .c_str());
   s.def("unseen_modes", &unseen_modes, py::arg("A"), py::arg("C"), py::arg("least") = 0.0,
-        "Eigenvalues of modulus >= least that the rows of C do not surely show; see visibility.");
+        numpydoc(R"(Eigenvalues of A that the rows of C do not surely show; see visibility.
+
+A : (n, n) array | Of the plant.
+C : (m, n) array | Rows; there may be none.
+least : float | Eigenvalues of smaller modulus are left out; >= 0.
+< list of complex
+! InvalidInput | Shapes do not fit, or a number is not finite.)")
+            .c_str());
   s.def(
       "visibility",
       [](const MatrixRef& A, const MatrixRef& C, double least) {
@@ -327,11 +459,21 @@ void bind_networks(py::module_& s) {
                         py::arg("unclear") = v.unclear, py::arg("text") = v.text());
       },
       py::arg("A"), py::arg("C"), py::arg("least") = 0.0,
-      "What the rows of C show of the modes of A of modulus >= least: \"seen\", \"unseen\" or \"unclear\", "
-      "with the\n"
-      "relative distance to the nearest pair with an unseen mode. Units and coordinates do not matter.");
+      numpydoc(R"(What the rows of C show of the modes of A. Units and coordinates do not matter.
+
+A : (n, n) array | Of the plant.
+C : (m, n) array | Rows; there may be none.
+least : float | Modes of smaller modulus are left out; >= 0.
+< dict | sight: "seen", "unseen" or "unclear"; distance, relative, to the nearest pair with an unseen mode,
+  and that mode in nearest; eigenvalues in unseen and unclear; text, all of it in words.
+! InvalidInput | Shapes do not fit, or a number is not finite.)")
+          .c_str());
   s.def("undetectable_agents", &undetectable_agents, py::arg("model"),
-        "Agents whose sensor alone can lie along an unstable mode that nobody else sees.");
+        numpydoc(R"(Agents whose sensor alone can lie along an unstable mode that nobody else sees.
+
+model : Model | Any.
+< list of int | Sorted.)")
+            .c_str());
 }
 
 }  // namespace

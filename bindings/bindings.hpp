@@ -12,6 +12,7 @@
 
 #include "garrison/attacks/registry.hpp"
 #include "garrison/engine/any_filter.hpp"
+#include "numpydoc.hpp"
 
 namespace py = pybind11;
 
@@ -53,6 +54,8 @@ py::dict changed_params(const garrison::ParamMap& params, const std::vector<garr
 /// scalar_gain -> ScalarGain: what Python calls a family or an attack.
 std::string class_name(std::string_view name);
 py::list from_infos(const std::vector<garrison::ParamInfo>& infos);
+/// A parameter as an item of `numpydoc`: type, unit and range.
+std::string described(const garrison::ParamInfo& info);
 
 /// The parameters of a filter that has to be of family F.
 template <class F>

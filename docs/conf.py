@@ -15,7 +15,7 @@ release = version = garrison.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_design"]
 myst_enable_extensions = ["colon_fence", "deflist"]
 myst_heading_anchors = 3
-exclude_patterns = ["generate", "generated/parameters_*.md", "generated/python_rest.md"]
+exclude_patterns = ["generate", "generated/parameters_*.md", "generated/import_*.md", "generated/python_rest.md"]
 autodoc_default_options = {"members": True, "undoc-members": True}
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"

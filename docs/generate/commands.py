@@ -23,10 +23,24 @@ def _commands(parser: argparse.ArgumentParser, depth: int) -> list[str]:
             text = helps[name]
             parts.append(f"{'#' * depth} {command.prog}\n\n{cell(text[:1].upper() + text[1:])}.\n")
             parts.append("```text\n" + command.format_usage().removeprefix("usage: ") + "```\n")
-            rows = [[_name(a), cell(_help(command, a))] for a in command._actions if _is_shown(a)]
-            parts.append(table(["argument", "meaning"], rows) if rows else "")
+            parts.append(_arguments(command))
             parts += _commands(command, depth + 1)
     return parts
+
+
+def _arguments(command: argparse.ArgumentParser) -> str:
+    rows = [[_name(a), cell(_help(command, a))] for a in command._actions if _is_shown(a)]
+    return table(["argument", "meaning"], rows) if rows else ""
+
+
+def imports() -> dict[str, str]:
+    """The arguments of every `garrison import KIND`, a table each, for the pages of the guides."""
+    return {name: _arguments(kind) for name, kind in _below(_below(cli._parser())["import"]).items()}
+
+
+def _below(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
+    group = next(a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
+    return dict(group.choices)
 
 
 def _is_shown(action: argparse.Action) -> bool:

@@ -19,6 +19,7 @@ def write(folder: Path) -> None:
         "benchmarks.md": benchmarks.page(),
         "python_rest.md": python_api.rest(),
         **{f"parameters_{name}.md": text for name, text in parameters.of_filters().items()},
+        **{f"import_{name}.md": text for name, text in commands.imports().items()},
     }
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")

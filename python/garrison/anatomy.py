@@ -109,7 +109,18 @@ def states_text(states: list[int], most: int = 12) -> str:
 
 
 def table_rows(report: dict[str, Any]) -> list[list[str]]:
-    """One row per agent: name, measures, class, necessary, substitutes, could drift unseen."""
+    """The agents of an analysis as rows for a table.
+
+    Parameters
+    ----------
+    report : dict
+        Of Anatomy.report().
+
+    Returns
+    -------
+    list of lists of str
+        Per agent: name, measures, class, necessary, substitutes, could drift unseen.
+    """
     return [
         [
             a["agent"],

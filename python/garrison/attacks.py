@@ -27,7 +27,26 @@ __all__ = ["ATTACKS", "Attack", "custom", "custom_message", "make", "worst_covar
 
 @hinted
 def make(name: str, agents: Iterable[int] | int | None = None, **arguments: Any) -> Attack:
-    """Make the attack `name` (as in a scenario file); see the module's text for the arguments."""
+    """Make the attack `name`, as in a scenario file.
+
+    Parameters
+    ----------
+    name : str
+        As in `garrison list attacks`, such as "bias".
+    agents : int or sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    **arguments
+        start, stop, schedule, probability, and the parameters of the attack.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        An unknown name or parameter, or a value out of range.
+    """
     names = [info["name"] for info in _core.attack_infos()]
     if not isinstance(name, str) or name not in names:
         return _core.make_attack(name, [(1, [0])])  # refuses, with the nearest name
@@ -87,12 +106,36 @@ def custom(
     schedule: Iterable[tuple[int, Iterable[int]]] | None = None,
     probability: float = 1.0,
 ) -> Attack:
-    """An attack on measurements by a function of your own: function(t, agent, y, rng) -> what the sensor says instead.
+    """An attack on measurements by a function of your own.
 
-    y: (outputs,) of this agent that can be attacked, nan = missing; return as many numbers (nan and inf are allowed).
-    rng: a numpy.random.Generator that depends on seed, trial, t and agent only. An object with __call__ is copied for
-    every trial, so it may remember. Runs are single-threaded with it. The rest as for every attack. What the function
-    raises comes back with its traceback and a note that names the agent and the sample.
+    Runs are single-threaded with it. What the function raises comes back with its traceback and a note that names the
+    agent and the sample.
+
+    Parameters
+    ----------
+    function : callable
+        function(t, agent, y, rng) -> what the sensor says instead. y: (outputs,) of this agent that can be attacked,
+        nan = missing; return as many numbers (nan and inf are allowed). rng: a numpy.random.Generator that depends on
+        seed, trial, t and agent only. An object with __call__ is copied for every trial, so it may remember.
+    agents : int or sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        No function with these arguments, a number out of range, or both or neither of agents and schedule.
     """
     return _custom("custom", function, ("t", "agent", "y", "rng"), agents, start, stop, schedule, probability)
 
@@ -107,12 +150,38 @@ def custom_message(
     schedule: Iterable[tuple[int, Iterable[int]]] | None = None,
     probability: float = 1.0,
 ) -> Attack:
-    """Lies in messages by a function of your own: function(t, round, sender, receiver, message, rng) -> message.
+    """Lies in messages by a function of your own.
 
-    message: dict of the fields that are sent (arrays, numbers, flags, lists of agents; where a certificate is asked for
-    also what is said for it, such as certificate.measurements); return the fields that change, or None to send nothing
-    to this receiver. rng: a numpy.random.Generator that depends on seed, trial, t, round, sender and receiver only. It
-    is called once per neighbour and round, and must not remember anything. The rest as in `custom`.
+    Runs are single-threaded with it. What the function raises comes back with its traceback and a note that names the
+    agent and the sample.
+
+    Parameters
+    ----------
+    function : callable
+        function(t, round, sender, receiver, message, rng) -> message, called once per neighbour and round; it must not
+        remember anything. message: dict of the fields that are sent (arrays, numbers, flags, lists of agents; where a
+        certificate is asked for also what is said for it, such as certificate.measurements); return the fields that
+        change, or None to send nothing to this receiver. rng: a numpy.random.Generator that depends on seed, trial, t,
+        round, sender and receiver only.
+    agents : int or sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        No function with these arguments, a number out of range, or both or neither of agents and schedule.
     """
     takes = ("t", "round", "sender", "receiver", "message", "rng")
     return _custom("custom_message", function, takes, agents, start, stop, schedule, probability)
@@ -130,11 +199,37 @@ def worst_covariance(
     start: int = 1,
     stop: int | None = None,
 ) -> _core.partial_sharing.WorstAttack:
-    """The coordinated Gaussian attack of `agents` that hurts a PartialSharing filter most, trace(covariance) <= energy.
+    """The coordinated Gaussian attack that hurts a PartialSharing filter most.
 
-    kind: "steady" maximises the network's MSE over a cycle of the periodic steady state; "one_step" the next step
-    alone, (37) of the paper. Attacks from sample `start` on, until `stop` (excluded). The result also has covariance,
-    form, direction and gain. Raises InvalidInput for another filter, a bad agent or energy, or an unstable filter.
+    Parameters
+    ----------
+    model : Model
+        With process_covariance and measurement_covariance.
+    network : Network
+        Of the same agents.
+    filter : Filter
+        A garrison.filters.PartialSharing.
+    agents : int or sequence of int
+        Attacked agents, at least one.
+    energy : float
+        Largest trace of the covariance of what they add, >= 0 [state^2].
+    kind : str
+        "steady" maximises the network's MSE over a cycle of the periodic steady state; "one_step" the next step alone,
+        (37) of the paper.
+    start : int
+        First sample that is attacked, >= 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+
+    Returns
+    -------
+    WorstAttack
+        An Attack that also has covariance, form, direction and gain.
+
+    Raises
+    ------
+    InvalidInput
+        Another filter, a bad agent or energy, or an unstable filter.
     """
     require_order("worst_covariance", model, network, filter)
     if filter.name != "partial_sharing":

@@ -81,7 +81,23 @@ class Fit(Result):
         return titled(about, of_model(self.model))
 
     def measurements(self, records: Records) -> Array:
-        """Measurements (samples, stations) of other records of the same stations and period, matched by name."""
+        """Measurements of other records of the same stations and period, matched by name.
+
+        Parameters
+        ----------
+        records : Records
+            As garrison.tables.read_records returns them.
+
+        Returns
+        -------
+        (samples, stations) array
+            In the units of the model; nan = missing.
+
+        Raises
+        ------
+        InvalidInput
+            Another period, or a station is missing.
+        """
         if not isinstance(records, Records):
             raise refusal("records", shown(records), "Records, as garrison.tables.read_records returns them")
         if abs(records.step - self.records.step) > 1e-6 * self.records.step:
@@ -90,20 +106,65 @@ class Fit(Result):
         return self.identified.measurements(same.values, same.first)
 
     def reference(self, records: Records) -> Array:
-        """What we call truth: the least-squares state (samples, n) of clean records of the same day."""
+        """What we call truth: the least-squares state of clean records at every sample.
+
+        Parameters
+        ----------
+        records : Records
+            Of the same stations and period.
+
+        Returns
+        -------
+        (samples, n) array
+            States; nan where too few stations have a record.
+
+        Raises
+        ------
+        InvalidInput
+            As measurements.
+        """
         return self.identified.reference_states(self.measurements(records))
 
     def robust_reference(self, records: Records) -> Array:
-        """The state (samples, n) with the least sum of absolute deviations: a median over the stations.
+        """The state with the least sum of absolute deviations: a median over the stations.
 
-        Unlike `reference` it is not pulled by a minority of stations that are wrong. nan where too few have a record.
+        Unlike `reference` it is not pulled by a minority of stations that are wrong.
+
+        Parameters
+        ----------
+        records : Records
+            Of the same stations and period.
+
+        Returns
+        -------
+        (samples, n) array
+            States; nan where too few stations have a record.
+
+        Raises
+        ------
+        InvalidInput
+            As measurements.
         """
         return _least_absolute(np.asarray(self.identified.C), self.measurements(records))
 
     def whiteness(self, lags: int = 10) -> Whiteness:
         """Whether what the model leaves over depends on its own past: Ljung-Box test of the residuals of the records.
 
-        lags: in 1..samples - 1. Where it does, a test over several samples alarms more often than asked: `calibrate`.
+        Where it does, a test over several samples alarms more often than asked: `calibrate`.
+
+        Parameters
+        ----------
+        lags : int
+            1..samples - 1.
+
+        Returns
+        -------
+        Whiteness
+
+        Raises
+        ------
+        InvalidInput
+            lags is out of range.
         """
         x = self.reference(self.records)
         v = self.measurements(self.records) - x @ np.asarray(self.identified.C).T
@@ -111,23 +172,66 @@ class Fit(Result):
         return Whiteness(self.records.stations, statistic, correlation, p_value, lags)
 
     def known(self, records: Records) -> Array | None:
-        """Known inputs (samples, p) among other records; None where the model has none."""
+        """Known inputs among other records.
+
+        Parameters
+        ----------
+        records : Records
+            Of the same stations and period.
+
+        Returns
+        -------
+        (samples, p) array or None
+            None where the model has none.
+        """
         return None
 
     def levels(self, attacked: int, failure: float) -> tuple[float, float] | None:
-        """(z1, z2) of the certificates that these records exceed at the rate `failure`, whatever their law.
+        """Levels of the certificates that these records exceed at a given rate, whatever their law.
 
-        Split conformal over all sets with at most `attacked` stations missing. None where they do not exist: several
-        states, rows that are not 1 or -1, or fewer than 2/failure - 1 complete records.
+        Split conformal over all sets with at most `attacked` stations missing.
+
+        Parameters
+        ----------
+        attacked : int
+            0..N-1.
+        failure : float
+            The rate, above 0 and below 1.
+
+        Returns
+        -------
+        (z1, z2) or None
+            In standard deviations. None where they do not exist: several states, rows that are not 1 or -1, or fewer
+            than 2/failure - 1 complete records.
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range.
         """
         most, rate = whole("attacked", attacked, 0, self.model.agents - 1), chance("failure", failure)
         return clean_levels(self.model, self.measurements(self.records), most, rate)
 
     def inflated(self, factor: float = INFLATION) -> tuple[list[float], float]:
-        """(measurement_bound, process_bound) times a factor: the largest noise of the records is not the largest ever.
+        """The noise bounds times a factor: the largest noise of the records is not the largest ever.
 
         On the wind data one station and day in 30 000 of the test years breaks a bound of the clean years, and none
         the one that is 1.1 times as large.
+
+        Parameters
+        ----------
+        factor : float
+            Any number; above 1 to be of use.
+
+        Returns
+        -------
+        (list of N float, float)
+            measurement_bound and process_bound.
+
+        Raises
+        ------
+        InvalidInput
+            No number.
         """
         by = number("factor", factor)
         return (by * np.asarray(self.model.measurement_bound)).tolist(), by * self.model.process_bound
@@ -135,7 +239,22 @@ class Fit(Result):
     def to_json(self, attacked: int | None = None, failure: float = FAILURE) -> str:
         """The model as text: everything a scenario or another program needs.
 
-        With `attacked`, also what deterministic and distribution-free certificates rest on: `levels` and `inflated`.
+        Parameters
+        ----------
+        attacked : int, optional
+            0..N-1: also write what deterministic and distribution-free certificates rest on, `levels` and `inflated`.
+        failure : float
+            Of `levels`, above 0 and below 1.
+
+        Returns
+        -------
+        str
+            JSON.
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range.
         """
         i = self.identified
         arrays: dict[str, Any] = {

@@ -114,9 +114,31 @@ def run_scenario(
 ) -> list[Row]:
     """Run every filter of the scenario under its attacks, and once more without them when there are any.
 
-    progress(label, done, total) is called at most once per percent of a run, working(label, seconds) about once a
-    second while a filter is designed. conditions: as in `simulate`. whole: keep all arrays of every run; else of the
-    first row alone, and of others what tables and pictures show, so that memory never holds two whole runs.
+    Parameters
+    ----------
+    scenario : Scenario
+        As read_scenario returns it.
+    progress : callable, optional
+        progress(label, done, total) is called at most once per percent of a run.
+    conditions : bool
+        As in `simulate`: refuse filters whose required conditions fail.
+    working : callable, optional
+        working(label, seconds) is called about once a second while a filter is designed.
+    whole : bool
+        Keep all arrays of every run; else of the first row alone, and of others what tables and pictures show, so that
+        memory never holds two whole runs.
+
+    Returns
+    -------
+    list of Row
+        One per filter, attacked and not: label, summary, run.
+
+    Raises
+    ------
+    InvalidInput
+        A required condition fails, or what the drivers refuse.
+    DesignInfeasible
+        A filter cannot be designed.
     """
     if conditions:
         require_conditions(scenario)

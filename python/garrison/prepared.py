@@ -20,6 +20,11 @@ class Prepared(metaclass=Hinting):
     The gains travel with it, so that every run and agent of it has the same bits, here and on another machine; nothing
     is designed again. Copies and pickles; equal to another one of an equal model, network and filter that certifies
     the same. One of a filter of your own has no design file.
+
+    Parameters
+    ----------
+    design : Design
+        Of the core; `prepare` gives it.
     """
 
     def __init__(self, design: _core.Design) -> None:
@@ -54,19 +59,79 @@ class Prepared(metaclass=Hinting):
         return check(self.model, self.network, self.filter, **(self.certificate or {}))
 
     def simulate(self, **arguments: Any) -> Run:
-        """`garrison.simulate` with this design: the same keyword arguments."""
+        """`garrison.simulate` with this design.
+
+        Parameters
+        ----------
+        **arguments
+            Keyword arguments of `garrison.simulate`, but for what the design has settled.
+
+        Returns
+        -------
+        Run
+
+        Raises
+        ------
+        InvalidInput
+            As garrison.simulate.
+        """
         return drivers.simulate(self.model, self.network, self.filter, **self._with_design(arguments))
 
     def replay(self, **arguments: Any) -> Run:
-        """`garrison.replay` with this design: the same keyword arguments."""
+        """`garrison.replay` with this design.
+
+        Parameters
+        ----------
+        **arguments
+            Keyword arguments of `garrison.replay`, but for what the design has settled.
+
+        Returns
+        -------
+        Run
+
+        Raises
+        ------
+        InvalidInput
+            As garrison.replay.
+        """
         return drivers.replay(self.model, self.network, self.filter, **self._with_design(arguments))
 
     def agent(self, id: int) -> _core.Agent:
-        """Agent `id` on its own. It holds what it needs of the gains, nothing of the others'."""
+        """One agent on its own. It holds what it needs of the gains, nothing of the others'.
+
+        Parameters
+        ----------
+        id : int
+            Which agent, 0..N-1.
+
+        Returns
+        -------
+        Agent
+
+        Raises
+        ------
+        InvalidInput
+            There is no such agent.
+        """
         return self._design.agent(self._agent(id))
 
     def part(self, id: int) -> bytes:
-        """What agent `id` needs of this design; see `garrison.Agent.from_part`."""
+        """What one agent needs of this design; see `garrison.Agent.from_part`.
+
+        Parameters
+        ----------
+        id : int
+            Which agent, 0..N-1.
+
+        Returns
+        -------
+        bytes
+
+        Raises
+        ------
+        InvalidInput
+            There is no such agent, or the filter is one of your own.
+        """
         return self._design.part(self._agent(id))
 
     def to_bytes(self) -> bytes:
@@ -75,16 +140,63 @@ class Prepared(metaclass=Hinting):
 
     @classmethod
     def from_bytes(cls, data: bytes) -> "Prepared":
-        """The design that to_bytes() wrote. Raises InvalidInput for anything else."""
+        """The design that to_bytes() wrote.
+
+        Parameters
+        ----------
+        data : bytes
+            All of it.
+
+        Returns
+        -------
+        Prepared
+
+        Raises
+        ------
+        InvalidInput
+            Anything else.
+        """
         return cls(_core.Design.from_bytes(data))
 
     def save(self, path: str | Path, agent: int | None = None) -> None:
-        """Write the design file (created, or replaced), or the part of one agent."""
+        """Write the design file (created, or replaced), or the part of one agent.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of the file.
+        agent : int, optional
+            Write the part of this agent alone, 0..N-1.
+
+        Raises
+        ------
+        InvalidInput
+            There is no such agent, or the filter is one of your own.
+        IoError
+            The file cannot be written.
+        """
         write("save", path, self.to_bytes() if agent is None else self.part(agent))
 
     @classmethod
     def load(cls, path: str | Path) -> "Prepared":
-        """The design in a file. Raises InvalidInput when it is damaged, of another version or no design."""
+        """The design in a file.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of a file that `save` wrote.
+
+        Returns
+        -------
+        Prepared
+
+        Raises
+        ------
+        InvalidInput
+            The file is damaged, of another version or no design.
+        IoError
+            The file cannot be read.
+        """
         data = read("load", path, "a file that `save` of a prepared filter wrote")
         try:
             return cls.from_bytes(data)

@@ -137,7 +137,25 @@ class Run(metaclass=Hinting):
         return found.shape[0], found.shape[1], found.shape[2]
 
     def limited(self, trial: int = 0, start: int = 1) -> Array:
-        """Share of the samples from `start` on at which each agent's measurement was suspected (clipped)."""
+        """Share of the samples at which each agent's measurement was suspected (clipped).
+
+        Parameters
+        ----------
+        trial : int
+            Which one, from 0.
+        start : int
+            First sample that counts, from 0.
+
+        Returns
+        -------
+        (N,) array
+            0..1.
+
+        Raises
+        ------
+        InvalidInput
+            There is no such trial or sample, or the run has no verdicts.
+        """
         if self.verdict is None:
             raise refusal("limited", "a run without verdicts", 'keep to contain "report"')
         first = whole("start", start, 0, self.verdict.shape[1] - 1)
@@ -145,7 +163,27 @@ class Run(metaclass=Hinting):
         return np.asarray(suspected.mean(axis=0), dtype=float)
 
     def why_no_bound(self, agent: int | str, time: int, trial: int = 0) -> str:
-        """Why an agent (by number or name) has no bound at a time, in a sentence; empty where it has one."""
+        """Why an agent has no bound at a time.
+
+        Parameters
+        ----------
+        agent : int or str
+            By number, 0..N-1, or name.
+        time : int
+            0 (the start) .. samples.
+        trial : int
+            Which one, from 0.
+
+        Returns
+        -------
+        str
+            A sentence; empty where there is a bound.
+
+        Raises
+        ------
+        InvalidInput
+            There is no such agent, time or trial, or the run has no bounds.
+        """
         if self.bound_kind is None:
             raise refusal("why_no_bound", "a run without bounds", 'keep to contain "report"')
         _, times, agents = self.shape
@@ -155,7 +193,23 @@ class Run(metaclass=Hinting):
         return BoundKind(int(self.bound_kind[self._trial(trial), t, i])).why
 
     def first_accused(self, trial: int = 0) -> dict[int, int]:
-        """Agent -> first time at which some agent took it for attacked."""
+        """When each accused agent was first taken for attacked, by any agent.
+
+        Parameters
+        ----------
+        trial : int
+            Which one, from 0.
+
+        Returns
+        -------
+        dict of int to int
+            Agent -> first time.
+
+        Raises
+        ------
+        InvalidInput
+            There is no such trial.
+        """
         trial = self._trial(trial)
         first: dict[int, int] = {}
         for k, time, sets in self.accusations:
@@ -167,7 +221,20 @@ class Run(metaclass=Hinting):
     def alarms(self, trial: int | None = None) -> list[Alarm]:
         """When each agent's measurement was suspected (clipped) or taken for attacked: intervals of equal verdicts.
 
-        trial: this one alone; None: all. In order of trial, start and agent. Needs keep "report".
+        Parameters
+        ----------
+        trial : int, optional
+            This one alone; default: all.
+
+        Returns
+        -------
+        list of Alarm
+            In order of trial, start and agent.
+
+        Raises
+        ------
+        InvalidInput
+            There is no such trial, or the run has no verdicts (keep "report").
         """
         if self.verdict is None:
             raise refusal("alarms", "a run without verdicts", 'keep to contain "report"')
@@ -181,9 +248,19 @@ class Run(metaclass=Hinting):
     def save(self, path: str | Path) -> None:
         """Write everything to a file (created, or replaced), without pickles; read it with `Run.load`.
 
-        A NumPy .npz archive; netCDF where the name ends in .nc (extra: xarray, with a netCDF backend of it: scipy,
-        h5netcdf or netCDF4), or a folder of zarr where it ends in .zarr (packages xarray and zarr): the dataset of
-        `to_xarray`, which other programs read.
+        Parameters
+        ----------
+        path : str or Path
+            A NumPy .npz archive; netCDF where the name ends in .nc (extra: xarray, with a netCDF backend of it: scipy,
+            h5netcdf or netCDF4), or a folder of zarr where it ends in .zarr (packages xarray and zarr): the dataset of
+            `to_xarray`, which other programs read.
+
+        Raises
+        ------
+        InvalidInput
+            The run holds what files cannot, such as a function of your own.
+        IoError
+            The file cannot be written.
         """
         run_file.save(self, path_of("path", path))
 
@@ -191,7 +268,21 @@ class Run(metaclass=Hinting):
     def load(path: str | Path) -> Run:
         """The run that `save` wrote, or that was written as it went, all of it.
 
-        Raises IoError when the file cannot be read or holds no run, InvalidInput when it is too large for memory.
+        Parameters
+        ----------
+        path : str or Path
+            Of the file or folder.
+
+        Returns
+        -------
+        Run
+
+        Raises
+        ------
+        IoError
+            The file cannot be read, or holds no run.
+        InvalidInput
+            It is too large for memory.
         """
         return run_file.load(path_of("path", path), partial(assembled, Run))
 
@@ -210,10 +301,27 @@ class Run(metaclass=Hinting):
         return hash((self.model, self.network, self.filter, self.shape))
 
     def plot(self, trial: int = 0, *, agents: Iterable[int | str] | None = None, compare: Iterable[Run] = ()) -> Figure:
-        """Errors with their bounds, and statistics against thresholds, of one trial, as a figure (extra: plot).
+        """Errors with their bounds, and statistics against thresholds, of one trial (extra: plot).
 
-        agents: numbers or names of those that are shown; None: all. compare: other runs, whose errors are drawn into
-        the same figure. The process's matplotlib backend stays as it is.
+        The process's matplotlib backend stays as it is.
+
+        Parameters
+        ----------
+        trial : int
+            Which one, from 0.
+        agents : sequence of int or str, optional
+            Those that are shown, by number or name; default: all.
+        compare : sequence of Run
+            Other runs, whose errors are drawn into the same figure.
+
+        Returns
+        -------
+        matplotlib Figure
+
+        Raises
+        ------
+        InvalidInput
+            There is no such trial or agent, or matplotlib is not installed.
         """
         trial, chosen = self._trial(trial), self._agents(agents)
         others = entries("plot: compare", compare, "other runs")
@@ -245,7 +353,22 @@ class Run(metaclass=Hinting):
         return found
 
     def animate(self, path: str | Path, trial: int = 0) -> None:
-        """Write a GIF of vehicles in a string (extra: plot); keep "details" and "measurements" for it."""
+        """Write a GIF of vehicles in a string (extra: plot); keep "details" and "measurements" for it.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of the GIF (created, or replaced).
+        trial : int
+            Which one, from 0.
+
+        Raises
+        ------
+        InvalidInput
+            There is no such trial, or the run is not one of vehicles.
+        IoError
+            The file cannot be written.
+        """
         trial = self._trial(trial)
         if family_of(self.filter).picture != "string" or self.truth is None or self.measurements is None:
             raise refusal("animate", "a run without vehicles or measurements", "one of a platoon")

@@ -116,9 +116,29 @@ class VaryingModel(metaclass=Hinting):
     ) -> VaryingModel:
         """The plant dx/dt = A x + B u + white noise at irregular times, exactly (Van Loan 1978); u is held in between.
 
-        times: (T + 1,) increasing, in the unit of time of A; the first is that of the start, sample t is at times[t].
-        process_intensity: spectral density of the noise, (n, n) or a number (times the identity). The rest as in Model.
-        Raises InvalidInput.
+        Parameters
+        ----------
+        A : (n, n) array
+            Of the differential equation, per unit of time.
+        C : sequence of (m_i, n) arrays, or (N, n) array
+            As in Model.
+        times : (T + 1,) array
+            Increasing, in the unit of time of A; the first is that of the start, sample t is at times[t].
+        process_intensity : (n, n) array or float, optional
+            Spectral density of the noise, state^2 per time; a number is times the identity.
+        B : (n, p) array, optional
+            What known inputs u do to dx/dt.
+        **model
+            The rest as in Model.
+
+        Returns
+        -------
+        VaryingModel
+
+        Raises
+        ------
+        InvalidInput
+            Times that do not increase, or what Model refuses.
         """
         at = numbers("times", times)
         if at.ndim != 1 or len(at) < 2 or not np.isfinite(at).all() or not (np.diff(at) > 0).all():

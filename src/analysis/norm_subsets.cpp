@@ -159,7 +159,7 @@ SubsetBound tau0(const MatrixRef& C, const MatrixRef& A, int s, const SubsetLimi
   require_square(A, C);
   const auto groups = detail::group_rows(C);
   const double N = static_cast<double>(C.rows());
-  // (1/N) ||[C_i'C_i A]_M|| = (1/N) sqrt(lambda_max(sum over M of |C_i A|^2 C_i'C_i)), note 15.
+  // (1/N) ||[C_i'C_i A]_M|| = (1/N) sqrt(lambda_max(sum over M of |C_i A|^2 C_i'C_i)).
   const Vector weight = (C * A).rowwise().squaredNorm();
   const auto value = [&](const auto& S) { return root_of_largest(S) / N; };
   if (!too_many(groups, s, C.cols(), limits)) {

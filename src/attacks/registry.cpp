@@ -136,7 +136,7 @@ struct EquivocateParams {
   static auto fields() {
     return std::make_tuple(field(
         &EquivocateParams::size,
-        {.name = "size", .unit = "state", .doc = "length of the lie told to each neighbour", .least = 0.0}));
+        {.name = "size", .unit = "state", .doc = "length of the lie sent to each neighbour", .least = 0.0}));
   }
 };
 

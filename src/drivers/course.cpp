@@ -32,7 +32,7 @@ void require_nonlinear(const Prepared& prepared, const RunOptions& options) {
   if (!options.nonlinear->f || !options.nonlinear->h)
     refuse("nonlinear", options.nonlinear->f ? "no h" : "no f", "both");
   if (options.series != nullptr)
-    refuse("series", "matrices over time beside functions", "one of them", "the functions are told the time");
+    refuse("series", "matrices over time beside functions", "one of them", "the functions get the time");
   if (!options.inputs.allFinite())
     refuse("inputs", "a number that is not finite", "known inputs at all times");
   for (const int r : options.nonlinear->linear)

@@ -231,7 +231,7 @@ def test_the_command_prints_words_tables_json_and_a_picture(tmp_path, capsys):
     picture = tmp_path / "wind.png"
     assert main(["analyze", scenario, "-o", str(picture)]) == 0
     out = capsys.readouterr().out
-    assert "the state can be told in the end: 5" in out
+    assert "the state can be determined in the end: 5" in out
     assert "CLA - BEL" in out
     assert picture.stat().st_size > 10_000
     assert main(["analyze", scenario, "--json"]) == 0

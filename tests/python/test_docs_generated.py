@@ -39,6 +39,28 @@ def test_every_parameter_is_in_its_table() -> None:
         assert all(f"`{p['name']}`" in attacks for p in info["params"]), info["name"]
 
 
+#: page with the guide of an import -> kinds
+GUIDES = {
+    "import-cars": ["openacc"],
+    "import-aircraft": ["adsb"],
+    "import-grid": ["pandapower"],
+    "import-robot": ["rosbag", "mcap"],
+    "csv-to-scenario": ["csv"],
+}
+
+
+def test_every_option_of_an_import_is_on_the_page_of_its_guide() -> None:
+    from generate import commands
+
+    tables = commands.imports()
+    assert sorted(tables) == sorted(kind for kinds in GUIDES.values() for kind in kinds)
+    for guide, kinds in GUIDES.items():
+        page = (ROOT / "docs" / "how-to" / f"{guide}.md").read_text(encoding="utf-8")
+        for kind in kinds:
+            assert f"```{{include}} ../generated/import_{kind}.md" in page, f"{guide}: {kind}"
+    assert "`--manoeuvre MANOEUVRE`" in tables["adsb"] and "`--harmonics HARMONICS`" in tables["csv"]
+
+
 def test_a_paper_is_shown_with_its_claims() -> None:
     from generate import papers
 

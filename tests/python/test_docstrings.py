@@ -2,9 +2,10 @@
 
 import ast
 import dataclasses
+import importlib
 import inspect
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,14 +23,61 @@ ERRORS = [
 ]
 
 
-def section(function: Callable[..., Any], name: str) -> list[str]:
-    """The lines of one section of a docstring; empty where there is none."""
-    doc = inspect.getdoc(function) or ""
+def _public(path: str, thing: Any, seen: set[int]) -> Iterator[tuple[str, Any, str]]:
+    """(path, function, docstring) of everything public that can be called, below a module or class."""
+    if id(thing) in seen:
+        return
+    seen.add(id(thing))
+    if inspect.ismodule(thing):
+        for name in getattr(thing, "__all__", [n for n in vars(thing) if not n.startswith("_")]):
+            yield from _public(f"{path}.{name}", getattr(thing, name), seen)
+    elif inspect.isclass(thing) and thing.__module__.startswith("garrison"):
+        doc = inspect.getdoc(thing) or ""
+        for name, member in vars(thing).items():
+            function = member.__func__ if isinstance(member, staticmethod | classmethod) else member
+            if name == "__init__" and "\nAttributes\n" not in doc:  # those are results, which functions make
+                yield f"{path}.{name}", function, doc
+            elif not name.startswith("_") and callable(function):
+                yield f"{path}.{name}", function, inspect.getdoc(function) or ""
+    elif callable(thing) and not inspect.isclass(thing):
+        yield path, thing, inspect.getdoc(thing) or ""
+
+
+def _taken(function: Any) -> list[str]:
+    """Names of its parameters; of compiled ones from the first line of the docstring."""
+    if inspect.isfunction(function):
+        found = [name for name in inspect.signature(function).parameters]
+    else:
+        line = (inspect.getdoc(function) or "").partition("\n")[0].partition(") ->")[0]
+        found = re.findall(r"(\w+): ", line)
+    return [name for name in found if name not in ("self", "cls")]
+
+
+def _shown() -> Iterator[tuple[str, Any, str]]:
+    """What pages and examples import from submodules."""
+    files = [*(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.py"), ROOT / "README.md"]
+    for path in (p for p in files if "generated" not in p.parts):
+        text = path.read_text(encoding="utf-8")
+        for module, names in re.findall(r"^from (garrison\.[a-z_.]+) import ([\w, ]+)$", text, flags=re.MULTILINE):
+            for name in names.split(", "):
+                thing = getattr(importlib.import_module(module), name.partition(" ")[0])
+                if inspect.isfunction(thing):
+                    yield f"{module}.{name}", thing, inspect.getdoc(thing) or ""
+
+
+EVERYTHING = {
+    path: (function, doc) for path, function, doc in (*_public("garrison", gr, set()), *_shown()) if _taken(function)
+}
+
+
+def section(function: Callable[..., Any] | str, name: str) -> list[str]:
+    """The lines of one section of a docstring, which may be given itself; empty where there is none."""
+    doc = function if isinstance(function, str) else inspect.getdoc(function) or ""
     found = re.search(rf"^{name}\n{'-' * len(name)}\n(.*?)(?=^\w+\n-+\n|\Z)", doc, re.DOTALL | re.MULTILINE)
     return found[1].splitlines() if found else []
 
 
-def documented(function: Callable[..., Any], what: str = "Parameters") -> dict[str, list[str]]:
+def documented(function: Callable[..., Any] | str, what: str = "Parameters") -> dict[str, list[str]]:
     """Name of each documented parameter, or attribute -> the lines about it."""
     out: dict[str, list[str]] = {}
     names: list[str] = []
@@ -61,6 +109,26 @@ def test_results_and_refusals_are_documented(name: str) -> None:
     for line in section(function, "Raises"):
         if line and not line.startswith(" "):
             assert issubclass(getattr(gr, line), Exception)
+
+
+@pytest.mark.parametrize("path", EVERYTHING)
+def test_everything_that_takes_arguments_says_what_they_are(path: str) -> None:
+    function, doc = EVERYTHING[path]
+    found = documented(doc)
+    assert set(found) == set(_taken(function))
+    assert all(found.values()), f"parameters without a text: {[k for k, lines in found.items() if not lines]}"
+
+
+def test_everything_public_is_looked_at() -> None:
+    for path in (
+        "attacks.Bias",
+        "filters.Saturation.__init__",
+        "saturation.design",
+        "structure.System.mitigate",
+        "tables.read_records",
+    ):
+        assert f"garrison.{path}" in EVERYTHING
+    assert len(EVERYTHING) > 250
 
 
 @pytest.mark.parametrize("name", CLASSES)

@@ -59,6 +59,49 @@ def test_records_that_do_not_do_are_refused(
     assert message in capsys.readouterr().err
 
 
+def _records(**columns: list[float]) -> str:
+    """Sixty hours of three stations that go together, and these columns."""
+    rng = np.random.default_rng(1)
+    level = np.cumsum(rng.normal(size=60))
+    all_ = {name: (level + rng.normal(0, 0.3, 60)).tolist() for name in "abc"} | columns
+    rows = zip(*all_.values(), strict=True)
+    return f"t,{','.join(all_)}\n" + "".join(f"{k},{','.join(map(str, row))}\n" for k, row in enumerate(rows))
+
+
+@pytest.mark.parametrize(
+    ("columns", "arguments", "message"),
+    [
+        ({"d": [5.0] * 60}, [], "station d: got records without variation"),
+        ({}, ["--factors", "4"], "--factors: got 4, expected a number in 1..3"),
+        ({}, ["--harmonics", "60"], "--harmonics: got 60 with 30 records, expected at least 122 records"),
+        ({"d": [1e6 * k * k for k in range(60)]}, [], "; --standardise: every column in units of its own spread"),
+        ({}, ["--stations", "places.csv", "--radius", "30"], "places.csv: got no station c, expected all of a, b, c"),
+    ],
+    ids=["constant", "factors", "harmonics", "units", "stations"],
+)
+def test_what_a_run_would_refuse_is_refused_at_once(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    columns: dict[str, list[float]],
+    arguments: list[str],
+    message: str,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("x.csv").write_text(_records(**columns))
+    Path("places.csv").write_text("code,latitude,longitude\na,52,5\nb,52.1,5\n")
+    assert main(["import", "csv", "x.csv", *arguments, "-o", "out"]) == 2
+    assert message in capsys.readouterr().err
+    assert not Path("out").exists()
+
+
+def test_columns_of_different_sizes_can_be_standardised(tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text(_records(d=[1e6 * k * k for k in range(60)]))
+    assert main(["import", "csv", str(path), "--standardise", "-o", str(tmp_path / "out")]) == 0
+    assert read_scenario(tmp_path / "out" / "scenario.toml").model.agents == 4
+
+
 def plain_model() -> dict[str, object]:
     A, C = np.array([[1.0, 0.1], [0.0, 1.0]]), [np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]])]
     return model_file(

@@ -38,6 +38,11 @@ BANNED = {
     "output of unit length": "one measurement row of norm 1 per agent",
     "believes all of them": "uses every measurement as it comes",
     "are used up to this size": "innovations above this are clipped",
+    "can be told": "can be determined",
+    "could not be told": "could not be determined",
+    "is not told": "is not reported",
+    "always the same lie": "the liars are always the same",
+    "lie told to": "lie sent to",
     "filter was told": "what the model or a parameter says",
     "same arguments, same bits": "equal arguments give bit-identical results",
 }
@@ -69,3 +74,9 @@ def test_a_phrase_is_found_across_lines_of_a_comment(phrase: str, tmp_path: Path
     path = tmp_path / "x.hpp"
     path.write_text("/// Some words " + phrase.replace(" ", "\n/// ") + " and more.\n")
     assert _hits(path) == {phrase}
+
+
+def test_nothing_refers_to_a_note_by_its_number() -> None:
+    by_number = re.compile(r"\bnotes? \d+\b")
+    found = [str(p.relative_to(ROOT)) for p in _files() if by_number.search(p.read_text(encoding="utf-8"))]
+    assert not found, "better: docs/filters/<family>.md#anchor, in " + ", ".join(found)

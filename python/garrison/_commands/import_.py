@@ -55,7 +55,7 @@ def do(args: argparse.Namespace) -> int:
 
 def _openacc(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     own = kinds.add_parser(
-        "openacc", help="cars in a row: an OpenACC file, or one file per follower", allow_abbrev=False
+        "openacc", help="read cars in a row: an OpenACC file, or one file per follower", allow_abbrev=False
     )
     own.add_argument("files", nargs="+", type=Path, help="CSV files of one recording")
     own.add_argument("--attacked", type=whole_number, default=1, help="most odometers that may be wrong (1)")
@@ -64,11 +64,11 @@ def _openacc(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentPars
         type=number,
         help="bound on that of odometers and gaps, m (default: 2, or what admits all but --attacked)",
     )
-    own.add_argument("--process-noise", type=number, default=0.06, help="its bound per sample, m and m/s (0.06)")
+    own.add_argument("--process-noise", type=number, default=0.06, help="bound on that of a sample, m and m/s (0.06)")
     own.add_argument(
         "--initial-error",
         type=number,
-        help="its bound, m (10 times the measurement noise)",
+        help="bound on that of the first estimate, m (10 times the measurement noise)",
     )
     own.add_argument("--from", dest="start", type=number, metavar="SECONDS", help="first time that is used")
     own.add_argument("--to", dest="end", type=number, metavar="SECONDS", help="last time that is used")
@@ -86,7 +86,7 @@ def _make_openacc(args: argparse.Namespace) -> Bundle:
 def _adsb(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     own = kinds.add_parser(
         "adsb",
-        help="the track of an aircraft: state vectors, or a trace of readsb or ADS-B Exchange",
+        help="read the track of an aircraft: state vectors, or a trace of readsb or ADS-B Exchange",
         allow_abbrev=False,
     )
     own.add_argument("file", type=Path, help="JSON or CSV file, also as .gz")
@@ -95,8 +95,8 @@ def _adsb(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
     own.add_argument("--to", dest="end", metavar="TIME", help="last time that is used, UTC")
     own.add_argument("--period", type=number, default=1.0, help="sampling period, s (1)")
     own.add_argument("--oldest", type=number, default=2.0, help="age of a position above which it is missing, s (2)")
-    own.add_argument("--position-noise", type=number, default=200.0, help="standard deviation, m (200)")
-    own.add_argument("--velocity-noise", type=number, default=3.0, help="standard deviation, m/s (3)")
+    own.add_argument("--position-noise", type=number, default=200.0, help="standard deviation of positions, m (200)")
+    own.add_argument("--velocity-noise", type=number, default=3.0, help="standard deviation of velocities, m/s (3)")
     own.add_argument("--manoeuvre", type=number, default=10.0, help="standard deviation of accelerations, m/s^2 (10)")
     own.add_argument("--false-alarm", type=number, default=1e-6, help="false-alarm rate of a test, per sample (1e-6)")
     own.set_defaults(make=_make_adsb)
@@ -116,7 +116,9 @@ def _make_adsb(args: argparse.Namespace) -> Bundle:
 
 
 def _rosbag(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    own = kinds.add_parser("rosbag", help="a robot: ROS 1 bags, or a ROS 2 bag (needs rosbags)", allow_abbrev=False)
+    own = kinds.add_parser(
+        "rosbag", help="read a robot: ROS 1 bags, or a ROS 2 bag (needs rosbags)", allow_abbrev=False
+    )
     own.add_argument("files", nargs="+", type=Path, help=".bag files, or the folder of a ROS 2 bag")
     _robot(own)
     own.set_defaults(make=_make_rosbag)
@@ -124,7 +126,9 @@ def _rosbag(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParse
 
 
 def _mcap(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    own = kinds.add_parser("mcap", help="a robot: an MCAP file (needs mcap, and rosbags for ROS)", allow_abbrev=False)
+    own = kinds.add_parser(
+        "mcap", help="read a robot: an MCAP file (needs mcap, and rosbags for ROS)", allow_abbrev=False
+    )
     own.add_argument("file", type=Path, help="MCAP file")
     _robot(own)
     own.set_defaults(make=_make_mcap)
@@ -135,11 +139,13 @@ def _robot(own: argparse.ArgumentParser) -> None:
     own.add_argument("--topic", action="append", default=[], help="use this topic, as often as wanted; default all")
     own.add_argument("--period", type=number, default=0.1, help="sampling period, s (0.1)")
     own.add_argument("--align", type=number, default=60.0, help="s from the start in which frames are aligned (60)")
-    own.add_argument("--position-noise", type=number, default=0.5, help="standard deviation, m (0.5)")
-    own.add_argument("--heading-noise", type=number, default=0.1, help="standard deviation, rad (0.1)")
-    own.add_argument("--velocity-noise", type=number, default=0.3, help="standard deviation, m/s (0.3)")
-    own.add_argument("--rate-noise", type=number, default=0.1, help="standard deviation, rad/s (0.1)")
-    own.add_argument("--acceleration", type=number, default=1.0, help="standard deviation, m/s^2 and rad/s^2 (1)")
+    own.add_argument("--position-noise", type=number, default=0.5, help="standard deviation of positions, m (0.5)")
+    own.add_argument("--heading-noise", type=number, default=0.1, help="standard deviation of headings, rad (0.1)")
+    own.add_argument("--velocity-noise", type=number, default=0.3, help="standard deviation of velocities, m/s (0.3)")
+    own.add_argument("--rate-noise", type=number, default=0.1, help="standard deviation of turn rates, rad/s (0.1)")
+    own.add_argument(
+        "--acceleration", type=number, default=1.0, help="standard deviation of accelerations, m/s^2 and rad/s^2 (1)"
+    )
     own.add_argument("--false-alarm", type=number, default=1e-4, help="false-alarm rate of a test, per sample (1e-4)")
 
 
@@ -164,7 +170,7 @@ def _robot_assumptions(args: argparse.Namespace) -> "Assumptions":
 
 
 def _pandapower(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    own = kinds.add_parser("pandapower", help="a power grid: a file or a case of pandapower", allow_abbrev=False)
+    own = kinds.add_parser("pandapower", help="read a power grid: a file or a case of pandapower", allow_abbrev=False)
     own.add_argument("case", metavar="CASE", help="JSON file of pandapower, or a case that it ships, as case118")
     chosen = own.add_mutually_exclusive_group()
     chosen.add_argument(
@@ -172,8 +178,12 @@ def _pandapower(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentP
     )
     chosen.add_argument("--at", nargs="+", metavar="BUS", help="buses with a phasor unit; default all")
     own.add_argument("--steps", type=whole_number, help="samples to simulate (50; 10 from 200 buses on)")
-    own.add_argument("--angle-noise", type=number, default=0.002, help="standard deviation, rad (0.002)")
-    own.add_argument("--flow-noise", type=number, default=0.02, help="standard deviation, per unit (0.02)")
+    own.add_argument(
+        "--angle-noise", type=number, default=0.002, help="standard deviation of measured angles, rad (0.002)"
+    )
+    own.add_argument(
+        "--flow-noise", type=number, default=0.02, help="standard deviation of measured flows, per unit (0.02)"
+    )
     own.add_argument("--wander", type=number, default=0.001, help="how far an angle moves per sample, rad (0.001)")
     own.add_argument("--areas", type=whole_number, metavar="COUNT", help="divide the buses among so many agents")
     own.set_defaults(make=_make_pandapower)
@@ -188,7 +198,7 @@ def _make_pandapower(args: argparse.Namespace) -> Bundle:
 
 
 def _csv(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
-    own = kinds.add_parser("csv", help="records: a column of times and a column per sensor", allow_abbrev=False)
+    own = kinds.add_parser("csv", help="read records: a column of times and a column per sensor", allow_abbrev=False)
     own.add_argument("file", type=Path, help="CSV file, with any separator")
     own.add_argument("--to", metavar="TIME", help="end of the clean part that the model is fitted to (the first half)")
     own.add_argument("--factors", type=whole_number, default=1, help="states of the model (1)")
@@ -196,6 +206,12 @@ def _csv(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
         "--harmonics",
         type=whole_number,
         help="harmonics of the yearly season (2 from two years on, else 0)",
+    )
+    own.add_argument(
+        "--standardise",
+        action=argparse.BooleanOptionalAction,
+        help="take every column in units of its own spread; --no-standardise: all columns have one unit (default: "
+        "standardise where the header names different units)",
     )
     own.add_argument("--stations", type=Path, help="CSV file with code, latitude and longitude of the sensors")
     own.add_argument("--radius", type=number, metavar="KM", help="sensors at most so far apart are neighbours")
@@ -209,5 +225,5 @@ def _make_csv(args: argparse.Namespace) -> Bundle:
     from garrison.scenario.section import moment
 
     end = moment("--to", args.to, last=True) if args.to is not None else None
-    rest = args.factors, args.harmonics, args.stations, args.radius, args.false_alarm
+    rest = args.factors, args.harmonics, args.stations, args.radius, args.false_alarm, args.standardise
     return import_csv(args.file, Choice(end, *rest))

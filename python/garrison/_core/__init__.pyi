@@ -102,8 +102,18 @@ class IoError(Error, OSError):
 
 class budget:
     """
-    `with budget(seconds) as b:` is the time of everything computed in the block (> 0, inf = no limit).
-    Searches end with what they have proved; what has no partial result raises InvalidInput. Ctrl-C ends both.
+    `with budget(seconds) as b:` is the time of everything computed in the block. Searches end with what they
+    have proved; what has no partial result raises InvalidInput. Ctrl-C ends both.
+
+    Parameters
+    ----------
+    seconds : float
+        > 0; inf = no limit.
+
+    Raises
+    ------
+    InvalidInput
+        Not a number above 0.
     """
     def __enter__(self) -> budget: ...
     def __exit__(self, type: typing.Any, value: typing.Any, traceback: typing.Any) -> None: ...
@@ -173,10 +183,39 @@ class Model:
         inputs: typing.Any = None,
     ) -> Model:
         """
-        The model of dx/dt = A x + B u + white noise, u held between samples, sampled every `period` (> 0, in the unit of time of A), exactly
-        (C. F. Van Loan, IEEE TAC 23 (3), 1978). process_intensity: spectral density of the noise, (n, n) or a
-        number (times the identity), in state^2 per time; the model then has its process_covariance. process_bound:
-        of the noise from sample to sample, as in Model; the rest, too. Raises InvalidInput.
+        The model of dx/dt = A x + B u + white noise, u held between samples, sampled exactly (C. F. Van Loan, IEEE
+        TAC 23 (3), 1978).
+
+        Parameters
+        ----------
+        A : (n, n) array
+            Of the differential equation, per unit of time.
+        C : sequence of (m_i, n) arrays, or (N, n) array
+            As in Model.
+        period : float
+            Time between samples, > 0, in the unit of time of A.
+        process_intensity : (n, n) array or float, optional
+            Spectral density of the noise, state^2 per time; a
+            number is times the identity. The model then has its process_covariance.
+        process_bound : float, optional
+            Of the noise from sample to sample, as in Model.
+        measurement_bound, measurement_covariance, states, outputs, sources, units, exposed : optional
+            As in
+            Model.
+        B : (n, p) array, optional
+            What known inputs u do to dx/dt.
+        inputs : p names, optional
+            One per column of B.
+
+        Returns
+        -------
+        Model
+            From sample to sample.
+
+        Raises
+        ------
+        InvalidInput
+            As Model, or a period that is not > 0.
         """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
@@ -208,7 +247,7 @@ class Model:
     @property
     def A(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        (n, n)
+        (n, n), of the plant.
         """
     @property
     def B(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -223,7 +262,7 @@ class Model:
     @property
     def agents(self) -> int:
         """
-        N
+        N, how many agents.
         """
     @property
     def input_names(self) -> list[str]:
@@ -233,7 +272,7 @@ class Model:
     @property
     def inputs(self) -> int:
         """
-        p
+        p, how many known inputs.
         """
     @property
     def measurement_bound(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -278,7 +317,7 @@ class Model:
     @property
     def states(self) -> int:
         """
-        n
+        n, how many states.
         """
     @property
     def units(self) -> dict[str, str]:
@@ -314,11 +353,41 @@ class Network:
     ) -> Network:
         """
         i and j hear each other when |i - j| <= range.
+
+        Parameters
+        ----------
+        agents : int
+            How many, N >= 1.
+        range : int
+            How many places away an agent hears, >= 1.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range, or more edges than memory holds.
         """
     @staticmethod
     def complete(agents: typing.SupportsInt | typing.SupportsIndex) -> Network:
         """
         Everybody hears everybody.
+
+        Parameters
+        ----------
+        agents : int
+            How many, N >= 1.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            No agent, or more edges than memory holds.
         """
     @staticmethod
     def erdos_renyi(
@@ -328,13 +397,48 @@ class Network:
     ) -> Network:
         """
         Every pair is a link with this probability; it need not be connected (see `connected`).
+
+        Parameters
+        ----------
+        agents : int
+            How many, N >= 1.
+        probability : float
+            Of each link, 0..1.
+        seed : int
+            >= 0; equal seeds give equal networks.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range.
         """
     @staticmethod
     def from_adjacency(matrix: typing.Any, directed: bool = False, names: typing.Any = None) -> Network:
         """
-        From a square matrix of zeros and ones, dense or sparse: entry (i, j) says that i hears j. Explicit
-        zeros are no links; the diagonal is ignored. Names of a DataFrame's columns become the agents'.
-        Raises InvalidInput when it is not square, not symmetric (unless directed) or holds another number.
+        From a square matrix of zeros and ones. Explicit zeros are no links; the diagonal is ignored.
+
+        Parameters
+        ----------
+        matrix : (N, N) array, sparse matrix or DataFrame
+            Entry (i, j) says that i hears j. Names of a DataFrame's
+            columns become the agents'.
+        directed : bool
+            Entries are one way; else the matrix is symmetric.
+        names : names, optional
+            One per agent.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            Not square, not symmetric (unless directed), or another number.
         """
     @staticmethod
     def grid(
@@ -342,11 +446,41 @@ class Network:
     ) -> Network:
         """
         rows x columns agents, row by row; neighbours in a row or column hear each other.
+
+        Parameters
+        ----------
+        rows : int
+            How many, >= 1.
+        columns : int
+            How many, >= 1.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range, or more agents than memory holds.
         """
     @staticmethod
     def path(agents: typing.SupportsInt | typing.SupportsIndex) -> Network:
         """
         i hears i - 1 and i + 1, from end to end.
+
+        Parameters
+        ----------
+        agents : int
+            How many, N >= 1.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            No agent, or more than memory holds.
         """
     @staticmethod
     def random_geometric(
@@ -356,16 +490,62 @@ class Network:
     ) -> Network:
         """
         Points uniform in the unit square, edges below `radius`; it need not be connected (see `connected`).
+
+        Parameters
+        ----------
+        agents : int
+            How many, N >= 1.
+        radius : float
+            Agents closer than this hear each other, > 0; the square has sides of 1.
+        seed : int
+            Of the positions, >= 0; equal seeds give equal networks.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range.
         """
     @staticmethod
     def ring(agents: typing.SupportsInt | typing.SupportsIndex) -> Network:
         """
         i hears i - 1 and i + 1, around.
+
+        Parameters
+        ----------
+        agents : int
+            How many, N >= 1.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            No agent, or more than memory holds.
         """
     @staticmethod
     def star(agents: typing.SupportsInt | typing.SupportsIndex) -> Network:
         """
         Agent 0 and each of the others hear each other.
+
+        Parameters
+        ----------
+        agents : int
+            How many, N >= 1.
+
+        Returns
+        -------
+        Network
+
+        Raises
+        ------
+        InvalidInput
+            No agent, or more than memory holds.
         """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
@@ -383,6 +563,21 @@ class Network:
     def index(self, agent: typing.Any) -> int:
         """
         The number of the agent with this name (or number).
+
+        Parameters
+        ----------
+        agent : str or int
+            A name of the network, or a number 0..N-1.
+
+        Returns
+        -------
+        int
+            0..N-1.
+
+        Raises
+        ------
+        InvalidInput
+            There is no such agent.
         """
     def laplacian(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
@@ -397,6 +592,21 @@ class Network:
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
         I - step * Laplacian
+
+        Parameters
+        ----------
+        step : float
+            What an agent takes of each difference to a neighbour, > 0.
+
+        Returns
+        -------
+        (N, N) array
+            Weights; rows sum to 1.
+
+        Raises
+        ------
+        InvalidInput
+            A step that is not finite and > 0.
         """
     def max_degree_weights(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
@@ -408,7 +618,22 @@ class Network:
         """
     def neighbours(self, agent: typing.Any) -> list[int]:
         """
-        Sorted ids of the agents that `agent` (a number or name) hears.
+        The agents that one agent hears.
+
+        Parameters
+        ----------
+        agent : str or int
+            A name of the network, or a number 0..N-1.
+
+        Returns
+        -------
+        list of int
+            Sorted.
+
+        Raises
+        ------
+        InvalidInput
+            There is no such agent.
         """
     @property
     def agents(self) -> int:
@@ -618,7 +843,21 @@ class Message:
     @staticmethod
     def from_bytes(data: typing.Any) -> Message:
         """
-        The message that to_bytes() wrote. Raises InvalidInput for anything else.
+        The message that to_bytes() wrote.
+
+        Parameters
+        ----------
+        data : bytes
+            All of it.
+
+        Returns
+        -------
+        Message
+
+        Raises
+        ------
+        InvalidInput
+            Anything else.
         """
     def __eq__(self, other: typing.Any) -> bool: ...
     def __getstate__(self) -> bytes: ...
@@ -630,6 +869,22 @@ class Message:
     def replace(self, field: str, value: typing.Any) -> Message:
         """
         The same message with another value in one field: a lie.
+
+        Parameters
+        ----------
+        field : str
+            Name of a field, as in `fields`.
+        value : array, float, bool or set of int
+            Of the kind and size that the field has.
+
+        Returns
+        -------
+        Message
+
+        Raises
+        ------
+        InvalidInput
+            No such field, or a value that does not fit it.
         """
     def to_bytes(self) -> bytes:
         """
@@ -672,12 +927,45 @@ class Agent:
     One agent on its own: `sense` once per sample, then `fuse` once per round, with the same bits as inside
     simulate and replay. Time is the caller's: it may start at any sample, and says nothing that a gap may have
     broken.
+
+    Parameters
+    ----------
+    model : Model
+        The plant and all sensors.
+    network : Network
+        Who hears whom.
+    filter : Filter
+        A family of garrison.filters, or a filter of your own.
+    id : int
+        Which agent, 0..N-1.
+
+    Raises
+    ------
+    InvalidInput
+        Sizes do not fit, or there is no such agent.
+    DesignInfeasible
+        The filter cannot be designed for this model and network.
     """
     @staticmethod
     def from_part(data: typing.Any, snapshot: typing.Any = None) -> Agent:
         """
         The agent whose part of a design Prepared.part(id) wrote; nothing is designed.
-        snapshot: of `save`; it goes on from there.
+
+        Parameters
+        ----------
+        data : bytes
+            The part.
+        snapshot : bytes, optional
+            Of `save`; the agent goes on from there. Default: at the beginning of a run.
+
+        Returns
+        -------
+        Agent
+
+        Raises
+        ------
+        InvalidInput
+            No part of a design, or a snapshot of another agent or design.
         """
     def __eq__(self, other: typing.Any) -> bool: ...
     def __getstate__(self) -> bytes: ...
@@ -691,9 +979,25 @@ class Agent:
     def __str__(self) -> str: ...
     def fuse(self, inbox: collections.abc.Sequence[Message | None]) -> Message | None:
         """
-        End the round with the neighbours' messages of it, in any order; leave missing ones out. Messages of an earlier
-        sample or round are dropped and counted, as are bodies that no agent could have sent. Returns the next
-        message.
+        End the round with the neighbours' messages of it. Messages of an earlier sample or round are dropped and
+        counted, as are bodies that no agent could have sent.
+
+        Parameters
+        ----------
+        inbox : sequence of Message or None
+            At most one per neighbour, in any order; leave missing ones out, or
+            give None.
+
+        Returns
+        -------
+        Message or None
+            The next message.
+
+        Raises
+        ------
+        InvalidInput
+            Called before `sense`, or a message of a stranger, another design or a later sample, or two
+            of one neighbour.
         """
     def join(
         self,
@@ -702,13 +1006,38 @@ class Agent:
         speak: bool = False,
     ) -> None:
         """
-        Take over an estimate from what the neighbours sent in the first round of sample t, as an agent that starts in
-        a running network: its next sample is t + 1. Where nobody was heard the agent keeps its own, and says
-        nothing until it hears somebody; speak: it says it, for networks in which nobody else speaks, either.
+        Take over an estimate from what the neighbours sent in the first round of a sample, as an agent that starts
+        in a running network: its next sample is t + 1. Where nobody was heard the agent keeps its own, and says
+        nothing until it hears somebody.
+
+        Parameters
+        ----------
+        t : int
+            The sample.
+        inbox : sequence of Message
+            At most one per neighbour.
+        speak : bool
+            Send the own estimate although nobody was heard, for networks in which nobody else speaks,
+            either.
+
+        Raises
+        ------
+        InvalidInput
+            As `fuse`, or a sample that is not after the last one.
         """
     def load(self, data: typing.Any) -> None:
         """
-        Go on from a snapshot. Raises InvalidInput for one of another agent or design.
+        Go on from a snapshot.
+
+        Parameters
+        ----------
+        data : bytes
+            Of `save`, of this agent and design.
+
+        Raises
+        ------
+        InvalidInput
+            A snapshot of another agent or design, damaged bytes, or within a sample.
         """
     def reset(
         self,
@@ -716,10 +1045,21 @@ class Agent:
         t: typing.SupportsInt | typing.SupportsIndex | None = None,
     ) -> None:
         """
-        Start anew with the estimate x0, (n,), of sample t. Without t: at the beginning of a run. At any
-        other t nothing is known of how far x0 is off: there is no bound and no test until the family can
-        vouch again, and in its next sample the agent sends nothing (None) and takes an estimate from what
-        its neighbours send.
+        Start anew with an estimate. At any t but the beginning nothing is known of how far x0 is off: there is no
+        bound and no test until the family can vouch again, and in its next sample the agent sends nothing (None)
+        and takes an estimate from what its neighbours send.
+
+        Parameters
+        ----------
+        x0 : (n,) array
+            Estimate of the state, in its units; finite, at most 1e150.
+        t : int, optional
+            The sample that x0 is the estimate of. Default: the beginning of a run.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, a number that is not finite, or a sample before the beginning of a run.
         """
     def save(self) -> bytes:
         """
@@ -731,9 +1071,26 @@ class Agent:
         y: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
     ) -> Message | None:
         """
-        Sample t with one number per row of C_i, nan = missing. Returns the first message of this sample; None where
-        the estimate is of no use (not finite). Samples missed since the last one are made up for, without
-        measurements and messages.
+        Take the measurement of sample t. Samples missed since the last one are made up for, without measurements
+        and messages.
+
+        Parameters
+        ----------
+        t : int
+            The sample; later than the last one.
+        y : (m_i,) floats
+            One number per row of C[id], in its unit; nan = missing.
+
+        Returns
+        -------
+        Message or None
+            The first message of this sample; None where the estimate is of no use (not finite).
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, a round that is not finished, or a sample that is not after the last one or
+            too long after it.
         """
     def uncover(self) -> None:
         """
@@ -902,8 +1259,21 @@ class Design:
 
 class SubsetBound:
     """
-    Result of a search over the s removed sensors; the true value lies in [lower, upper].
-    Safe in theorems: lower of lambda0, upper of varpi and tau0.
+    Result of a search over the s removed sensors; the true value lies in [lower, upper]. Safe in theorems:
+    lower of lambda0, upper of varpi and tau0.
+
+    Parameters
+    ----------
+    lower, upper : float
+        The value lies between them.
+    exact : bool
+        The search finished.
+    removed : sequence of int
+        Worst set found, sorted.
+    nodes : int
+        Sets, or parts of sets, that were looked at.
+    method : str
+        How it was found, in words.
     """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
@@ -1149,10 +1519,9 @@ class Autoregression:
 
 class Response:
     """
-    What known inputs alone do to a plant: s(t+1) = A s(t) + B u(t), s(0) = 0.
-
-    With x = z + s, z is a plant without inputs of which y - C s is measured: an agent driven by hand gets `without` of its
-    measurement, and its estimate plus `state` is one of x, with the same error and bound (docs/adr/0016).
+    What known inputs alone do to a plant: s(t+1) = A s(t) + B u(t), s(0) = 0. With x = z + s, z is a plant
+    without inputs of which y - C s is measured: an agent driven by hand gets `without` of its measurement, and
+    its estimate plus `state` is one of x, with the same error and bound (docs/adr/0016).
 
     Parameters
     ----------
@@ -1163,7 +1532,17 @@ class Response:
     def __reduce__(self) -> tuple: ...
     def advance(self, inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
         """
-        Moves to the next sample with u, one number per column of B. Raises InvalidInput when the response overflows.
+        Moves to the next sample.
+
+        Parameters
+        ----------
+        inputs : (p,) array
+            u of this sample, one number per column of B.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, a number that is not finite, or a response that overflows.
         """
     def without(
         self,
@@ -1171,7 +1550,23 @@ class Response:
         C: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        y - C s, what a filter without inputs is to get of the measurement y (m,); C (m, n).
+        What a filter without inputs is to get of a measurement: y - C s.
+
+        Parameters
+        ----------
+        y : (m,) array
+            The measurement; nan = missing.
+        C : (m, n) array
+            Its rows.
+
+        Returns
+        -------
+        (m,) array
+
+        Raises
+        ------
+        InvalidInput
+            Sizes do not fit.
         """
     @property
     def sample(self) -> int:
@@ -1378,7 +1773,28 @@ def lambda0(
     max_seconds: typing.SupportsFloat | typing.SupportsIndex = ...,
 ) -> SubsetBound:
     """
-    (6) of the saturation paper: least lambda_min(sum C_i'C_i) over all sets of N - s rows of C, (N, n).
+    (6) of the saturation paper: least lambda_min(sum C_i'C_i) over all sets of N - s rows of C.
+
+    Parameters
+    ----------
+    C : (N, n) array
+        One row per sensor.
+    s : int
+        Rows that are left out, 0..N.
+    max_nodes : int
+        The search ends after so many sets, >= 1, with an interval.
+    max_seconds : float
+        Or after so many seconds, >= 0.
+
+    Returns
+    -------
+    SubsetBound
+        Its `lower` is safe in every theorem.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or not finite.
     """
 
 def lambda0_orthogonal(
@@ -1427,7 +1843,24 @@ def make_attack(
 
 def make_filter(name: str, params: dict = {}) -> Filter:
     """
-    The filter `name`; unknown names are refused with the nearest one.
+    The filter of this name; unknown names are refused with the nearest one.
+
+    Parameters
+    ----------
+    name : str
+        As in `garrison list`.
+    params : dict
+        Parameters by name; the rest have their defaults.
+
+    Returns
+    -------
+    Filter
+        An object of the family's class.
+
+    Raises
+    ------
+    InvalidInput
+        An unknown name, or a parameter that is unknown or out of range.
     """
 
 def nearest_name(unknown: str, known: collections.abc.Sequence[str]) -> str:
@@ -1440,8 +1873,24 @@ def observable(
     C: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
 ) -> bool:
     """
-    (A, C) is observable, C (m, n). Raises InvalidInput where rounding of the numbers decides and one cannot tell;
-    structure.visibility says how far that is.
+    Whether (A, C) is observable.
+
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    C : (m, n) array
+        All rows.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit, or rounding of the numbers decides and one cannot tell;
+        structure.visibility says how far that is.
     """
 
 def one_step_sparse_observable(
@@ -1449,7 +1898,23 @@ def one_step_sparse_observable(
     s: typing.SupportsInt | typing.SupportsIndex,
 ) -> bool:
     """
-    Any N - s rows of C span the state; s in 0..N.
+    Whether any N - s rows of C span the state.
+
+    Parameters
+    ----------
+    C : (N, n) array
+        One row per sensor.
+    s : int
+        Rows that are lost, 0..N.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or not finite.
     """
 
 def replay(
@@ -1490,7 +1955,27 @@ def s_sparse_observable(
     seconds: typing.SupportsFloat | typing.SupportsIndex = 30.0,
 ) -> bool:
     """
-    (A, kept rows) is observable whichever s rows of C are lost. Raises InvalidInput where seconds do not suffice.
+    Whether (A, kept rows) is observable whichever s rows of C are lost.
+
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    C : (N, n) array
+        One row per sensor.
+    s : int
+        Rows that are lost, 0..N.
+    seconds : float
+        Time that the search may take.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, rounding decides, or `seconds` do not suffice.
     """
 
 def simulate(
@@ -1522,7 +2007,25 @@ def simulate(
 
 def split_outputs(model: Model, network: Network) -> tuple[Model, Network, list[int]]:
     """
-    (model, network, owner) with an agent per output: m agents that hear each other for one with m outputs.
+    The same plant with an agent per output: an agent with m outputs becomes m agents that hear each other.
+
+    Parameters
+    ----------
+    model : Model
+        Agents with any number of outputs.
+    network : Network
+        Of the same agents.
+
+    Returns
+    -------
+    (Model, Network, list of int)
+        The model and network of the single outputs, and per new agent the one
+        that it came from.
+
+    Raises
+    ------
+    InvalidInput
+        Model and network have another number of agents.
     """
 
 def surely_observable(

@@ -47,11 +47,31 @@ def Autoregressive(
     """
     correlated noise is added (measurement attack).
 
-    coefficient: memory of the added signal [1]
-    size: standard deviation of its noise [measurement]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    coefficient : float, optional
+        memory of the added signal [1]
+    size : float, optional
+        standard deviation of its noise [measurement], >= 0
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Bias(
@@ -72,10 +92,29 @@ def Bias(
     """
     a constant is added (measurement attack).
 
-    value: added to the measurement [measurement]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    value : float
+        added to the measurement [measurement]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Constant(
@@ -96,10 +135,29 @@ def Constant(
     """
     the sensor says one value, which may be nan, inf or huge (measurement attack).
 
-    value: what the sensor says instead: a number as text, nan or inf included [measurement]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    value : str, optional
+        what the sensor says instead: a number as text, nan or inf included [measurement]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Coordinated(
@@ -120,10 +178,29 @@ def Coordinated(
     """
     the agents add Gaussian noise that they draw together (message attack).
 
-    covariance: of the perturbations of all attacked agents together, agents in ascending order, one number per state: a square matrix, row by row; may be singular [state^2]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    covariance : sequence of float, optional
+        of the perturbations of all attacked agents together, agents in ascending order, one number per state: a square matrix, row by row; may be singular [state^2]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Denial(
@@ -143,9 +220,27 @@ def Denial(
     """
     the measurement is lost (measurement attack).
 
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Equivocate(
@@ -166,10 +261,29 @@ def Equivocate(
     """
     the agent tells each neighbour another lie (message attack).
 
-    size: length of the lie told to each neighbour [state]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    size : float, optional
+        length of the lie sent to each neighbour [state], >= 0
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def FalseTrajectory(
@@ -191,11 +305,31 @@ def FalseTrajectory(
     """
     all attacked sensors report one false state that obeys the plant (measurement attack).
 
-    offset: displacement of the false state at the start, one number per state [state]
-    push: added to the displacement at every sample; left out: 0 [state/sample]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    offset : sequence of float, optional
+        displacement of the false state at the start, one number per state [state]
+    push : sequence of float, optional
+        added to the displacement at every sample; left out: 0 [state/sample]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Falsify(
@@ -218,12 +352,33 @@ def Falsify(
     """
     the agent lies in one field of its messages, e.g. a set or a flag (message attack).
 
-    field: name of the field, e.g. "estimate", "intact", "proved", "bound" (the page of each filter lists them)
-    value: what numbers, counts and optional numbers become; a flag is set where it is not 0 [of the field]
-    members: what a set becomes [agents]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    field : str
+        name of the field, e.g. "estimate", "intact", "proved", "bound" (the page of each filter lists them)
+    value : float, optional
+        what numbers, counts and optional numbers become; a flag is set where it is not 0 [of the field]
+    members : sequence of float, optional
+        what a set becomes [agents], >= 0
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Forge(
@@ -245,11 +400,31 @@ def Forge(
     """
     the agent sends a false estimate to all neighbours (message attack).
 
-    offset: added to every number of the message [state]
-    replace: send the offset alone
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    offset : float, optional
+        added to every number of the message [state]
+    replace : bool, optional
+        send the offset alone
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Outdated(
@@ -270,10 +445,29 @@ def Outdated(
     """
     the agent sends what it sent some samples ago, as new (message attack).
 
-    age: how old what is sent is [samples]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    age : int
+        how old what is sent is [samples], >= 1
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Perturb(
@@ -295,11 +489,31 @@ def Perturb(
     """
     the agents add given numbers (message attack).
 
-    width: numbers per sample: attacked agents times states [numbers]
-    deltas: what is added, sample by sample from the start on; agents in ascending order, one number per state [state]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    width : int
+        numbers per sample: attacked agents times states [numbers], >= 1
+    deltas : sequence of float, optional
+        what is added, sample by sample from the start on; agents in ascending order, one number per state [state]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Ramp(
@@ -320,10 +534,29 @@ def Ramp(
     """
     a growing drift is added (measurement attack).
 
-    slope: growth of the added drift [measurement/sample]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    slope : float, optional
+        growth of the added drift [measurement/sample]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Random(
@@ -346,12 +579,33 @@ def Random(
     """
     noise is added, or sent instead (measurement attack).
 
-    size: half width, or scale of the law [measurement]
-    law: distribution of the noise
-    replace: drop the measurement, send noise only
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    size : float, optional
+        half width, or scale of the law [measurement], >= 0
+    law : str, optional
+        distribution of the noise; one of: uniform, normal, laplace, cauchy
+    replace : bool, optional
+        drop the measurement, send noise only
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Replay(
@@ -372,10 +626,29 @@ def Replay(
     """
     an old recorded measurement is sent (measurement attack).
 
-    delay: age of the recorded measurement that is sent [samples]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    delay : int, optional
+        age of the recorded measurement that is sent [samples], >= 1
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Scale(
@@ -396,10 +669,29 @@ def Scale(
     """
     the measurement is multiplied (measurement attack).
 
-    factor: the measurement is multiplied by it (3 = the paper's attack) [1]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    factor : float, optional
+        the measurement is multiplied by it (3 = the paper's attack) [1]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Silence(
@@ -419,9 +711,27 @@ def Silence(
     """
     the agent sends nothing (message attack).
 
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Sinusoid(
@@ -444,12 +754,33 @@ def Sinusoid(
     """
     a wave is added (measurement attack).
 
-    amplitude: size of the added wave [measurement]
-    period: length of one wave [samples]
-    phase: phase at the start [rad]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    amplitude : float, optional
+        size of the added wave [measurement]
+    period : float, optional
+        length of one wave [samples], > 0
+    phase : float, optional
+        phase at the start [rad]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """
 
 def Stealthy(
@@ -470,8 +801,27 @@ def Stealthy(
     """
     stays inside the threshold that the agent applies (closed loop) (measurement attack).
 
-    fraction: share of the tolerated deviation that is used; its sign is the direction [1]
-    agents: ids that are attacked from sample `start` (default 1) on, or schedule: (start, agents) phases in
-    order of time; stop: first sample that is not attacked any more; probability: chance that an agent is
-    attacked at a sample. Raises InvalidInput when something does not fit.
+    Parameters
+    ----------
+    agents : sequence of int, optional
+        Ids that are attacked from `start` on; or give `schedule`.
+    fraction : float, optional
+        share of the tolerated deviation that is used; its sign is the direction [1]
+    start : int, optional
+        First sample that is attacked, >= 1; default 1.
+    stop : int, optional
+        First sample that is not attacked any more; default: never.
+    schedule : sequence of (start, agents), optional
+        Phases in order of time, instead of agents and start.
+    probability : float
+        Chance that an agent is attacked at a sample, 0..1.
+
+    Returns
+    -------
+    Attack
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or both or neither of agents and schedule.
     """

@@ -69,23 +69,49 @@ __all__: list[str] = [
 
 class Region:
     """
-    ||x - center|| <= radius, |x_k - center_k| <= box_k where there is a box, and
-    (x - center)' shape^-1 (x - center) <= stretch^2 where there is a shape.
-    radius inf: the rows at hand cannot answer; nan: the data refute the assumption.
+    ||x - center|| <= radius, |x_k - center_k| <= box_k where there is a box, and (x - center)' shape^-1 (x -
+    center) <= stretch^2 where there is a shape. radius inf: the rows at hand cannot answer; nan: the data
+    refute the assumption.
+
+    Parameters
+    ----------
+    center : (n,) array
+        Finite.
+    radius : float
+        >= 0, inf or nan.
+    box : (n,) array, optional
+        Half widths, finite and >= 0.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or a wrong size.
     """
     def __init__(
         self,
         center: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
         radius: typing.SupportsFloat | typing.SupportsIndex,
         box: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] | None = None,
-    ) -> None:
-        """
-        center (n,), radius >= 0, box (n,) >= 0. Raises InvalidInput.
-        """
+    ) -> None: ...
     def __reduce__(self) -> tuple: ...
     def bound_around(self, estimate: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]) -> float:
         """
-        Bound on ||estimate - x|| for any estimate (n,); inf without an answer, nan when refuted.
+        Bound on ||estimate - x|| for any estimate.
+
+        Parameters
+        ----------
+        estimate : (n,) array
+            Finite.
+
+        Returns
+        -------
+        float
+            inf without an answer, nan when refuted.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, or a number that is not finite.
         """
     @property
     def answered(self) -> bool:
@@ -262,7 +288,24 @@ class GaussianTable:
         self, t: typing.SupportsInt | typing.SupportsIndex, delta: typing.SupportsFloat | typing.SupportsIndex
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        (N,): fails with probability <= N T P(|N(0,1)| > z) + delta for each agent and step.
+        Bounds at one step; each fails with probability <= N T P(|N(0,1)| > z) + delta.
+
+        Parameters
+        ----------
+        t : int
+            0..T.
+        delta : float
+            Above 0 and below 1.
+
+        Returns
+        -------
+        (N,) array
+            On ||e_i(t)||.
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range.
         """
     @property
     def deviation(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -286,7 +329,25 @@ class Propagation:
         bw: typing.SupportsFloat | typing.SupportsIndex,
     ) -> Propagation:
         """
-        ||w|| <= bw, ages 0..steps. Raises InvalidInput.
+        For ||w|| <= bw.
+
+        Parameters
+        ----------
+        A : (n, n) array
+            Of the plant.
+        steps : int
+            Ages 0..steps are prepared.
+        bw : float
+            >= 0.
+
+        Returns
+        -------
+        Propagation
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range, or powers of A that overflow.
         """
     @staticmethod
     def bounded_entries(
@@ -296,7 +357,27 @@ class Propagation:
         bw: typing.SupportsFloat | typing.SupportsIndex,
     ) -> Propagation:
         """
-        w = Gam w~ with |w~_i| <= bw; Gam (n, q). Raises InvalidInput.
+        For w = Gam w~ with |w~_i| <= bw.
+
+        Parameters
+        ----------
+        A : (n, n) array
+            Of the plant.
+        steps : int
+            Ages 0..steps are prepared.
+        Gam : (n, q) array
+            How the noise enters.
+        bw : float
+            >= 0.
+
+        Returns
+        -------
+        Propagation
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range, or powers of A that overflow.
         """
     @staticmethod
     def gaussian(
@@ -306,7 +387,27 @@ class Propagation:
         delta: typing.SupportsFloat | typing.SupportsIndex,
     ) -> Propagation:
         """
-        w ~ N(0, Q); fails with probability delta per use. Raises InvalidInput.
+        For w ~ N(0, Q), white.
+
+        Parameters
+        ----------
+        A : (n, n) array
+            Of the plant.
+        steps : int
+            Ages 0..steps are prepared.
+        Q : (n, n) array
+            Covariance.
+        delta : float
+            Probability to fail per use, above 0 and below 1.
+
+        Returns
+        -------
+        Propagation
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range, no covariance, or powers of A that overflow.
         """
     @staticmethod
     def gaussian_entries(
@@ -317,18 +418,69 @@ class Propagation:
         z2: typing.SupportsFloat | typing.SupportsIndex,
     ) -> Propagation:
         """
-        w = Gam w~, w~ ~ N(0, I): zc for each coordinate, z2 for the vector. Raises InvalidInput.
+        For w = Gam w~, w~ ~ N(0, I).
+
+        Parameters
+        ----------
+        A : (n, n) array
+            Of the plant.
+        steps : int
+            Ages 0..steps are prepared.
+        Gam : (n, q) array
+            How the noise enters.
+        zc : float
+            Level of each coordinate, >= 0.
+        z2 : float
+            Level of the vector, >= 0.
+
+        Returns
+        -------
+        Propagation
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range, or powers of A that overflow.
         """
     def __reduce__(self) -> tuple: ...
     def age(self, then: Region, age: typing.SupportsInt | typing.SupportsIndex) -> Region:
         """
-        The Region of today for one that held `age` steps ago; its box is never wider than what the ball, the box and the ellipsoid give.
+        The Region of today for one that held some steps ago; its box is never wider than what the ball, the box and
+        the ellipsoid give. Known inputs move the centre: add theirs.
+
+        Parameters
+        ----------
+        then : Region
+            Of n states.
+        age : int
+            0..steps.
+
+        Returns
+        -------
+        Region
+
+        Raises
+        ------
+        InvalidInput
+            Another size, or an age out of range.
         """
 
 class Recovery:
     """
-    L: excess over the table after lost messages. A state is (lam, x): every agent behind the
-    estimate was within x of the lossless run at time lam, and nothing was lost after; (0, 0).
+    L: excess over the table after lost messages. A state is (lam, x): every agent behind the estimate was
+    within x of the lossless run at time lam, and nothing was lost after; (0, 0) at the start.
+
+    Parameters
+    ----------
+    kernels : Kernels
+        Of kernels().
+    s : int
+        Sensors attacked at a time, >= 0.
+
+    Raises
+    ------
+    InvalidInput
+        s < 0.
     """
     @staticmethod
     def lost(
@@ -337,7 +489,20 @@ class Recovery:
         d: typing.SupportsFloat | typing.SupportsIndex,
     ) -> tuple[int, float]:
         """
-        After a loss in step t: b bounds ||e_i(t)||, d is the table's d_i(t).
+        The state after a loss.
+
+        Parameters
+        ----------
+        t : int
+            Step of the loss.
+        b : float
+            Bounds ||e_i(t)||.
+        d : float
+            d_i(t) of the table.
+
+        Returns
+        -------
+        (lam, x)
         """
     def __init__(self, kernels: Kernels, s: typing.SupportsInt | typing.SupportsIndex) -> None: ...
     def __reduce__(self) -> tuple: ...
@@ -348,7 +513,25 @@ class Recovery:
         t: typing.SupportsInt | typing.SupportsIndex,
     ) -> float:
         """
-        ||e_i(t)|| <= d_i(t) + this.
+        ||e_i(t)|| is at most d_i(t) of the table and this.
+
+        Parameters
+        ----------
+        agent : int
+            0..N-1.
+        state : (lam, x)
+            lam <= t, x >= 0.
+        t : int
+            Present step.
+
+        Returns
+        -------
+        float
+
+        Raises
+        ------
+        InvalidInput
+            There is no such agent or state.
         """
     def level_excess(
         self,
@@ -357,7 +540,25 @@ class Recovery:
         t: typing.SupportsInt | typing.SupportsIndex,
     ) -> float:
         """
-        level_j(t+1) = nominal + this.
+        The level of t + 1 is that of the table and this.
+
+        Parameters
+        ----------
+        agent : int
+            0..N-1.
+        state : (lam, x)
+            lam <= t, x >= 0.
+        t : int
+            Present step.
+
+        Returns
+        -------
+        float
+
+        Raises
+        ------
+        InvalidInput
+            There is no such agent or state.
         """
     def merge(
         self,
@@ -366,7 +567,23 @@ class Recovery:
         t: typing.SupportsInt | typing.SupportsIndex,
     ) -> tuple[int, float]:
         """
-        Of two states seen at t, the one that dominates both.
+        Of two states seen at one time, the one that dominates both.
+
+        Parameters
+        ----------
+        p, q : (lam, x)
+            lam <= t, x >= 0.
+        t : int
+            Present step.
+
+        Returns
+        -------
+        (lam, x)
+
+        Raises
+        ------
+        InvalidInput
+            No such state.
         """
     def rebase(
         self,
@@ -375,6 +592,22 @@ class Recovery:
     ) -> tuple[int, float]:
         """
         The state seen at time t: carried over every multiple of K.
+
+        Parameters
+        ----------
+        state : (lam, x)
+            lam <= t, x >= 0.
+        t : int
+            Present step.
+
+        Returns
+        -------
+        (lam, x)
+
+        Raises
+        ------
+        InvalidInput
+            No such state.
         """
     @property
     def rb(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -390,6 +623,28 @@ class Recovery:
 class TwoNumbers:
     """
     M: bound rho + sqrt((N-1)/N) p for unknown averaging with ||J - 11'/N|| <= gamma per step.
+
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    C : (N, n) array
+        Rows of length 1, or 0.
+    s : int
+        Sensors attacked at a time, >= 0.
+    rho : float
+        Bound on the mean of the errors at the start, >= 0.
+    p : float
+        Bound on their deviations from the mean at the start, >= 0.
+    bw : float
+        ||w|| <= bw, >= 0.
+    bv : (N,) array
+        |v_j| <= bv[j], >= 0.
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit, or a number is out of range.
     """
     def __init__(
         self,
@@ -404,7 +659,22 @@ class TwoNumbers:
     def __reduce__(self) -> tuple: ...
     def step(self, gamma: typing.SupportsFloat | typing.SupportsIndex) -> float:
         """
-        One step; returns the bound. Raises InvalidInput.
+        One step.
+
+        Parameters
+        ----------
+        gamma : float
+            >= 0, of this step.
+
+        Returns
+        -------
+        float
+            Bound on every ||e_i||; inf once it overflowed.
+
+        Raises
+        ------
+        InvalidInput
+            gamma < 0.
         """
     @property
     def bound(self) -> float:
@@ -431,8 +701,26 @@ class TwoNumbers:
 
 class Window:
     """
-    The measurements of several steps as one regression z = N theta + o. Call begin, a prior, then for each step add its
-    rows and advance. x(k+1) = A x(k) + u + Gam w~(k).
+    The measurements of several steps as one regression z = N theta + o, for x(k+1) = A x(k) + u + Gam w~(k).
+    Call begin, a prior, then for each step add its rows and advance.
+
+    Parameters
+    ----------
+    states : int
+        n >= 1.
+    noise : int
+        Columns of Gam, >= 0.
+    steps : int
+        Most steps, >= 1.
+    sources : int
+        Sources are 0..sources-1, >= 1.
+    capacity : int
+        Most measurements, >= 1.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or more than memory is meant for.
     """
     def __init__(
         self,
@@ -441,11 +729,7 @@ class Window:
         steps: typing.SupportsInt | typing.SupportsIndex,
         sources: typing.SupportsInt | typing.SupportsIndex,
         capacity: typing.SupportsInt | typing.SupportsIndex,
-    ) -> None:
-        """
-        For at most `steps` steps of `states` numbers, Gam (states, noise), and `capacity` measurements of sources 0..sources-1.
-        Raises InvalidInput.
-        """
+    ) -> None: ...
     def __reduce__(self) -> tuple: ...
     def add(
         self,
@@ -457,8 +741,27 @@ class Window:
         bounded: bool = False,
     ) -> bool:
         """
-        A measurement y = c x + v of the present step: c (n,), v ~ N(0, variance) and at most bias on top, or
-        bounded: |v| <= bias alone. False: it says nothing (nan, c = 0, no such source, full, ..) and is left out.
+        A measurement y = c x + v of the present step.
+
+        Parameters
+        ----------
+        source : int
+            Whose it is, 0..sources-1.
+        c : (n,) array
+            Its row.
+        y : float
+            nan = missing.
+        variance : float
+            v ~ N(0, variance), > 0.
+        bias : float
+            At most so much on top, >= 0.
+        bounded : bool
+            |v| <= bias alone.
+
+        Returns
+        -------
+        bool
+            False: it says nothing (nan, c = 0, no such source, full, ..) and is left out.
         """
     def advance(
         self,
@@ -467,7 +770,21 @@ class Window:
         u: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
     ) -> None:
         """
-        To the next step: A (n, n), Gam (n, noise), u (n,). Raises InvalidInput.
+        To the next step.
+
+        Parameters
+        ----------
+        A : (n, n) array
+            Of the plant.
+        Gam : (n, noise) array
+            How the noise enters.
+        u : (n,) array
+            Known input.
+
+        Raises
+        ------
+        InvalidInput
+            Shapes do not fit, or beyond the last step.
         """
     def begin(
         self,
@@ -475,7 +792,19 @@ class Window:
         process_bound: typing.SupportsFloat | typing.SupportsIndex = ...,
     ) -> None:
         """
-        Empties the window. w~ ~ N(0, I), or |w~_i| <= process_bound. Raises InvalidInput.
+        Empties the window.
+
+        Parameters
+        ----------
+        steps : int
+            Of this window, 1..the most.
+        process_bound : float
+            |w~_i| <= process_bound, > 0; nan: w~ ~ N(0, I).
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range.
         """
     def prior_gaussian(
         self,
@@ -483,7 +812,19 @@ class Window:
         P0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     ) -> None:
         """
-        x(0) - c0 ~ N(0, P0); c0 (n,), P0 (n, n) positive definite; right after begin. Raises InvalidInput.
+        x(0) - c0 ~ N(0, P0), right after begin.
+
+        Parameters
+        ----------
+        c0 : (n,) array
+            Finite.
+        P0 : (n, n) array
+            Positive definite.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, no such covariance, or not right after begin.
         """
     def prior_set(
         self,
@@ -493,7 +834,23 @@ class Window:
         weight: typing.SupportsFloat | typing.SupportsIndex = 4.0,
     ) -> None:
         """
-        (x(0) - c0)' P0^-1 (x(0) - c0) <= r0^2 for certain; weight: as how many deviations r0 counts. Raises InvalidInput.
+        (x(0) - c0)' P0^-1 (x(0) - c0) <= r0^2 for certain, right after begin.
+
+        Parameters
+        ----------
+        c0 : (n,) array
+            Finite.
+        P0 : (n, n) array
+            Positive definite.
+        r0 : float
+            >= 0.
+        weight : float
+            As how many deviations r0 counts, > 0.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, a number out of range, or not right after begin.
         """
     @property
     def E(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
@@ -609,8 +966,25 @@ class WindowWitness:
 
 class Bank:
     """
-    B: one Kalman filter per set of s sources left out; the attacked set never changes. sources: a list of (C (k, n),
-    variances (k,)).
+    B: one Kalman filter per set of s sources left out; the attacked set never changes.
+
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    Q : (n, n) array
+        Covariance of the process noise.
+    sources : sequence of ((k, n) array, (k,) array)
+        Rows and variances (> 0) of each source.
+    s : int
+        Attacked sources, >= 0.
+    limit : int
+        Most members; C(sources, s) are needed.
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit, no covariance, or too many members.
     """
     def __init__(
         self,
@@ -624,20 +998,39 @@ class Bank:
         ],
         s: typing.SupportsInt | typing.SupportsIndex,
         limit: typing.SupportsInt | typing.SupportsIndex = 5000,
-    ) -> None:
-        """
-        A, Q (n, n). Raises InvalidInput, also when C(sources, s) > limit.
-        """
+    ) -> None: ...
     def __reduce__(self) -> tuple: ...
     def merge(
         self, most: typing.SupportsInt | typing.SupportsIndex, z2: typing.SupportsFloat | typing.SupportsIndex
     ) -> None:
         """
-        At most `most` members from now on, each leaving out more. Raises InvalidInput.
+        Fewer members from now on, each leaving out more.
+
+        Parameters
+        ----------
+        most : int
+            Members that stay at most, >= 1.
+        z2 : float
+            As of update; the answer fails with delta(z2) more each time.
+
+        Raises
+        ------
+        InvalidInput
+            A number out of range.
         """
     def restart(self, region: Region) -> None:
         """
-        All members anew from a Region that contains x. Raises InvalidInput without an answer.
+        All members anew from a region that contains x.
+
+        Parameters
+        ----------
+        region : Region
+            With an answer; it may depend on all data so far.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, or no answer.
         """
     def start_gaussian(
         self,
@@ -645,7 +1038,19 @@ class Bank:
         P0: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
     ) -> None:
         """
-        x - c0 ~ N(0, P0) before the first update. Raises InvalidInput.
+        x - c0 ~ N(0, P0) before the first update.
+
+        Parameters
+        ----------
+        c0 : (n,) array
+            Finite.
+        P0 : (n, n) array
+            Covariance.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, or no covariance.
         """
     def start_set(
         self,
@@ -654,7 +1059,21 @@ class Bank:
         r0: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None:
         """
-        (x - c0)' P0^-1 (x - c0) <= r0^2 before the first update. Raises InvalidInput.
+        (x - c0)' P0^-1 (x - c0) <= r0^2 before the first update.
+
+        Parameters
+        ----------
+        c0 : (n,) array
+            Finite.
+        P0 : (n, n) array
+            Positive semidefinite.
+        r0 : float
+            >= 0.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, or a number out of range.
         """
     def start_unknown(self) -> None:
         """
@@ -681,8 +1100,32 @@ class Bank:
         predict: bool = True,
     ) -> WindowWitness:
         """
-        One step. y: all outputs one after the other, nan = missing; A, Q, sources: where they differ from the
-        design's; u (n,): known input. Returns a WindowWitness; raises InvalidInput.
+        Theorem B: one step.
+
+        Parameters
+        ----------
+        y : array
+            All outputs one after the other; nan = missing.
+        z1, z2, zc : float
+            window_levels(), >= 0.
+        A, Q : (n, n) array, optional
+            Where they differ from the design's.
+        u : (n,) array, optional
+            Known input.
+        sources : as in Bank, optional
+            Where they differ from the design's; of the same sizes.
+        predict : bool
+            False: the measurements belong to the same time as those before.
+
+        Returns
+        -------
+        WindowWitness
+            Refuted when no member lives: restart then.
+
+        Raises
+        ------
+        InvalidInput
+            A wrong size, or a number out of range.
         """
     @property
     def count(self) -> int:
@@ -779,8 +1222,23 @@ def accepted(
     liars: typing.SupportsInt | typing.SupportsIndex,
 ) -> bool:
     """
-    Whether a flooded number is its owner's, for paths (owner, relay, ..) that brought the same one; the budget is then
-    s + liars. Raises InvalidInput.
+    Whether a flooded number is its owner's; the budget of the certificates is then s + liars.
+
+    Parameters
+    ----------
+    paths : sequence of sequences of int
+        (owner, relay, ..) of each that brought the same number.
+    liars : int
+        Agents that may lie, >= 0.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InvalidInput
+        liars < 0, an empty path, or paths of different owners.
     """
 
 def after_injection(
@@ -791,6 +1249,26 @@ def after_injection(
 ) -> float:
     """
     R: norm_A b + bw + |kappa|, the bound after predicting and injecting a known innovation.
+
+    Parameters
+    ----------
+    norm_A : float
+        ||A||, >= 0.
+    b : float
+        Bound before, >= 0.
+    bw : float
+        Bound on the process noise, >= 0.
+    kappa : float
+        What was injected; finite.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def anytime_window(
@@ -805,7 +1283,29 @@ def anytime_window(
     honest: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
 ) -> WindowWitness:
     """
-    A: from leverage_window (1 leaf) to subsets_window (all), within a budget of `leaves`. Raises InvalidInput.
+    A: from leverage_window (1 leaf) to subsets_window (all), within a budget.
+
+    Parameters
+    ----------
+    window : Window
+        Filled up to its last step.
+    s : int
+        >= 0.
+    z1, z2, zc : float
+        window_levels(), >= 0; 0 with bounded noise.
+    leaves : int
+        Budget, >= 1: the cost is that of so many leverage_window.
+    proved, honest : sequence of int
+        Sources known to be so.
+
+    Returns
+    -------
+    WindowWitness
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or a window that is not filled.
     """
 
 def averaged(
@@ -814,8 +1314,25 @@ def averaged(
     bounds: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
 ) -> Region:
     """
-    R: Region around the weighted sum of estimates (q, n) whose errors are at most bounds (q,), inf = not known;
-    weights (q,) of any sign with sum 1. Raises InvalidInput.
+    R: Region around the weighted sum of the estimates that arrived.
+
+    Parameters
+    ----------
+    weights : (q,) array
+        Of any sign, with sum 1.
+    estimates : (q, n) array
+        One per row, finite.
+    bounds : (q,) array
+        On their errors, >= 0; inf or nan = none known.
+
+    Returns
+    -------
+    Region
+
+    Raises
+    ------
+    InvalidInput
+        Sizes that differ, or a number out of range.
     """
 
 def bank_steady(
@@ -834,8 +1351,32 @@ def bank_steady(
     limit: typing.SupportsInt | typing.SupportsIndex = 100000,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
-    B2, design time: (n + 1,): per coordinate and in the 2-norm (last), what a living member's error never exceeds;
-    inf: not detectable without some 2s sources. z2, zc at delta / C(sources, s). Raises InvalidInput.
+    B2, design time: what a living member's error never exceeds once the start has decayed.
+
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    Q : (n, n) array
+        Covariance of the process noise.
+    sources : as in Bank
+        Every row is taken to arrive in each step.
+    s : int
+        Attacked sources, >= 0.
+    z1, z2, zc : float
+        Levels of the bank; z2 and zc at delta / C(sources, s).
+    limit : int
+        Most pairs of sets.
+
+    Returns
+    -------
+    (n + 1,) array
+        Per coordinate, and in the 2-norm (last); inf: not detectable without some 2s sources.
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit, a number out of range, or too many pairs.
     """
 
 def bank_steady_width(
@@ -854,7 +1395,32 @@ def bank_steady_width(
     limit: typing.SupportsInt | typing.SupportsIndex = 100000,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
-    B2, design time: (n,): half widths that the box of a bank never exceeds; the rest as in bank_steady.
+    B2, design time: half widths that the box of a bank never exceeds once the start has decayed.
+
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    Q : (n, n) array
+        Covariance of the process noise.
+    sources : as in Bank
+        Every row is taken to arrive in each step.
+    s : int
+        Attacked sources, >= 0.
+    z1, z2, zc : float
+        Levels of the bank; z2 and zc at delta / C(sources, s).
+    limit : int
+        Most pairs of sets.
+
+    Returns
+    -------
+    (n,) array
+        inf: not detectable without some 2s sources.
+
+    Raises
+    ------
+    InvalidInput
+        As bank_steady.
     """
 
 def calibrated_levels(
@@ -864,8 +1430,28 @@ def calibrated_levels(
     delta: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[float, float]:
     """
-    Distribution-free (z1, z2) for one state from clean residuals V (T, N), times C = +-1; R (N,) variances.
-    Exact for exchangeable samples; delta >= 2/(T+1). Raises InvalidInput, also beyond 2e8 sums.
+    Distribution-free levels for one state and rows C = +-1. Exact for exchangeable samples.
+
+    Parameters
+    ----------
+    V : (T, N) array
+        Clean residuals, times C.
+    R : (N,) array
+        Variances, > 0.
+    s : int
+        Attacked sensors, 0..N-1.
+    delta : float
+        At least 2/(T+1), below 1.
+
+    Returns
+    -------
+    (z1, z2)
+        As of gaussian_levels.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or more than 2e8 sums would be needed.
     """
 
 def cells(
@@ -875,15 +1461,47 @@ def cells(
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
 ]:
     """
-    C: (lo, hi), (n,) each: per coordinate the hull of the points in at least len(regions) - s of the boxes; nan:
-    more than s wrong; inf: not enough. Raises InvalidInput.
+    C: per coordinate the hull of the points in all but s of the boxes.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        At least one; of disjoint cells of sources, or of distinct neighbours.
+    s : int
+        Regions that may be wrong, >= 0.
+
+    Returns
+    -------
+    (lo, hi), (n,) arrays
+        nan: more than s wrong; inf: not enough.
+
+    Raises
+    ------
+    InvalidInput
+        No region, sizes that differ, or s < 0.
     """
 
 def chi(
     delta: typing.SupportsFloat | typing.SupportsIndex, degrees: typing.SupportsInt | typing.SupportsIndex
 ) -> float:
     """
-    c with P(chi-square > c^2) = delta; delta in (0, 1), degrees >= 1.
+    c with P(chi-square > c^2) = delta: the length that a standard Gaussian vector exceeds.
+
+    Parameters
+    ----------
+    delta : float
+        Above 0 and below 1.
+    degrees : int
+        Numbers of the vector, >= 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def ellipsoid(
@@ -892,7 +1510,25 @@ def ellipsoid(
     stretch: typing.SupportsFloat | typing.SupportsIndex,
 ) -> Region:
     """
-    The Region (x - center)' shape^-1 (x - center) <= stretch^2, with its box and ball. Raises InvalidInput.
+    The Region (x - center)' shape^-1 (x - center) <= stretch^2, with its box and ball.
+
+    Parameters
+    ----------
+    center : (n,) array
+        Finite.
+    shape : (n, n) array
+        Symmetric, positive semidefinite.
+    stretch : float
+        >= 0.
+
+    Returns
+    -------
+    Region
+
+    Raises
+    ------
+    InvalidInput
+        Sizes that differ, or a number out of range.
     """
 
 def empirical_quantile(
@@ -901,7 +1537,26 @@ def empirical_quantile(
     confidence: typing.SupportsFloat | typing.SupportsIndex = 0.95,
 ) -> typing.Annotated[list[float], "FixedSize(3)"]:
     """
-    (value, lower, upper): a level that a share `delta` of clean numbers `measured` (T,) exceeds, and where the true one is with that confidence if they are independent; nan where T is too small. nan = missing.
+    A level that a share of clean numbers exceeds.
+
+    Parameters
+    ----------
+    measured : (T,) array
+        Clean numbers; nan = missing.
+    delta : float
+        The share, above 0 and below 1.
+    confidence : float
+        Of the interval, above 0 and below 1, if the numbers are independent.
+
+    Returns
+    -------
+    (value, lower, upper)
+        The level, and where the true one is; nan where T is too small.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def error_system(
@@ -911,8 +1566,27 @@ def error_system(
     silent: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
 ) -> ErrorSystem:
     """
-    Lemma 1. A (n, n); C (N, n), rows of length 1 or 0; J (N, N), the averaging of one step, row sums 1;
-    silent: sensors that inject nothing. Raises InvalidInput.
+    Lemma 1: the errors of all agents as one system.
+
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    C : (N, n) array
+        Rows of length 1, or 0.
+    J : (N, N) array
+        The averaging of one step, row sums 1.
+    silent : sequence of int
+        Sensors that inject nothing.
+
+    Returns
+    -------
+    ErrorSystem
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit, or a row is not as said.
     """
 
 def gaussian_levels(
@@ -921,7 +1595,26 @@ def gaussian_levels(
     states: typing.SupportsInt | typing.SupportsIndex,
 ) -> tuple[float, float]:
     """
-    (z1, z2) of the witnesses that fail together with probability <= delta, half for each.
+    Levels of the witnesses that fail together with probability <= delta, half for each.
+
+    Parameters
+    ----------
+    delta : float
+        Above 0 and below 1.
+    rows : int
+        Measurements of one sample, >= 1.
+    states : int
+        n >= 1.
+
+    Returns
+    -------
+    (z1, z2)
+        Of every single measurement, and of the least-squares vector.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def gaussian_table(
@@ -937,7 +1630,37 @@ def gaussian_table(
     fixed: bool = False,
 ) -> GaussianTable:
     """
-    Theorem TG: w ~ N(0, Q) (n, n), v_j ~ N(0, R[j]) (N,); z: level of the event. Raises InvalidInput.
+    Theorem TG: the table for Gaussian noise.
+
+    Parameters
+    ----------
+    kernels : Kernels
+        Of kernels().
+    s : int
+        Sensors attacked at a time, >= 0.
+    start : float
+        Bound on all ||e_i(0)||, >= 0.
+    T : int
+        Last step, >= 1.
+    Q : (n, n) array
+        w ~ N(0, Q).
+    R : (N,) array
+        v_j ~ N(0, R[j]), >= 0.
+    z : float
+        Level of the event, in deviations, >= 0.
+    beta : float, optional
+        Fixed level, >= 0; None = adaptive.
+    fixed : bool
+        The attacked set never changes.
+
+    Returns
+    -------
+    GaussianTable
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or no covariance.
     """
 
 def hull_window(
@@ -949,8 +1672,27 @@ def hull_window(
     typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
 ]:
     """
-    Bounded noise, exactly: (lo, hi), (n,) each, by linear programs over all sets of s sources left out. nan: more
-    than s are attacked; inf: the rows cannot answer. Raises InvalidInput.
+    Bounded noise, exactly: hull of the states that explain the rows, by linear programs over all sets of s
+    sources left out.
+
+    Parameters
+    ----------
+    window : Window
+        Of bounded rows only, without a prior, filled up to its last step.
+    s : int
+        >= 0.
+    limit : int
+        Most sets, >= 1.
+
+    Returns
+    -------
+    (lo, hi), (n,) arrays
+        nan: more than s are attacked; inf: the rows cannot answer.
+
+    Raises
+    ------
+    InvalidInput
+        Another window, a number out of range, or more than `limit` sets.
     """
 
 def informed(
@@ -961,8 +1703,30 @@ def informed(
     bv: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
     """
-    Theorem I, bounded noise: (steps, N), row k-1 bounds ||e_i(t0 + k)||. system: with the proved sensors silent;
-    start (N,): bounds at t0. Raises InvalidInput.
+    Theorem I, bounded noise: bounds once all agents have proved all attackers.
+
+    Parameters
+    ----------
+    system : ErrorSystem
+        With the proved sensors silent.
+    start : (N,) array
+        Bounds on all ||e_l(t0)||, >= 0.
+    steps : int
+        >= 1.
+    bw : float
+        ||w|| <= bw, >= 0.
+    bv : (N,) array
+        |v_j| <= bv[j], >= 0.
+
+    Returns
+    -------
+    (steps, N) array
+        Row k-1 bounds ||e_i(t0 + k)||.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or sizes that differ.
     """
 
 def informed_gaussian(
@@ -975,12 +1739,54 @@ def informed_gaussian(
     delta: typing.SupportsFloat | typing.SupportsIndex,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
     """
-    Theorem I, Gaussian noise. P0 (N n, N n): zero unless t0 was fixed in advance. Raises InvalidInput.
+    Theorem I, Gaussian noise; each bound fails with probability delta.
+
+    Parameters
+    ----------
+    system : ErrorSystem
+        With the proved sensors silent.
+    start : (N,) array
+        Bounds on all ||e_l(t0)||, >= 0.
+    steps : int
+        >= 1.
+    Q : (n, n) array
+        w ~ N(0, Q).
+    R : (N,) array
+        v_j ~ N(0, R[j]), >= 0.
+    P0 : (N n, N n) array
+        Covariance of the noise part at t0: zero unless t0 was fixed in advance.
+    delta : float
+        Above 0 and below 1.
+
+    Returns
+    -------
+    (steps, N) array
+        Row k-1 bounds ||e_i(t0 + k)||.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, no covariance, or sizes that differ.
     """
 
 def intersection(regions: collections.abc.Sequence[Region]) -> Region:
     """
-    The Region that all of these leave, which hold on the same event; refuted when it is empty.
+    The Region that all of these leave, which hold on the same event.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        At least one.
+
+    Returns
+    -------
+    Region
+        Refuted when it is empty.
+
+    Raises
+    ------
+    InvalidInput
+        No region, or sizes that differ.
     """
 
 def interval(
@@ -989,13 +1795,47 @@ def interval(
     s: typing.SupportsInt | typing.SupportsIndex,
 ) -> tuple[float, float]:
     """
-    W0, one state: (lo, hi) of the points in at least m - s of the intervals y +- width, y (m,) = C y, nan =
-    missing. (nan, nan): more than s attacked; (-inf, inf): not enough rows.
+    W0, one state: the points that lie in at least m - s of the intervals y +- width.
+
+    Parameters
+    ----------
+    y : (m,) array
+        C y of sensors with C = +-1; nan = missing.
+    width : (m,) array
+        Bounds of their noise, >= 0.
+    s : int
+        >= 0.
+
+    Returns
+    -------
+    (lo, hi)
+        (nan, nan): more than s attacked; (-inf, inf): not enough rows.
+
+    Raises
+    ------
+    InvalidInput
+        Sizes that differ, or a number out of range.
     """
 
 def kernels(system: ErrorSystem, window: typing.SupportsInt | typing.SupportsIndex) -> Kernels:
     """
-    Kernels of K = window lags, best so many that Rb[K].sum(1) < 1e-3. Raises InvalidInput.
+    What so many steps of an error system do.
+
+    Parameters
+    ----------
+    system : ErrorSystem
+        Of error_system().
+    window : int
+        K >= 1 steps, best so many that Rb[K].sum(1) < 1e-3.
+
+    Returns
+    -------
+    Kernels
+
+    Raises
+    ------
+    InvalidInput
+        K < 1, too large, or powers that overflow.
     """
 
 def leverage_ball(
@@ -1012,10 +1852,37 @@ def leverage_ball(
     sources: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
 ) -> Witness:
     """
-    W2: region of the state from one sample's rows y (m,), nan = missing; C (m, n); variances R (m,).
-    At most s of all sources lie. z1, z2: gaussian_levels(); widths (m,): bounded noise |v| <= width instead.
-    prior: a Region that contains x. sources (m,): of each row, empty = its position; proved: sources known to
-    be attacked, which then must never change. Returns a Witness; raises InvalidInput.
+    W2: region of the state from the rows of one sample. At most s of all sources lie.
+
+    Parameters
+    ----------
+    y : (m,) array
+        Measurements; nan = missing.
+    C : (m, n) array
+        Their rows.
+    R : (m,) array
+        Variances, > 0.
+    s : int
+        >= 0.
+    z1, z2 : float
+        gaussian_levels(), >= 0; 0 with bounded noise.
+    widths : (m,) array, optional
+        Bounded noise |v| <= width instead, >= 0.
+    prior : Region, optional
+        Contains x.
+    proved : sequence of int
+        Sources known to be attacked, which then must never change.
+    sources : sequence of m int
+        Of each row; empty = its position.
+
+    Returns
+    -------
+    Witness
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or sizes that differ.
     """
 
 def leverage_window(
@@ -1030,8 +1897,29 @@ def leverage_window(
     honest: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
 ) -> WindowWitness:
     """
-    W2M: the state of the window's last step, at most s sources lie (moving: s in each step). z1, z2, zc:
-    window_levels(), 0 with bounded noise. proved, honest: sources known to be so. Returns a WindowWitness; raises InvalidInput.
+    W2M: region of the state of the window's last step, at most s sources lie.
+
+    Parameters
+    ----------
+    window : Window
+        Filled up to its last step.
+    s : int
+        >= 0.
+    z1, z2, zc : float
+        window_levels(), >= 0; 0 with bounded noise.
+    moving : bool
+        s sources in each step, else one set for the whole window.
+    proved, honest : sequence of int
+        Sources known to be so.
+
+    Returns
+    -------
+    WindowWitness
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, `proved` with a moving set, or a window that is not filled.
     """
 
 def lists_complete(
@@ -1041,6 +1929,24 @@ def lists_complete(
 ) -> int:
     """
     t0 of theorem I: the step from which all lists are complete.
+
+    Parameters
+    ----------
+    step : int
+        At whose end the first list was complete, >= 0.
+    diameter : int
+        Of the network, >= 0.
+    rounds : int
+        Hops per step, >= 1.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def meters(
@@ -1048,7 +1954,23 @@ def meters(
     source: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
 ) -> Meters:
     """
-    H (rows, n), divided by the deviations, reference removed; source (rows,). Raises InvalidInput.
+    What a static set of meters withstands.
+
+    Parameters
+    ----------
+    H : (rows, n) array
+        Divided by the deviations, reference removed.
+    source : sequence of int
+        Of each row; empty = its position.
+
+    Returns
+    -------
+    Meters
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit, or the rows do not determine the state.
     """
 
 def observer_table(
@@ -1066,8 +1988,41 @@ def observer_table(
     source: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
 ) -> ObserverTable:
     """
-    O: bounds of one observer with gain L (n, m) and clipped innovations, sets that move every step. |v| <= bv (m,),
-    ||w~|| <= bw, ||e(0)|| <= start; source (m,): of each row. Raises InvalidInput.
+    O: bounds of one observer with clipped innovations, sets that move every step.
+
+    Parameters
+    ----------
+    A : (n, n) array
+        Of the plant.
+    C : (m, n) array
+        Rows.
+    L : (n, m) array
+        Gain.
+    Gam : (n, q) array
+        How the process noise enters.
+    bv : (m,) array
+        |v| <= bv, >= 0.
+    s : int
+        Sources attacked in each step, >= 0.
+    bw : float
+        ||w~|| <= bw, >= 0.
+    start : float
+        ||e(0)|| <= start, >= 0.
+    T : int
+        Last step, >= 1.
+    lags : int
+        Lags that are unrolled, >= 1.
+    source : sequence of m int
+        Of each row; empty = its position.
+
+    Returns
+    -------
+    ObserverTable
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit, or a number is out of range.
     """
 
 def order_bound(
@@ -1076,7 +2031,26 @@ def order_bound(
     s: typing.SupportsInt | typing.SupportsIndex,
 ) -> float:
     """
-    W0, one state: bound on |xhat - x| from r (m,) = C (y - C xhat) and widths (m,), at most s attacked.
+    W0, one state: bound on |xhat - x| with at most s attacked.
+
+    Parameters
+    ----------
+    r : (m,) array
+        C (y - C xhat) of sensors with C = +-1; nan = missing.
+    width : (m,) array
+        Bounds of their noise, >= 0.
+    s : int
+        >= 0.
+
+    Returns
+    -------
+    float
+        inf with s or fewer sensors.
+
+    Raises
+    ------
+    InvalidInput
+        Sizes that differ, or a number out of range.
     """
 
 def order_rule(
@@ -1084,7 +2058,24 @@ def order_rule(
     f: typing.SupportsInt | typing.SupportsIndex,
 ) -> float:
     """
-    The (f+1)-th smallest of upper bounds of which at most f are wrong; inf with f or fewer, nan = none.
+    The (f+1)-th smallest of upper bounds on one number, of which at most f are wrong.
+
+    Parameters
+    ----------
+    values : (q,) array
+        Bounds; nan = none.
+    f : int
+        >= 0.
+
+    Returns
+    -------
+    float
+        inf with f or fewer bounds.
+
+    Raises
+    ------
+    InvalidInput
+        f < 0.
     """
 
 def order_rule_box(
@@ -1093,7 +2084,26 @@ def order_rule_box(
     f: typing.SupportsInt | typing.SupportsIndex,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
-    (n,): bounds on |estimate_i - x_i| from regions of which at most f are wrong. Raises InvalidInput.
+    Bounds on each |estimate_i - x_i| from regions of which at most f are wrong.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        Of distinct senders.
+    estimate : (n,) array
+        Any.
+    f : int
+        >= 0.
+
+    Returns
+    -------
+    (n,) array
+        inf with f or fewer regions.
+
+    Raises
+    ------
+    InvalidInput
+        Sizes that differ, or f < 0.
     """
 
 def range_row(
@@ -1102,7 +2112,26 @@ def range_row(
     rho: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float, float] | None:
     """
-    (h, offset, bias): |x - p| = offset + h x within bias for x in the proved ball (c0, rho); None when it reaches p.
+    A distance to a known point as a row of the regression: |x - p| = offset + h x within bias.
+
+    Parameters
+    ----------
+    p : (n,) array
+        The point.
+    c0 : (n,) array
+        Centre of a ball that is proved to hold x.
+    rho : float
+        Its radius, >= 0.
+
+    Returns
+    -------
+    (h, offset, bias) or None
+        None when the ball reaches p.
+
+    Raises
+    ------
+    InvalidInput
+        Sizes that differ, or a number out of range.
     """
 
 def scan(
@@ -1113,7 +2142,28 @@ def scan(
     z2: typing.SupportsFloat | typing.SupportsIndex,
 ) -> tuple[float, float]:
     """
-    W1, one state, Gaussian noise: (lo, hi) of x - xhat from r (m,) = C (y - C xhat); R (m,) variances.
+    W1, one state, Gaussian noise: interval of x - xhat.
+
+    Parameters
+    ----------
+    r : (m,) array
+        C (y - C xhat) of sensors with C = +-1; nan = missing.
+    R : (m,) array
+        Variances, > 0.
+    s : int
+        >= 0.
+    z1, z2 : float
+        gaussian_levels(), >= 0.
+
+    Returns
+    -------
+    (lo, hi)
+        (nan, nan): more than s attacked; (-inf, inf): not enough rows.
+
+    Raises
+    ------
+    InvalidInput
+        Sizes that differ, or a number out of range.
     """
 
 def smallest_undetectable(
@@ -1122,14 +2172,49 @@ def smallest_undetectable(
     tries: typing.SupportsFloat | typing.SupportsIndex = 10000000.0,
 ) -> SmallestAttack:
     """
-    Exact search up to `most` meters, given up after `tries` sets. Raises InvalidInput.
+    Exact search for the smallest set of meters that can lie unseen.
+
+    Parameters
+    ----------
+    H : (rows, n) array
+        As of meters; no row of zeros.
+    most : int
+        Largest set that is looked for, >= 1.
+    tries : float
+        Sets that are looked at before the search ends.
+
+    Returns
+    -------
+    SmallestAttack
+
+    Raises
+    ------
+    InvalidInput
+        Shapes do not fit, or a number is out of range.
     """
 
 def sub_gaussian_chi(
     delta: typing.SupportsFloat | typing.SupportsIndex, degrees: typing.SupportsInt | typing.SupportsIndex
 ) -> float:
     """
-    sqrt(n + 2 sqrt(n u) + 2 u), u = ln(1/delta) (Hsu, Kakade, Zhang 2012): chi for such noise.
+    sqrt(n + 2 sqrt(n u) + 2 u), u = ln(1/delta) (Hsu, Kakade, Zhang 2012): chi for noise with a sub-Gaussian
+    proxy variance.
+
+    Parameters
+    ----------
+    delta : float
+        Above 0 and below 1.
+    degrees : int
+        n >= 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def sub_gaussian_levels(
@@ -1138,12 +2223,45 @@ def sub_gaussian_levels(
     states: typing.SupportsInt | typing.SupportsIndex,
 ) -> tuple[float, float]:
     """
-    The same for sub-Gaussian noise.
+    gaussian_levels for sub-Gaussian noise.
+
+    Parameters
+    ----------
+    delta : float
+        Above 0 and below 1.
+    rows : int
+        Measurements of one sample, >= 1.
+    states : int
+        n >= 1.
+
+    Returns
+    -------
+    (z1, z2)
+        Of every single measurement, and of the least-squares vector.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def sub_gaussian_two_sided(delta: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
     sqrt(2 ln(2/delta)): two_sided for noise with a sub-Gaussian proxy variance.
+
+    Parameters
+    ----------
+    delta : float
+        Above 0 and below 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        delta is out of range.
     """
 
 def subsets_window(
@@ -1158,8 +2276,32 @@ def subsets_window(
     limit: typing.SupportsInt | typing.SupportsIndex = 3000,
 ) -> WindowWitness:
     """
-    W3M: the same by all sets of s sources left out, the attacked set fixed in the window; sharper. z3: chi of all
-    residuals of such a set. Raises InvalidInput, also when there are more than `limit` sets.
+    W3M: the region of leverage_window by all sets of s sources left out, the attacked set fixed in the window;
+    sharper.
+
+    Parameters
+    ----------
+    window : Window
+        Filled up to its last step.
+    s : int
+        >= 0.
+    z1, z2, zc : float
+        window_levels(), >= 0.
+    z3 : float, optional
+        chi of all residuals of such a set.
+    proved : sequence of int
+        Sources known to be attacked.
+    limit : int
+        Most sets, >= 1.
+
+    Returns
+    -------
+    WindowWitness
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, a window that is not filled, or more than `limit` sets.
     """
 
 def subsets_window_width(
@@ -1172,8 +2314,30 @@ def subsets_window_width(
     limit: typing.SupportsInt | typing.SupportsIndex = 60000,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
-    W3D, design time: (n,) half widths that subsets_window never exceeds whatever s attackers do; inf: not
-    observable without some 2s sources. Raises InvalidInput.
+    W3D, design time: half widths that subsets_window never exceeds whatever s attackers do.
+
+    Parameters
+    ----------
+    window : Window
+        Filled up to its last step; its data are not read.
+    s : int
+        >= 0.
+    z1, zc : float
+        As of subsets_window, at delta / C(sources, s).
+    z3 : float, optional
+        As of subsets_window.
+    limit : int
+        Most pairs of sets, >= 1.
+
+    Returns
+    -------
+    (n,) array
+        inf: not observable without some 2s sources.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, a window that is not filled, or more than `limit` pairs.
     """
 
 def table(
@@ -1188,13 +2352,54 @@ def table(
     fixed: bool = False,
 ) -> Table:
     """
-    Theorem T, bounded noise ||w|| <= bw, |v_j| <= bv[j] (N,). start: bound on all ||e_i(0)||; beta: fixed level,
-    None = adaptive; fixed: the attacked set never changes. Raises InvalidInput.
+    Theorem T, bounded noise: bounds on every agent's error without data.
+
+    Parameters
+    ----------
+    kernels : Kernels
+        Of kernels().
+    s : int
+        Sensors attacked at a time, >= 0.
+    start : float
+        Bound on all ||e_i(0)||, >= 0.
+    T : int
+        Last step, >= 1.
+    bw : float
+        ||w|| <= bw, >= 0.
+    bv : (N,) array
+        |v_j| <= bv[j], >= 0.
+    beta : float, optional
+        Fixed level, >= 0; None = adaptive.
+    fixed : bool
+        The attacked set never changes.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or more than memory is meant for.
     """
 
 def two_sided(delta: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    z with P(|N(0,1)| > z) = delta; delta in (0, 1).
+    z with P(|N(0,1)| > z) = delta.
+
+    Parameters
+    ----------
+    delta : float
+        Above 0 and below 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        delta is out of range.
     """
 
 def whiteness(
@@ -1206,7 +2411,25 @@ def whiteness(
     float,
 ]:
     """
-    (statistic (N,), lag-1 correlation (N,), p-value) of the Ljung-Box test of residuals (T, N), nan = missing; the p-value is that of the worst sensor times N: small = a residual depends on its past.
+    Ljung-Box test of residuals against "each is independent of its past".
+
+    Parameters
+    ----------
+    residuals : (T, N) array
+        Of N sensors; nan = missing.
+    lags : int
+        1..T-1.
+
+    Returns
+    -------
+    (statistic (N,), correlation (N,), p_value)
+        The correlation is that of lag 1; p_value is that of the
+        worst sensor times N: small = a residual depends on its past.
+
+    Raises
+    ------
+    InvalidInput
+        No sensor, or lags out of range.
     """
 
 def window_levels(
@@ -1215,7 +2438,26 @@ def window_levels(
     states: typing.SupportsInt | typing.SupportsIndex,
 ) -> tuple[float, float, float]:
     """
-    (z1, z2, zc) of the window certificates that fail together with probability <= delta. Raises InvalidInput.
+    Levels of the window certificates that fail together with probability <= delta.
+
+    Parameters
+    ----------
+    delta : float
+        Above 0 and below 1.
+    rows : int
+        Measurements of the window, >= 1.
+    states : int
+        n >= 1.
+
+    Returns
+    -------
+    (z1, z2, zc)
+        Of every single measurement, of the vector, and of each coordinate.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def witness_subsets(
@@ -1232,7 +2474,36 @@ def witness_subsets(
     limit: typing.SupportsInt | typing.SupportsIndex = 5000,
 ) -> Witness:
     """
-    W3: the same by all sets of sources that may be the honest ones, C(sources, s) of them; sharper.
-    z3: chi(delta3, m - s - n), only where the law of the noise is known. Raises InvalidInput, also when there
-    are more than `limit` sets.
+    W3: the region of leverage_ball by all sets of sources that may be the honest ones, C(sources, s) of them;
+    sharper.
+
+    Parameters
+    ----------
+    y : (m,) array
+        Measurements; nan = missing.
+    C : (m, n) array
+        Their rows.
+    R : (m,) array
+        Variances, > 0.
+    s : int
+        >= 0.
+    z1, z2 : float
+        gaussian_levels(), >= 0.
+    z3 : float, optional
+        chi(delta3, m - s - n), only where the law of the noise is known.
+    proved : sequence of int
+        Sources known to be attacked, which then must never change.
+    sources : sequence of m int
+        Of each row; empty = its position.
+    limit : int
+        Most sets, >= 1.
+
+    Returns
+    -------
+    Witness
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, sizes that differ, or more than `limit` sets.
     """

@@ -36,8 +36,35 @@ __all__: list[str] = [
 
 class Setting:
     """
-    What Assumptions 1 and 2 and the observer's tuning say: N vehicles, range L, period T,
-    b attacked sensors, noise bounds eps and mu, initial error q, threshold beta.
+    What Assumptions 1 and 2 and the observer's tuning say.
+
+    Parameters
+    ----------
+    vehicles : int
+        N >= 2 L + 1, at least 3.
+    range : int
+        L >= 1: vehicles hear those at most L places away.
+    period : float
+        T > 0, s.
+    attacked : int
+        b, most absolute sensors attacked, 1..L.
+    eps : float
+        Bound on the process noise (m and m/s), >= 0.
+    mu : float
+        Bound on the measurement noise (m and m/s), >= 0.
+    q : float
+        Bound on the initial error (m and m/s), > 0.
+    varpi : float
+        1/varpi is the gain of vehicles outside V_1; in (1, ||A||/(||A|| - 1)).
+    beta : float
+        Static threshold, or beta_{i,0} of (25), > 0.
+    adaptive : bool
+        Threshold of (25); False: beta throughout.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
     def __copy__(self) -> typing.Any: ...
     def __deepcopy__(self, memo: dict) -> typing.Any: ...
@@ -89,8 +116,28 @@ def assumption4(
     gv: typing.SupportsFloat | typing.SupportsIndex,
 ) -> bool:
     """
-    Assumption 4: gv > T gs > 0 and T^2 gs - 2 T gv > -4/sigma_max(L_g); the string's own loop is stable exactly then.
-    Raises InvalidInput.
+    Assumption 4: gv > T gs > 0 and T^2 gs - 2 T gv > -4/sigma_max(L_g); the string's own loop is stable exactly
+    then.
+
+    Parameters
+    ----------
+    vehicles : int
+        N >= 1.
+    period : float
+        T > 0, s.
+    gs : float
+        Gain on positions, 1/s^2.
+    gv : float
+        Gain on velocities, 1/s.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or not finite.
     """
 
 def best_source(
@@ -103,42 +150,165 @@ def best_source(
     alpha: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
 ) -> int:
     """
-    j_i of (13); -1 when there is none.
+    j_i of (13): the vehicle from which one without enough sensors in reach takes its estimate.
+
+    Parameters
+    ----------
+    vehicle : int
+        0..N-1.
+    vehicles : int
+        N.
+    range : int
+        L >= 1.
+    free : sequence of int
+        Vehicles whose sensors are known to be free.
+    by_bound : bool
+        Of two that are equally near take the one with the smaller alpha, else the lower one.
+    alpha : (N,) floats
+        Bound on the error of every vehicle.
+
+    Returns
+    -------
+    int
+        -1 when there is none.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def best_threshold(setting: Setting) -> float:
     """
-    Threshold with the least such limit under the adaptive rule. Raises DesignInfeasible.
+    Threshold of beta_interval_safe with the least safe_limit under the adaptive rule.
+
+    Parameters
+    ----------
+    setting : Setting
+        All but beta.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    DesignInfeasible
+        There is none.
     """
 
 def beta1_bar(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (20); omega > 0.
+    Least threshold of (20).
+
+    Parameters
+    ----------
+    setting : Setting
+        All but beta.
+    omega : float
+        > 0; the theorems take it below 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        omega is not > 0.
     """
 
 def beta2_bar(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (20); omega > 0.
+    Largest threshold of (20).
+
+    Parameters
+    ----------
+    setting : Setting
+        All but beta.
+    omega : float
+        > 0; the theorems take it below 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        omega is not > 0.
     """
 
 def beta_interval(setting: Setting) -> tuple:
     """
     All thresholds that Theorem 1 admits for some omega.
+
+    Parameters
+    ----------
+    setting : Setting
+        All but beta.
+
+    Returns
+    -------
+    (float, float)
+        nan when there is none.
     """
 
 def beta_interval_safe(setting: Setting) -> tuple:
     """
     All thresholds with which the bound that holds contracts.
+
+    Parameters
+    ----------
+    setting : Setting
+        All but beta.
+
+    Returns
+    -------
+    (float, float)
+        nan when there is none.
     """
 
 def f3(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (24); omega > 0.
+    f_3 of (24).
+
+    Parameters
+    ----------
+    setting : Setting
+        All of it.
+    omega : float
+        > 0; the theorems take it below 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        omega is not > 0.
     """
 
 def f4(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """
-    (24); omega > 0.
+    f_4 of (24).
+
+    Parameters
+    ----------
+    setting : Setting
+        All of it.
+    omega : float
+        > 0; the theorems take it below 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    InvalidInput
+        omega is not > 0.
     """
 
 def gain(
@@ -150,12 +320,48 @@ def gain(
     free: bool = False,
 ) -> float:
     """
-    (14) of one innovation.
+    (14): what is used of one innovation.
+
+    Parameters
+    ----------
+    beta : float
+        Threshold, > 0; may be inf.
+    eta_s, eta_v : float
+        The innovation: position (m) and velocity (m/s), finite.
+    attacked : bool
+        The sensor is proved to be attacked: 0.
+    free : bool
+        It is known to be free: 1.
+
+    Returns
+    -------
+    float
+        0..1.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def grounded_eigenvalues(vehicles: typing.SupportsInt | typing.SupportsIndex) -> list[float]:
     """
-    Of L_g, upwards.
+    Eigenvalues of the grounded Laplacian L_g.
+
+    Parameters
+    ----------
+    vehicles : int
+        N >= 1.
+
+    Returns
+    -------
+    list of N float
+        Upwards.
+
+    Raises
+    ------
+    InvalidInput
+        vehicles < 1.
     """
 
 def in_V1(
@@ -164,7 +370,25 @@ def in_V1(
     range: typing.SupportsInt | typing.SupportsIndex,
 ) -> bool:
     """
-    (5): hears 2L others.
+    (5): whether a vehicle hears 2 L others.
+
+    Parameters
+    ----------
+    vehicle : int
+        0..N-1.
+    vehicles : int
+        N >= 1.
+    range : int
+        L >= 1.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def loop_factors(
@@ -174,7 +398,29 @@ def loop_factors(
     gv: typing.SupportsFloat | typing.SupportsIndex,
 ) -> dict:
     """
-    Factors of Lemma 2 for P_0 of (31) by 2 x 2 blocks; all but rho nan when P_0 is not Schur.
+    Factors of Lemma 2 for P_0 of (31), by 2 x 2 blocks.
+
+    Parameters
+    ----------
+    vehicles : int
+        N >= 1.
+    period : float
+        T > 0, s.
+    gs : float
+        Gain on positions, 1/s^2.
+    gv : float
+        Gain on velocities, 1/s.
+
+    Returns
+    -------
+    dict
+        rho (spectral radius of P_0), M_max, M_min, kappa, xi as printed, and l1, the sharper factor; all
+        but rho nan when P_0 is not Schur.
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or not finite.
     """
 
 def model(
@@ -183,36 +429,115 @@ def model(
     inputs: bool = False,
 ) -> garrison._core.Model:
     """
-    Model of N vehicles (position m, velocity m/s) sampled every `period` s. Outputs per vehicle: absolute
-    position and velocity (attackable); relative ones to the vehicle ahead (secured, not of vehicle 0); with
-    `inputs`, for recorded data, the input applied from this sample on (nan = what the filter commanded).
+    Model of vehicles in a string. Outputs per vehicle: absolute position (m) and velocity (m/s), which can be
+    attacked; the same relative to the vehicle ahead, which cannot (not of vehicle 0).
+
+    Parameters
+    ----------
+    vehicles : int
+        N >= 3.
+    period : float
+        Between samples, s, > 0.
+    inputs : bool
+        One output more, for recorded data: the input applied from this sample on (nan = what the
+        filter commanded).
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def nearest(
     vehicle: typing.SupportsInt | typing.SupportsIndex, vehicles: typing.SupportsInt | typing.SupportsIndex
 ) -> list[int]:
     """
-    (30): the next ones; -1 stands for the reference, on both sides.
+    (30): the vehicles next to one; -1 stands for the reference, on both sides.
+
+    Parameters
+    ----------
+    vehicle : int
+        -1 (the reference)..N-1.
+    vehicles : int
+        N >= 1.
+
+    Returns
+    -------
+    list of int
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def omega_interval(setting: Setting) -> tuple:
     """
-    All omega with 0 < beta1_bar < beta2_bar; (nan, nan) when there is none.
+    All omega with 0 < beta1_bar < beta2_bar.
+
+    Parameters
+    ----------
+    setting : Setting
+        All but beta.
+
+    Returns
+    -------
+    (float, float)
+        An open interval; nan when there is none.
     """
 
 def proposition2(setting: Setting, omega: typing.SupportsFloat | typing.SupportsIndex) -> bool:
     """
-    (23); omega > 0.
+    Whether (23) holds: equivalent to 0 < beta1_bar < beta2_bar (docs/filters/platoon.md#e6).
+
+    Parameters
+    ----------
+    setting : Setting
+        All but beta.
+    omega : float
+        > 0; the theorems take it below 1.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InvalidInput
+        omega is not > 0.
     """
 
 def runs(labels: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex]) -> tuple[list[list[int]], int]:
     """
-    Maximal runs of successive labels, and the left side of (29).
+    Maximal runs of successive labels, and the left side of (29): at least how many attacked sensors they take.
+
+    Parameters
+    ----------
+    labels : sequence of int
+        In any order.
+
+    Returns
+    -------
+    (list of lists of int, int)
     """
 
 def safe_limit(setting: Setting) -> float:
     """
-    Limit of the bound that holds, nobody identified; nan when it grows for ever.
+    Limit of the bound that holds, nobody identified.
+
+    Parameters
+    ----------
+    setting : Setting
+        All of it.
+
+    Returns
+    -------
+    float
+        On the error of every vehicle (m and m/s); nan when it grows for ever.
     """
 
 def theorem1(
@@ -223,7 +548,28 @@ def theorem1(
     distance: typing.SupportsInt | typing.SupportsIndex = 1,
 ) -> dict:
     """
-    (21), (22) as printed.
+    Theorem 1, (21) and (22) as printed; safe_limit is the bound that holds.
+
+    Parameters
+    ----------
+    setting : Setting
+        All of it.
+    free_in_reach : int
+        |S_{i,1}|, sensors in reach known to be free, 0..2 L.
+    proved : int
+        |S^a_i|, sensors proved to be attacked, 0..b.
+    distance : int
+        |j_i - i|, places to the next vehicle of V_1, 1..N.
+
+    Returns
+    -------
+    dict
+        k_star, Q, m, and alpha1, alpha2, alpha3: asymptotic bounds (m and m/s).
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def theorem2(
@@ -234,7 +580,28 @@ def theorem2(
     distance: typing.SupportsInt | typing.SupportsIndex = 1,
 ) -> dict:
     """
-    (26), with 2L+1-b in h1.
+    Theorem 2, (26), with 2L + 1 - b in h1, as (D.2) has it.
+
+    Parameters
+    ----------
+    setting : Setting
+        All of it.
+    free_in_reach : int
+        |S_{i,1}|, sensors in reach known to be free, 0..2 L.
+    proved : int
+        |S^a_i|, sensors proved to be attacked, 0..b.
+    distance : int
+        |j_i - i|, places to the next vehicle of V_1, 1..N.
+
+    Returns
+    -------
+    dict
+        k0, h1, h2, and alpha1, alpha2, alpha3: asymptotic bounds (m and m/s).
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range.
     """
 
 def theorem4(
@@ -246,7 +613,33 @@ def theorem4(
     alpha: typing.SupportsFloat | typing.SupportsIndex,
 ) -> dict:
     """
-    Limsup of (4): as printed, with the corrected (31), and with the sharper factor.
+    Limsup of phi (4), the mean deviation from the formation.
+
+    Parameters
+    ----------
+    vehicles : int
+        N >= 1.
+    period : float
+        T > 0, s.
+    gs : float
+        Gain on positions, 1/s^2.
+    gv : float
+        Gain on velocities, 1/s.
+    eps : float
+        Bound on the process noise (m and m/s), >= 0.
+    alpha : float
+        Limsup of every vehicle's estimation error, >= 0.
+
+    Returns
+    -------
+    dict
+        eta and bound as printed; eta_safe and bound_safe with the corrected (31)
+        (docs/filters/platoon.md#e5); bound_sharp with the sharper factor; spacing, of |gap - desired gap| (m).
+
+    Raises
+    ------
+    InvalidInput
+        A number out of range, or not finite.
     """
 
 DISTURBANCES: int = 7

@@ -99,7 +99,7 @@ class Questions:
         twice_fast = "any 2 s sensors may be lost and one sample determines the state"
         return [
             from_removal("no lie stays unseen for ever", seen, over_time, 1, names, can_lie),
-            from_removal("the state can be told in the end", twice, over_time, 2, names, can_lie),
+            from_removal("the state can be determined in the end", twice, over_time, 2, names, can_lie),
             from_removal("every lie shows in one sample", fast, one_sample, 1, names, can_lie),
             from_removal(
                 "witness certificate: a bounded region from one sample", twice_fast, one_sample, 2, names, can_lie
@@ -236,7 +236,7 @@ class Questions:
         out = []
         rows, may_go = self.sensors.rows, self.sensors.can_lie
         for words, A, removal, per_liar in (
-            ("the state can be told in the end with {}", self.A, over_time, 2),
+            ("the state can be determined in the end with {}", self.A, over_time, 2),
             ("one sample bounds the state with {}", self.identity, one_sample, 2),
         ):
             liars = max(removal.spare, 0) // per_liar + (1 if removal.most else 0)

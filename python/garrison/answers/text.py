@@ -74,7 +74,7 @@ def _critical(analysis: Analysis) -> str:
     if analysis.over_time.most == 0:
         return "Not even all sensors together show the whole state."
     if analysis.over_time.spare < 1:
-        return "Whether a single sensor is critical could not be told."
+        return "Whether a single sensor is critical could not be determined."
     return f"No single sensor is critical: any {analysis.over_time.spare} may fail."
 
 

@@ -71,7 +71,23 @@ class Certified(Result):
         return np.isnan(self.radius)
 
     def bound(self, estimate: ArrayLike) -> Array:
-        """Bound on |estimate_i - x_i| per sample and state, for any estimate (samples, n)."""
+        """Bound on |estimate_i - x_i| per sample and state, for any estimate.
+
+        Parameters
+        ----------
+        estimate : (samples, n) array
+            In the units of the state; nan where there is none.
+
+        Returns
+        -------
+        (samples, n) array
+            inf = no answer, nan = refuted.
+
+        Raises
+        ------
+        InvalidInput
+            Another shape.
+        """
         found = numbers("estimate", estimate)
         if found.shape != self.center.shape:
             raise refusal("estimate", f"shape {found.shape}", f"{self.center.shape}, as center")

@@ -58,7 +58,18 @@ class Comparison(Result):
     rows: list[Row]
 
     def table(self, column: str = "q95") -> tuple[list[str], list[str], Array]:
-        """(filters, attacks, numbers): one column of all rows as a matrix, nan where it does not exist."""
+        """One column of all rows as a matrix.
+
+        Parameters
+        ----------
+        column : str
+            A key of `rows`, such as "q95".
+
+        Returns
+        -------
+        (list of str, list of str, (filters, attacks) array)
+            Filters, attacks and numbers; nan where a number does not exist.
+        """
         filters = list(dict.fromkeys(row["filter"] for row in self.rows))
         attacks = list(dict.fromkeys(row["attack"] for row in self.rows))
         numbers = np.full((len(filters), len(attacks)), np.nan)

@@ -17,7 +17,19 @@ LOOKS = {
 
 
 def anatomy_figure(anatomy: Anatomy, most_labels: int = 150) -> Any:
-    """The system digraph with contractions, parent components and sensors; beside it the network (extra: plot)."""
+    """The system digraph with contractions, parent components and sensors; beside it the network (extra: plot).
+
+    Parameters
+    ----------
+    anatomy : Anatomy
+        Of garrison.anatomy.
+    most_labels : int
+        Names are left out where there are more states.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
     import networkx as nx
     from matplotlib.figure import Figure
 

@@ -13,7 +13,20 @@ _MOST_AGENTS = 24
 def innovation_figure(scenario: Scenario, run: Run, before: int = 30, after: int = 60) -> Figure:
     """Statistic against threshold, agent by agent, around the first attack, else the first accusation (first trial).
 
-    Without both, over the whole run.
+    Without both, over the whole run. At most 24 agents.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Of the run: names, dates, attacks.
+    run : Run
+        With reports (keep "report").
+    before, after : int
+        Samples that are shown before and after.
+
+    Returns
+    -------
+    matplotlib Figure
     """
     assert run.statistic is not None and run.threshold is not None
     samples = run.statistic.shape[1] - 1

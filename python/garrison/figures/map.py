@@ -92,7 +92,14 @@ def map_figure(scenario: Scenario, run: Run, figure: Any = None) -> Any:
         ax.spines[["top", "right"]].set_visible(False)
     ax.set_aspect("equal")
     ax.margins(0.12 if scenario.positions is not None else 0.22)
+    room = {"handleheight": 2.4, "scatteryoffsets": [0.3], "borderpad": 1.0}  # for the ring
     ax.legend(
-        loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9, markerscale=scale**-0.5
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=3,
+        frameon=False,
+        fontsize=9,
+        markerscale=scale**-0.5,
+        **room,
     )
     return figure

@@ -8,7 +8,19 @@ from garrison.resilience import Resilience
 
 
 def resilience_figure(found: list[Resilience], title: str = "resilience per byte") -> Figure:
-    """Bytes per sample against errors, with and without the worst attack (see garrison.resilience_per_byte)."""
+    """Bytes per sample against errors, with and without the worst attack.
+
+    Parameters
+    ----------
+    found : list of Resilience
+        As garrison.resilience_per_byte returns them.
+    title : str
+        Above the picture.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
     figure = Figure(figsize=(7, 4), layout="constrained")
     ax = axes(figure, 1, 1, 1)
     stable = [r for r in found if np.isfinite(r.mse)]

@@ -122,7 +122,7 @@ def date_ticks(ax: Any, scenario: Scenario, most: int | None = None) -> None:
     """Short dates below a time axis of moments, at most so many; other axes stay as they are."""
     if not scenario.dates or not isinstance(scenario.dates[0], dt.date):
         return
-    locator = _DATES.AutoDateLocator(maxticks=most)
+    locator = _DATES.AutoDateLocator(minticks=2 if most else 5, maxticks=most)
     ax.xaxis.set_major_locator(locator)
     ax.xaxis.set_major_formatter(_DATES.ConciseDateFormatter(locator))
 

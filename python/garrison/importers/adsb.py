@@ -54,9 +54,28 @@ class Assumptions:
 
 
 def import_adsb(path: Path, choice: Choice | None = None, assumed: Assumptions | None = None) -> Bundle:
-    """The track of one aircraft. choice: which one and which flight, where the file has several.
+    """The track of one aircraft.
 
-    Raises IoError or InvalidInput where the file is no track.
+    Parameters
+    ----------
+    path : Path
+        Of a JSON or CSV file, also as .gz.
+    choice : Choice, optional
+        Which aircraft and which flight, where the file has several.
+    assumed : Assumptions, optional
+        Period (s), oldest position (s), noise (m, m/s, m/s^2) and false-alarm rate.
+
+    Returns
+    -------
+    Bundle
+        What `write(folder)` writes: scenario.toml and the files beside it; facts and notes for people.
+
+    Raises
+    ------
+    IoError
+        A file cannot be read.
+    InvalidInput
+        The file is no track, or has several aircraft or flights.
     """
     assumed = assumed or Assumptions()
     track = read_track(path, choice)

@@ -62,10 +62,28 @@ class Assumptions:
 def import_pandapower(
     case: str, units: Sequence[str] | int | None = None, assumed: Assumptions | None = None
 ) -> Bundle:
-    """A grid. case: a JSON file of pandapower, or the name of one of its cases ("case118", "case1354pegase").
+    """A power grid (extra: grid).
 
-    units: names of the buses with a phasor unit, or how many (those with most lines); None = all. Raises
-    InvalidInput where there is no such case, or pandapower is missing.
+    Parameters
+    ----------
+    case : str
+        A JSON file of pandapower, or the name of one of its cases ("case118", "case1354pegase").
+    units : sequence of str, or int, optional
+        Names of the buses with a phasor unit, or how many (those with most lines); default: all.
+    assumed : Assumptions, optional
+        Noise (rad, per unit), how far angles wander per sample (rad), samples, areas.
+
+    Returns
+    -------
+    Bundle
+        What `write(folder)` writes: scenario.toml and the files beside it; facts and notes for people.
+
+    Raises
+    ------
+    IoError
+        A file cannot be read.
+    InvalidInput
+        There is no such case or bus, or pandapower is missing.
     """
     assumed = assumed or Assumptions()
     grid = read_grid_case(case)

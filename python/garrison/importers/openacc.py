@@ -50,10 +50,28 @@ class Noise:
 def import_openacc(
     paths: Sequence[Path], noise: Noise | None = None, between: tuple[float | None, float | None] = (None, None)
 ) -> Bundle:
-    """One recording of a string of cars: a file with all of them, or one file per follower.
+    """One recording of a string of cars.
 
-    between: first and last time that is used, s. Raises IoError or InvalidInput where a file is none, or has less than
-    three cars in a row.
+    Parameters
+    ----------
+    paths : sequence of Path
+        A file with all of them, or one file per follower.
+    noise : Noise, optional
+        Bounds on noise and start (m, m/s), and how many odometers may be wrong.
+    between : (float or None, float or None)
+        First and last time that is used, s.
+
+    Returns
+    -------
+    Bundle
+        What `write(folder)` writes: scenario.toml and the files beside it; facts and notes for people.
+
+    Raises
+    ------
+    IoError
+        A file cannot be read.
+    InvalidInput
+        A file is no recording, or has less than three cars in a row.
     """
     noise = noise or Noise()
     convoy = read_convoy(paths).between(*between)

@@ -1,12 +1,15 @@
 """Records of several sensors (CSV) as a scenario: a model fitted to a clean part, a network, a replay of the rest."""
 
 import datetime as dt
+import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from garrison import _core
 from garrison.importers.bundle import Bundle
 from garrison.importers.limits import require_positive, require_probability
+from garrison.scenario.reader import read_scenario
 from garrison.tables import Records, read_records
 from garrison.tables.clock import Moment
 from garrison.words import count, refusal
@@ -21,7 +24,8 @@ class Choice:
     """clean: last moment of the part that the model is fitted to; None: the first half of the records.
 
     factors: states of the model. harmonics: of a yearly season; None: 2 where the clean part has two years, else 0.
-    stations: CSV with places; radius: km, of neighbours. attacked: sensors that may be wrong.
+    stations: CSV with places; radius: km, of neighbours. false_alarm: rate of a test, per sample. standardise: every
+    column in units of its own spread; None: where the header names different units.
     """
 
     clean: Moment | None = None
@@ -30,6 +34,7 @@ class Choice:
     stations: Path | None = None
     radius: float | None = None
     false_alarm: float = 1e-4
+    standardise: bool | None = None
 
     def __post_init__(self) -> None:
         require_probability("false-alarm", self.false_alarm)
@@ -48,14 +53,47 @@ class RecordsBundle(Bundle):
     copies: dict[str, Path] | None = None
 
     def write(self, folder: Path) -> None:
-        """As every bundle, and copies of the user's files."""
+        """As every bundle, and copies of the user's files; what `garrison run` would refuse of them is refused here."""
         super().write(folder)
         for name, path in (self.copies or {}).items():
             shutil.copyfile(path, folder / name)
+        try:
+            read_scenario(folder / "scenario.toml")
+        except _core.Error as error:
+            raise type(error)(self._in_words_of_the_command(str(error), folder)) from None
+
+    def _in_words_of_the_command(self, message: str, folder: Path) -> str:
+        """A message about the scenario with the user's files and the command's options in place of what it names."""
+        for name, path in (self.copies or {}).items():
+            message = message.replace(str(folder / name), str(path))
+        message = re.sub(r"\bfit\.(factors|harmonics)\b", r"--\1", message)
+        return re.sub(
+            r"\bset standardise \(true: (.*); false: (.*)\)", r"--standardise: \1; --no-standardise: \2", message
+        )
 
 
 def import_csv(path: Path, choice: Choice | None = None) -> Bundle:
-    """A column of times and a column per sensor. Raises IoError or InvalidInput with the line where it is none."""
+    """Records of several sensors: a column of times and a column per sensor.
+
+    Parameters
+    ----------
+    path : Path
+        Of a CSV file.
+    choice : Choice, optional
+        End of the clean part, states and season of the model, places of the sensors, false-alarm rate.
+
+    Returns
+    -------
+    Bundle
+        What `write(folder)` writes: scenario.toml and the files beside it; facts and notes for people.
+
+    Raises
+    ------
+    IoError
+        A file cannot be read.
+    InvalidInput
+        With the line: the content does not fit; when it is written, also what a run would refuse.
+    """
     choice = choice or Choice()
     records = read_records(path)
     sensors = len(records.stations)
@@ -71,9 +109,11 @@ def import_csv(path: Path, choice: Choice | None = None) -> Bundle:
     years = len(records.between(None, last).dates) / records.samples_per_year
     harmonics = choice.harmonics if choice.harmonics is not None else 2 if years >= _YEARS else 0
     copies = {"records.csv": path} | ({"stations.csv": choice.stations} if choice.stations else {})
+    standardise = {} if choice.standardise is None else {"standardise": choice.standardise}
+    model = {"fit": "records.csv", "to": _shown(last), "factors": choice.factors, "harmonics": harmonics}
     tables = {
         "title": f"{path.stem}: {sensors} sensors",
-        "model": {"fit": "records.csv", "to": _shown(last), "factors": choice.factors, "harmonics": harmonics},
+        "model": model | standardise,
         "network": _network(sensors, choice),
         "data": {"file": "records.csv", "from": _shown(rest)},
         "filter": {"name": "structural", "false_alarm": choice.false_alarm, "isolate": True},

@@ -49,9 +49,28 @@ class Assumptions:
 
 
 def import_bag(paths: Sequence[Path], topics: Sequence[str] = (), assumed: Assumptions | None = None) -> Bundle:
-    """ROS 1 bags or a ROS 2 bag. topics: those to use, none = all that are understood.
+    """The recording of a robot: ROS 1 bags or a ROS 2 bag (extra: robots).
 
-    Raises IoError or InvalidInput where there is nothing to use.
+    Parameters
+    ----------
+    paths : sequence of Path
+        .bag files, or the folder of a ROS 2 bag.
+    topics : sequence of str
+        Those to use; none = all that are understood.
+    assumed : Assumptions, optional
+        Period (s), alignment (s), accelerations, false-alarm rate and noise by quantity.
+
+    Returns
+    -------
+    Bundle
+        What `write(folder)` writes: scenario.toml and the files beside it; facts and notes for people.
+
+    Raises
+    ------
+    IoError
+        A file cannot be read.
+    InvalidInput
+        There is nothing to use, or a library is missing.
     """
     alone = paths[0].suffix == ".mcap" and not (paths[0].parent / "metadata.yaml").exists()
     if alone and len(paths) == 1:
@@ -60,7 +79,29 @@ def import_bag(paths: Sequence[Path], topics: Sequence[str] = (), assumed: Assum
 
 
 def import_mcap(path: Path, topics: Sequence[str] = (), assumed: Assumptions | None = None) -> Bundle:
-    """The same of an MCAP file with ROS 2, ROS 1 or JSON messages."""
+    """The recording of a robot: an MCAP file with ROS 2, ROS 1 or JSON messages (extra: robots).
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+    topics : sequence of str
+        Those to use; none = all that are understood.
+    assumed : Assumptions, optional
+        Period (s), alignment (s), accelerations, false-alarm rate and noise by quantity.
+
+    Returns
+    -------
+    Bundle
+        What `write(folder)` writes: scenario.toml and the files beside it; facts and notes for people.
+
+    Raises
+    ------
+    IoError
+        A file cannot be read.
+    InvalidInput
+        There is nothing to use, or a library is missing.
+    """
     return _bundle(str(path), mcap_messages(path, set(KINDS)), topics, assumed or Assumptions())
 
 

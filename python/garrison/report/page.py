@@ -187,7 +187,7 @@ def _error_note(scenario: Scenario, rows: list[Row]) -> str:
     else:
         law = f"except with probability {failure:g} per agent and sample, for the model's noise"
     if wanted.get("memory"):
-        law += ", as long as always the same lie"
+        law += ", as long as the liars are always the same"
     published = (
         " The published bound is what the filter's paper alone promises." if row.run.published is not None else ""
     )

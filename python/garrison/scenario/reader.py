@@ -116,10 +116,24 @@ class Scenario:
 def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Scenario:
     """Read and check a scenario file; paths in it are relative to the file.
 
-    set: other values for some keys, as `{"filter.threshold": 0.7, "attack[0].value": 5}`.
+    Parameters
+    ----------
+    path : str or Path
+        Of the TOML file.
+    set : mapping of str, optional
+        Other values for some keys, as `{"filter.threshold": 0.7, "attack[0].value": 5}`.
 
-    Raises IoError when a file cannot be read, InvalidInput when its content does not fit, always with where, what
-    was found and what was expected.
+    Returns
+    -------
+    Scenario
+        Model, network, filters, attacks and options of the run.
+
+    Raises
+    ------
+    IoError
+        A file cannot be read.
+    InvalidInput
+        Its content does not fit: where, what was found and what was expected.
     """
     path = Path(path)
     document = overridden(read_document(path), set or {})

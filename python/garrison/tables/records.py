@@ -115,7 +115,24 @@ def read_records(path: str | Path) -> Records:
     """Read regular records: a header `date,STATION,STATION,...`, then a row per period.
 
     Any separator, decimal commas, dates or dates with times or seconds, any regular period; missing rows become missing
-    records. Raises IoError when the file cannot be read, InvalidInput with the line when its content does not fit.
+    records.
+
+    Parameters
+    ----------
+    path : str or Path
+        Of a CSV file.
+
+    Returns
+    -------
+    Records
+        dates, stations, values (samples, stations) with nan = missing, step (s), units, notes.
+
+    Raises
+    ------
+    IoError
+        The file cannot be read.
+    InvalidInput
+        With the line: its content does not fit.
     """
     table = read_table(path)
     if table.clock is None:

@@ -47,7 +47,7 @@ std::vector<Prior> priors_of(const Platoon::Params& p, int N) {
     for (const int id : priors[static_cast<std::size_t>(i)].free)
       if (attacked[static_cast<std::size_t>(id)] != 0)
         refuse("platoon.prior_free",
-               "sensor " + std::to_string(id) + " (told to vehicle " + std::to_string(i) + ")",
+               "sensor " + std::to_string(id) + " (given to vehicle " + std::to_string(i) + ")",
                "attacked and free sets that do not intersect",
                "it is in a prior attacked set too: remove it from one of both");
   if (count > p.attacked)
@@ -215,7 +215,7 @@ std::vector<std::string> Platoon::refuted_words(unsigned bits) {
   for (const auto& [bit, words] : found)
     if ((bits & bit) != 0 && what.find(words) == std::string::npos)
       what += (what.empty() ? "" : "; ") + std::string(words);
-  if (what.empty()) what = "vehicles were told so";
+  if (what.empty()) what = "vehicles heard so from others";
   return {
       "The data contradict the assumptions: " + what +
       ". At least one of these is false: measurement_noise (or the bounds on its entries) and "

@@ -38,7 +38,9 @@ constexpr const char* kUsage =
 Descriptor connected(const std::string& path) {
   sockaddr_un to{};
   to.sun_family = AF_UNIX;
-  if (path.size() >= sizeof to.sun_path) garrison::refuse(path, "a long path", "the socket of a node");
+  if (path.size() >= sizeof to.sun_path)
+    garrison::refuse(path, "a path of " + std::to_string(path.size()) + " characters",
+                     "the socket of a node: at most " + std::to_string(sizeof to.sun_path - 1));
   std::memcpy(to.sun_path, path.data(), path.size());
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)

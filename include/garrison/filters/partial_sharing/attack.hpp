@@ -16,7 +16,7 @@ struct GARRISON_EXPORT WorstCovariance {
   Vector direction;  ///< unit top eigenvector, its largest entry positive; zero when nothing can be gained
   double gain =
       0.0;  ///< energy times the top eigenvalue: the largest tr(Sigma form) with tr(Sigma) <= energy
-  Matrix covariance;  ///< energy v v', an optimum (note 12); B m x B m
+  Matrix covariance;  ///< energy v v', an optimum (docs/filters/partial_sharing.md#m12); B m x B m
 };
 
 /// (37): the worst Sigma for the next step alone, when S(k) is about to be used: form = Ga(k)'Ga(k) on the
@@ -25,7 +25,8 @@ struct GARRISON_EXPORT WorstCovariance {
 GARRISON_EXPORT WorstCovariance worst_one_step(const Setting& setting, const std::vector<LocalGains>& gains,
                                                std::vector<int> byzantine, double energy, std::int64_t k);
 /// The worst Sigma for the NMSE in periodic steady state: form N = mean over phases of Ga(f)' W(f+1) Ga(f)
-/// from one adjoint solve (note 13); tr(Sigma N) is exactly what any Sigma adds to the cycle-averaged NMSE.
+/// from one adjoint solve (docs/filters/partial_sharing.md#m13); tr(Sigma N) is exactly what any Sigma adds
+/// to the cycle-averaged NMSE.
 /// @throws InvalidInput also when the error dynamics are unstable
 GARRISON_EXPORT WorstCovariance worst_steady(const Setting& setting, const std::vector<LocalGains>& gains,
                                              std::vector<int> byzantine, double energy);

@@ -7,7 +7,8 @@
 //   (I - Kf H) P_i = L M D M'L'                     the filtered covariance; its gain times innovations is
 //   Kf e = L sum_r M_(r-1) g_r (e_r - h_r'(Kf e so far)) / alpha_r
 //   P_i(k+1) = (A L M) D (A L M)' + Q               the matrix of (11), never in Joseph's two products
-//   K_i = A Kf of (9),  C_i = gamma A L M D M'L'    gamma A barM_i^-1 of the paper (note 1), no inverse of P
+//   K_i = A Kf of (9),  C_i = gamma A L M D M'L'    gamma A barM_i^-1 of the paper
+//   (docs/filters/partial_sharing.md#m1), no inverse of P
 // alpha >= 1, D >= 0, and P is a sum of squares: nothing can fail, whatever R, P0 and A are. A pivot that is
 // rounding of zero is zero, so singular P0 and Q are ordinary input. No agent's numbers meet those of
 // another, and every entry sums in one order: the bits are the same for any number of agents side by side.

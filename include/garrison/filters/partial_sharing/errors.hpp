@@ -13,7 +13,8 @@ namespace garrison::partial_sharing {
 
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// Lc(k): block (i,i) is the sum of S_j over the neighbours j of i, block (i,j) is -S_j (note 6). N m x N m.
+/// Lc(k): block (i,i) is the sum of S_j over the neighbours j of i, block (i,j) is -S_j
+/// (docs/filters/partial_sharing.md#m6). N m x N m.
 Sparse coupling(const Setting& setting, std::int64_t k);
 /// At(k) = blockdiag(A - K_i H_i) - C Lc(k) and Ga(k) = C (E (x) I) S(k) for given gains.
 Sparse error_step(const Setting& setting, const std::vector<LocalGains>& gains, std::int64_t k);
@@ -36,7 +37,7 @@ struct GARRISON_EXPORT Trajectory {
   Matrix P;                  ///< P(steps)
 };
 /// (29) along Algorithm 1 with the gains of (9), (11) from P_0 on; `common`: equal initial errors (P_ij(0) =
-/// P_0, note 15), else independent ones. `Sigma` (may be empty) acts from k0 on.
+/// P_0), else independent ones. `Sigma` (may be empty) acts from k0 on.
 GARRISON_EXPORT Trajectory error_covariance(const Setting& setting, int steps, const Matrix& Sigma,
                                             std::int64_t k0, bool common = true);
 /// The mean of (29) when every selection is drawn anew, over agents and time, uniformly among the l-subsets.
@@ -57,8 +58,9 @@ std::vector<Matrix> periodic_adjoint(const Setting& setting, const std::vector<L
 // What the paper calls the error covariance: local recursions (8), (23)-(26) with an attack term.
 
 /// P_i = F_i P_i F_i' + K_i R_i K_i' + Q + C_i [(E (x) I)(W o Sigma)(E (x) I)']_ii C_i', per agent. These
-/// drop the correlation of neighbours and are not the true covariance (note 14). W chooses the reading:
-/// - p_e 11': (26) as printed, an upper bound only for the worst Sigma (note 5)
+/// drop the correlation of neighbours and are not the true covariance (docs/filters/partial_sharing.md#m14).
+/// W chooses the reading:
+/// - p_e 11': (26) as printed, an upper bound only for the worst Sigma (docs/filters/partial_sharing.md#m5)
 /// - Selection::moments_uniform(): (25) exact over random starts;  Selection::moments_cycle(): (25) exact on
 /// one cycle. `Sigma` empty: no attack. W: N m x N m, or 1 x 1 for a constant.
 GARRISON_EXPORT std::vector<Matrix> local_covariances(const Setting& setting,
@@ -73,11 +75,11 @@ GARRISON_EXPORT std::vector<double> recursion8(const Setting& setting, const std
 
 // Three stability tests: the paper's gamma* (advisory), a certified interval, and the exact radius above.
 
-/// Lambda_I,i = H_i'(R_i + H_i P_i H_i')^-1 H_i, equal to the printed form where that exists (note 8); steady
-/// P_i.
+/// Lambda_I,i = H_i'(R_i + H_i P_i H_i')^-1 H_i, equal to the printed form where that exists
+/// (docs/filters/partial_sharing.md#m8); steady P_i.
 GARRISON_EXPORT Matrix lambda_I(const Setting& setting, const LocalGains& gains, int agent);
 /// (22) with p_e = `fraction`. 0: vacuous (some Lambda_I,i is singular); inf: nobody hears anybody. Not a
-/// guarantee: Theorem 1 is false as printed for static selections (note 7).
+/// guarantee: Theorem 1 is false as printed for static selections (docs/filters/partial_sharing.md#m7).
 GARRISON_EXPORT double gamma_star(const Setting& setting, const std::vector<LocalGains>& gains,
                                   double fraction);
 /// M_f(g) = Lambda_I + g (Lambda_III Lc + Lc' Lambda_III') - g^2 Lc' Lambda_II Lc at phase f: V decreases
@@ -99,9 +101,10 @@ struct GARRISON_EXPORT FullSolution {
 
 /// (4)-(7) with K_i* as printed after (7) and C_i = gamma (A - K H_i) P_ii from its own block. Knows the
 /// whole network, so it is no agent. K_i* minimises the next step's trace only: over time it is not always
-/// better than Algorithm 1 (note 16), and agents do not know an attack, so Sigma never enters the gains.
-/// `start`: N x m. `y`: per step the stacked measurements, steps x (sum of n_i); no rows: only covariances,
-/// for `steps` steps. `delta`: per step the stacked perturbations, steps x N m, or no rows.
+/// better than Algorithm 1 (docs/filters/partial_sharing.md#m16), and agents do not know an attack, so Sigma
+/// never enters the gains. `start`: N x m. `y`: per step the stacked measurements, steps x (sum of n_i); no
+/// rows: only covariances, for `steps` steps. `delta`: per step the stacked perturbations, steps x N m, or no
+/// rows.
 /// @throws InvalidInput when a shape does not fit
 GARRISON_EXPORT FullSolution full_solution(const Setting& setting, int steps, const MatrixRef& start,
                                            const MatrixRef& y, const MatrixRef& delta, const Matrix& Sigma,

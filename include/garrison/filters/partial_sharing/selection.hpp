@@ -52,7 +52,8 @@ class GARRISON_EXPORT Selection {
   Matrix at(std::int64_t k) const;
   /// s(k) of all agents one behind the other, N m numbers.
   Vector stacked(std::int64_t k) const;
-  /// Share of the samples in which each entry is sent, N x m. An entry with 0 is never sent (note 9).
+  /// Share of the samples in which each entry is sent, N x m. One with 0 is never sent
+  /// (docs/filters/partial_sharing.md#m9).
   Matrix frequency() const;
   /// Time mean of s(k) s(k)' over one period, N m x N m: the exact second moment on this cycle.
   Matrix moments_cycle() const;

@@ -66,7 +66,7 @@ class GARRISON_EXPORT LocalRecursion {
 
 /// Limit of (11) from P_0: doubling, then the recursion itself until nothing moves but rounding.
 /// @throws InvalidInput "agent i: (A, H_i) is not detectable" when (11) diverges; neighbours do not help
-/// (note 4)
+/// (docs/filters/partial_sharing.md)
 GARRISON_EXPORT LocalGains steady_gains(const Setting& setting, int agent);
 GARRISON_EXPORT std::vector<LocalGains> steady_gains(const Setting& setting);
 /// Agents whose (11) has no limit, sorted.

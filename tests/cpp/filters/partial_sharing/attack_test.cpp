@@ -67,7 +67,7 @@ TEST_CASE("Gauss-Seidel sweeps with the true coupling never go down, 1500 random
         break;
       }
   }
-  CHECK(printed_fell > 0);  // Algorithm 2 as printed is not monotone (note 11)
+  CHECK(printed_fell > 0);  // Algorithm 2 as printed is not monotone (docs/filters/partial_sharing.md#m11)
 }
 
 TEST_CASE("branch and bound finds the maximum of brute force, 80 instances") {
