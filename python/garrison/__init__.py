@@ -72,6 +72,7 @@ if TYPE_CHECKING:
     from garrison.prepared import Prepared, prepare
     from garrison.record import Run
     from garrison.resilience import Resilience, resilience_per_byte
+    from garrison.static_plant import StaticPlant
     from garrison.stored import StoredRun
     from garrison.sweeps import Sweep, sweep
     from garrison.varying import VaryingModel
@@ -92,6 +93,7 @@ _LATER = {
     "Prepared": "prepared",
     "prepare": "prepared",
     "Run": "record",
+    "StaticPlant": "static_plant",
     "StoredRun": "stored",
     "again": "drivers",
     "every": "drivers",
@@ -147,6 +149,7 @@ __all__ = [
     "Resilience",
     "Response",
     "Run",
+    "StaticPlant",
     "StoredRun",
     "SubsetBound",
     "Sweep",

@@ -15,7 +15,7 @@ LAYERS = (
     ("words", "verdict", "bound_kind", "drawing", "files", "result", "shapes", "encoded"),
     ("numeric", "sizes", "storage", "paths", "objects", "filters", "notebook", "alarms"),
     ("arguments", "parameters", "clean", "families", "tables", "longform", "labelled", "labelled_files", "growing"),
-    ("attacks", "varying", "varying_network", "nonlinear", "certifying"),
+    ("attacks", "varying", "varying_network", "static_plant", "nonlinear", "certifying"),
     ("record", "recipe", "run_file", "run_options", "store", "stored", "expected", "checks", "doubts", "refuted"),
     ("drivers", "kalman", "fitting", "fitting_full", "identifying", "calibration", "certificate", "exposing"),
     ("prepared", "designing"),
