@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from garrison.checks import Check, check
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
-    from garrison.drivers import again, every, replay, simulate
+    from garrison.drivers import again, every, reduce, replay, simulate
     from garrison.exposing import Exposed, expose
     from garrison.kalman import central_kalman, extended_kalman, local_kalman
     from garrison.lmi import lmi_gains
@@ -97,6 +97,7 @@ _LATER = {
     "StoredRun": "stored",
     "again": "drivers",
     "every": "drivers",
+    "reduce": "drivers",
     "replay": "drivers",
     "simulate": "drivers",
     "central_kalman": "kalman",
@@ -181,6 +182,7 @@ __all__ = [
     "partial_sharing",
     "platoon",
     "prepare",
+    "reduce",
     "replay",
     "replay_mitigated",
     "resilience_per_byte",

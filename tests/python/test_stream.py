@@ -146,7 +146,7 @@ def test_a_mapping_keeps_what_it_names_and_no_more() -> None:
     ("keep", "words"),
     [
         ({"erorr": "all"}, r'keep: got \'erorr\', .*did you mean "error"'),
-        ({"error": "some"}, r"keep\['error'\]: got 'some', expected \"all\" or \"none\", or garrison.every"),
+        ({"error": "some"}, r"keep\['error'\]: got 'some', expected \"all\" or \"none\", garrison.every"),
         ({"details": gr.every(2)}, r"keep\['details'\]: got garrison.every\(2\), expected \"all\" or \"none\""),
         ({3: "all"}, "keep: got 3"),
         (["error"], "keep: got 'error'"),
