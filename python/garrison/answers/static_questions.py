@@ -105,16 +105,16 @@ class StaticQuestions:
         needs = "condition (9) for some threshold, initial error and number of rounds"
         if found.unseen:
             return 1.0, from_removal(guarantee, needs, removal, 2, [], 0)
-        words, gamma = "the saturation filter's conditions", None
+        words, agents, gamma = "the saturation filter's conditions", 0, None
         with self.watch.question(words, 0.5):
-            gamma = network_contraction(self._one_sensor_each())
+            ground = self._one_sensor_each()
+            agents, gamma = ground.agents, network_contraction(ground)
         if gamma is None:
             self.unfinished.append(words)
             return 1.0, Limit(guarantee, 0, None, needs, LATE)
         if gamma >= 1:
             return gamma, Limit(guarantee, 0, 0, needs, "the network is not connected, or directed")
-        sensors = self.plant.size[0]
-        setting = saturation.Setting(agents=sensors, a=1.0, lambda0=found.least, contraction=0.0, attacked=0)
+        setting = saturation.Setting(agents=agents, a=1.0, lambda0=found.least, contraction=0.0, attacked=0)
         self.rounds = saturation.minimal_rounds(setting, gamma)
         if self.rounds is None:
             return gamma, Limit(guarantee, 0, 0, needs, "no number of rounds per sample suffices without liars")
