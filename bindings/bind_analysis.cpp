@@ -32,18 +32,25 @@ void bind_subsets(py::module_& m) {
       [](const MatrixRef& C, int s, std::int64_t max_nodes, double max_seconds) {
         require_range("max_nodes", static_cast<double>(max_nodes), 1.0);
         require_range("max_seconds", max_seconds, 0.0, kInfinity);
-        return lambda0(C, s, {max_nodes, max_seconds});
+        return within_budget(kInfinity, [&] { return lambda0(C, s, {max_nodes, max_seconds}); });
       },
       py::arg("C"), py::arg("s"), py::arg("max_nodes") = limits.max_nodes,
       py::arg("max_seconds") = limits.max_seconds,
       "(6) of the saturation paper: least lambda_min(sum C_i'C_i) over all sets of N - s rows of C, (N, n).");
   m.def(
-      "varpi", [](const MatrixRef& C, const MatrixRef& A, int s) { return varpi(C, A, s); }, py::arg("C"),
-      py::arg("A"), py::arg("s"),
+      "varpi",
+      [](const MatrixRef& C, const MatrixRef& A, int s) {
+        return within_budget(kInfinity, [&] { return varpi(C, A, s); });
+      },
+      py::arg("C"), py::arg("A"), py::arg("s"),
       "Theorem 3: largest ||(I - (1/N) sum C_i'C_i) A|| over sets of N - s rows.");
   m.def(
-      "tau0", [](const MatrixRef& C, const MatrixRef& A, int s) { return tau0(C, A, s); }, py::arg("C"),
-      py::arg("A"), py::arg("s"), "Theorem 5: largest (1/N) ||[C_i'C_i A]|| over sets of N - s rows.");
+      "tau0",
+      [](const MatrixRef& C, const MatrixRef& A, int s) {
+        return within_budget(kInfinity, [&] { return tau0(C, A, s); });
+      },
+      py::arg("C"), py::arg("A"), py::arg("s"),
+      "Theorem 5: largest (1/N) ||[C_i'C_i A]|| over sets of N - s rows.");
   m.def("lambda0_orthogonal", &lambda0_orthogonal, py::arg("C"), py::arg("s"),
         "Closed form of lambda0 for rows that are parallel or orthogonal; None for others.");
   m.def("observable", &observable, py::arg("A"), py::arg("C"),
