@@ -40,7 +40,7 @@ method : str | How it was found, in words.)")
       [](const MatrixRef& C, int s, std::int64_t max_nodes, double max_seconds) {
         require_range("max_nodes", static_cast<double>(max_nodes), 1.0);
         require_range("max_seconds", max_seconds, 0.0, kInfinity);
-        return lambda0(C, s, {max_nodes, max_seconds});
+        return within_budget(kInfinity, [&] { return lambda0(C, s, {max_nodes, max_seconds}); });
       },
       py::arg("C"), py::arg("s"), py::arg("max_nodes") = limits.max_nodes,
       py::arg("max_seconds") = limits.max_seconds,
@@ -54,12 +54,19 @@ max_seconds : float | Or after so many seconds, >= 0.
 ! InvalidInput | A number out of range, or not finite.)")
           .c_str());
   m.def(
-      "varpi", [](const MatrixRef& C, const MatrixRef& A, int s) { return varpi(C, A, s); }, py::arg("C"),
-      py::arg("A"), py::arg("s"),
+      "varpi",
+      [](const MatrixRef& C, const MatrixRef& A, int s) {
+        return within_budget(kInfinity, [&] { return varpi(C, A, s); });
+      },
+      py::arg("C"), py::arg("A"), py::arg("s"),
       "Theorem 3: largest ||(I - (1/N) sum C_i'C_i) A|| over sets of N - s rows.");
   m.def(
-      "tau0", [](const MatrixRef& C, const MatrixRef& A, int s) { return tau0(C, A, s); }, py::arg("C"),
-      py::arg("A"), py::arg("s"), "Theorem 5: largest (1/N) ||[C_i'C_i A]|| over sets of N - s rows.");
+      "tau0",
+      [](const MatrixRef& C, const MatrixRef& A, int s) {
+        return within_budget(kInfinity, [&] { return tau0(C, A, s); });
+      },
+      py::arg("C"), py::arg("A"), py::arg("s"),
+      "Theorem 5: largest (1/N) ||[C_i'C_i A]|| over sets of N - s rows.");
   m.def("lambda0_orthogonal", &lambda0_orthogonal, py::arg("C"), py::arg("s"),
         "Closed form of lambda0 for rows that are parallel or orthogonal; None for others.");
   m.def("observable", &observable, py::arg("A"), py::arg("C"),

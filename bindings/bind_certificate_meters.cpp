@@ -7,13 +7,60 @@
 #include "garrison/certificate/memory/byzantine.hpp"
 #include "garrison/certificate/memory/meters.hpp"
 #include "garrison/certificate/memory/range_row.hpp"
+#include "garrison/certificate/memory/sparse_meters.hpp"
 
 using namespace garrison;
 using namespace garrison::certificate;
 
 using Ids = std::vector<int>;
 
+namespace {
+
+SparseMeters of_entries(const std::pair<int, int>& shape, const Ids& rows, const Ids& columns,
+                        const VectorRef& values, const Ids& source, int dense) {
+  const auto [m, n] = shape;
+  if (m < 1 || n < 1) refuse("shape", std::to_string(m) + " x " + std::to_string(n), "at least 1 x 1");
+  if (rows.size() != columns.size() || static_cast<Eigen::Index>(rows.size()) != values.size())
+    refuse("rows, columns, values",
+           std::to_string(rows.size()) + ", " + std::to_string(columns.size()) + " and " +
+               std::to_string(values.size()) + " numbers",
+           "as many of each");
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (rows[k] < 0 || rows[k] >= m || columns[k] < 0 || columns[k] >= n)
+      refuse("rows, columns", std::to_string(rows[k]) + ", " + std::to_string(columns[k]),
+             "within " + std::to_string(m) + " x " + std::to_string(n));
+    entries.emplace_back(rows[k], columns[k], values(static_cast<Eigen::Index>(k)));
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> H(m, n);
+  H.setFromTriplets(entries.begin(), entries.end());
+  return sparse_meters(H, source, dense);
+}
+
+void bind_sparse_meters(py::module_& m) {
+  py::class_<SparseMeters>(m, "SparseMeters", "What a large static set of meters withstands.")
+      .def_readonly("unseen", &SparseMeters::unseen,
+                    "states of which it is not sure that the rows determine them; the rest is then empty")
+      .def_readonly("least", &SparseMeters::least,
+                    "the smallest eigenvalue of H'H is at least this, with rows of length 1")
+      .def_readonly("leverage", &SparseMeters::leverage, "(rows,), with rows of length 1; nan: no time")
+      .def_readonly("critical", &SparseMeters::critical, "sources nobody checks")
+      .def_readonly("complete", &SparseMeters::complete, "every row was looked at")
+      .def_readonly("fewest", &SparseMeters::fewest, "no fewer rows are needed to lie unseen, for certain")
+      .def_readonly("most", &SparseMeters::most, "so many can; as `fewest`: exact")
+      .def_readonly("example", &SparseMeters::example, "`most` rows that can");
+  m.def("sparse_meters", &of_entries, py::arg("shape"), py::arg("rows"), py::arg("columns"),
+        py::arg("values"), py::arg("source") = Ids(), py::arg("dense") = 4000,
+        py::call_guard<py::gil_scoped_release>(),
+        "H (rows, states) by its entries: shape, and rows, columns, values (k,) of what is not 0, reference "
+        "removed; source\n(rows,). Parts of H of up to `dense` rows are searched exactly, larger ones give "
+        "bounds. Ends with its budget. Raises\nInvalidInput.");
+}
+
+}  // namespace
+
 void bind_certificate_meters(py::module_& m) {
+  bind_sparse_meters(m);
   py::class_<Meters>(m, "Meters", "What a static set of meters withstands.")
       .def_readonly("leverage", &Meters::leverage, "(sources,)")
       .def_readonly("critical", &Meters::critical, "sources nobody checks")

@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from garrison.checks import Check, check
     from garrison.comparison import Comparison, compare
     from garrison.designing import Designed, design
-    from garrison.drivers import again, every, replay, simulate
+    from garrison.drivers import again, every, reduce, replay, simulate
     from garrison.exposing import Exposed, expose
     from garrison.kalman import central_kalman, extended_kalman, local_kalman
     from garrison.lmi import lmi_gains
@@ -72,6 +72,7 @@ if TYPE_CHECKING:
     from garrison.prepared import Prepared, prepare
     from garrison.record import Run
     from garrison.resilience import Resilience, resilience_per_byte
+    from garrison.static_plant import StaticPlant
     from garrison.stored import StoredRun
     from garrison.sweeps import Sweep, sweep
     from garrison.varying import VaryingModel
@@ -92,9 +93,11 @@ _LATER = {
     "Prepared": "prepared",
     "prepare": "prepared",
     "Run": "record",
+    "StaticPlant": "static_plant",
     "StoredRun": "stored",
     "again": "drivers",
     "every": "drivers",
+    "reduce": "drivers",
     "replay": "drivers",
     "simulate": "drivers",
     "central_kalman": "kalman",
@@ -147,6 +150,7 @@ __all__ = [
     "Resilience",
     "Response",
     "Run",
+    "StaticPlant",
     "StoredRun",
     "SubsetBound",
     "Sweep",
@@ -178,6 +182,7 @@ __all__ = [
     "partial_sharing",
     "platoon",
     "prepare",
+    "reduce",
     "replay",
     "replay_mitigated",
     "resilience_per_byte",

@@ -111,7 +111,8 @@ def design(
     initial_error : float
         Bound on the distance of the common start from the state, > 0.
     goal : {"error", "bytes", "liars"}
-        "error": the smallest certified error; "bytes": the fewest rounds whose certified error is at most
+        "error": the smallest certified error (within 1e-6 of it, where the bound of a plant that contracts only
+        falls with the threshold); "bytes": the fewest rounds whose certified error is at most
         `error_at_most`; "liars": the smallest certified error with the most liars for which one exists.
     error_at_most : float, optional
         With "bytes"; default any.

@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +17,8 @@ from garrison.sizes import require_room
 
 #: bytes of a chunk, about, and the most of one: programs read whole chunks
 _CHUNK, _MOST = 4e6, 64e6
+#: chunks that wait for the writer
+_WAITING = 8
 
 
 def chunks(shape: tuple[int, ...], itemsize: int) -> tuple[int, ...]:
@@ -24,15 +31,40 @@ def chunks(shape: tuple[int, ...], itemsize: int) -> tuple[int, ...]:
     return (together, length, -(-row[0] // parts), *row[1:])
 
 
+class Writer:
+    """Writes chunks in a thread of its own, so that a run need not wait for the disk; few of them wait for it."""
+
+    def __init__(self) -> None:
+        self._thread = ThreadPoolExecutor(max_workers=1)
+        self._waiting: deque[Future[None]] = deque()
+
+    def put(self, write: Callable[[], None]) -> None:
+        """Have it done, after all that was put before. Raises what that raised."""
+        self._waiting.append(self._thread.submit(write))
+        while len(self._waiting) > _WAITING or (self._waiting and self._waiting[0].done()):
+            self._waiting.popleft().result()
+
+    def finish(self) -> None:
+        """Wait until all is done. Raises what it raised."""
+        while self._waiting:
+            self._waiting.popleft().result()
+
+    def close(self) -> None:
+        """Do nothing more."""
+        self._thread.shutdown(wait=True, cancel_futures=True)
+
+
 class Growing:
     """An array (trial, time, ..) of a store, written chunk by whole chunk as its rows come.
 
     Of each trial they come in order of time; of several trials in any order. Memory holds the chunks that are not whole
-    yet: one per trial that runs.
+    yet: one per trial that runs; and those that wait for the writer. Chunks are written as zarr's format 2 has them,
+    because zarr would wait for each.
     """
 
-    def __init__(self, array: Any, axes: tuple[str, ...]) -> None:
+    def __init__(self, array: Any, axes: tuple[str, ...], folder: Path, codec: Any, writer: Writer) -> None:
         self.array, self.axes = array, axes
+        self._folder, self._codec, self._writer = folder, codec, writer
         self._open: dict[tuple[int, int], tuple[NDArray[Any], int]] = {}
         self._spare: list[NDArray[Any]] = []
 
@@ -57,9 +89,19 @@ class Growing:
         missing -= len(rows)
         if missing:
             self._open[key] = buffer, missing
-        else:
-            self.array[trials, times] = buffer[: shape[0], : shape[1]]
-            self._spare.append(buffer)
+            return
+        buffer[shape[0] :], buffer[:, shape[1] :] = 0, 0  # chunks at the end are as long as all others
+        self._writer.put(partial(self._write, key, buffer))
+
+    def _write(self, key: tuple[int, int], buffer: NDArray[Any]) -> None:
+        width = self.array.chunks[2]
+        for k, first in enumerate(range(0, buffer.shape[2], width)):
+            part = buffer[:, :, first : first + width]
+            if part.shape[2] < width:
+                part = np.pad(part, [(0, 0), (0, 0), (0, width - part.shape[2]), *[(0, 0)] * (part.ndim - 3)])
+            name = ".".join(map(str, (*key, k, *[0] * (part.ndim - 3))))
+            (self._folder / name).write_bytes(self._codec.encode(np.ascontiguousarray(part)))
+        self._spare.append(buffer)
 
     def _buffer(self) -> NDArray[Any]:
         """Memory of a chunk, of an earlier one where there is one."""

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _PER_AGENT = ("trial", "time", "agent")
 #: axis of an array of which only some times were kept
 _THINNED = re.compile(r"(time|sample)_every_(\d+)")
+#: name of a reduction: array, statistic, axes that went
+_REDUCED = re.compile(r"reduced_(.+)_[a-z0-9.]+_over_([a-z_]+)")
 
 
 def thinned(axis: str, step: int) -> str:
@@ -30,7 +32,10 @@ def thinned(axis: str, step: int) -> str:
 
 
 def axes(filter: _core.Filter, name: str) -> tuple[str, ...]:
-    """Names of the axes of an array of a run."""
+    """Names of the axes of an array of a run, or of a reduction of one."""
+    if match := _REDUCED.fullmatch(name):
+        over = match[2].split("_")
+        return tuple(axis for axis in axes(filter, match[1]) if axis not in over)
     return dimensions(filter).get(name, _PER_AGENT)
 
 

@@ -66,6 +66,8 @@ class Run(metaclass=Hinting):
         What of the plant changed, by name (VaryingModel).
     signals : dict
         Name -> (trial, time, agent) array.
+    reduced : dict
+        What `garrison.reduce` was asked for, by names as "error_q95_over_agent": arrays without the axes that went.
     accusations : list of (trial, time, sets)
         The agents that each agent takes for attacked, whenever one of the sets changed.
     proved : list of (trial, time, sets)
@@ -114,6 +116,7 @@ class Run(metaclass=Hinting):
         self.signals: dict[str, Array] = (
             {} if signals is None else {name: signals[:, :, k] for k, name in enumerate(data["signal_names"])}
         )
+        self.reduced: dict[str, Array] = dict(data.get("reduced", {}))
         #: (trial, time, sets): the agents that each agent takes for attacked, whenever one of the sets changed
         self.accusations: list[tuple[int, int, list[list[int]]]] = data["accusations"]
         #: (trial, time, sets): the sources that each agent's certificate has shown to be attacked
@@ -427,4 +430,5 @@ def assembled(
     arrays = {key: found[key] for key in run_file.ARRAYS if key in found}
     run = kind(lists | {"made": made} | arrays, model, network, filter, run_file.marked(found, run_file.VARYING))
     run.signals = run_file.marked(found, run_file.SIGNAL)
+    run.reduced = run_file.marked(found, run_file.REDUCED)
     return run

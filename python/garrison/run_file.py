@@ -39,6 +39,8 @@ LISTS = ("accusations", "proved", "details", "counters", "warnings", "bytes_per_
 SIGNAL = "signal_"
 #: and of what changed of the plant
 VARYING = "varying_"
+#: and of a reduction
+REDUCED = "reduced_"
 #: names that a dataset of the run has for other things than signals
 _TAKEN = {*ARRAYS, "trial", "time", "agent", "state", "sample", "output", "input", "step"}
 _TAKEN |= {"state_unit", "output_unit", "input_unit"}
@@ -69,7 +71,13 @@ def arrays_of(run: Run) -> dict[str, NDArray[Any]]:
     """Arrays that a run holds, by name; signals and what changed of the plant by their prefix."""
     arrays = {name: getattr(run, name) for name in ARRAYS if getattr(run, name) is not None}
     arrays |= {f"{VARYING}{name}": value for name, value in run.varying.items()}
+    arrays |= {f"{REDUCED}{name}": value for name, value in run.reduced.items()}
     return arrays | {f"{SIGNAL}{name}": value for name, value in run.signals.items()}
+
+
+def reduced_name(array: str, statistic: str, over: list[str]) -> str:
+    """ "error_q95_over_agent": what Run.reduced calls a statistic of an array."""
+    return f"{array}_{statistic}_over_{'_'.join(over)}"
 
 
 def marked(arrays: dict[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:
@@ -130,16 +138,16 @@ def label(name: str) -> str:
     own = name.removeprefix(SIGNAL)
     first = own[:1]
     fit = first.isalnum() or first == "_" or first > "\x7f"  # how names of netCDF begin
-    return own if fit and own not in _TAKEN and not own.startswith((SIGNAL, VARYING)) else name
+    return own if fit and own not in _TAKEN and not own.startswith((SIGNAL, VARYING, REDUCED)) else name
 
 
 def _unlabelled(label: str) -> str:
-    return label if label in ARRAYS or label.startswith((SIGNAL, VARYING)) else f"{SIGNAL}{label}"
+    return label if label in ARRAYS or label.startswith((SIGNAL, VARYING, REDUCED)) else f"{SIGNAL}{label}"
 
 
 def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: str, make: Callable[..., Run]) -> Run:
     """The run of a document and arrays, signals marked by their prefix."""
-    from garrison.labelled import dimensions
+    from garrison.labelled import axes
 
     try:
         objects, document = document["objects"], {"proved": []} | document
@@ -151,7 +159,7 @@ def _assembled(document: dict[str, Any], found: dict[str, NDArray[Any]], name: s
         content["details"] = [(k, t, agent, key, values) for k, t, agent, key, values in content["details"]]
         parts = model_of(objects["model"]), network_of(objects["network"]), filter_of(objects["filter"])
         run = make(*parts, made, content, found)
-        require_arrays(found, dimensions(run.filter), run.network.agents)
+        require_arrays(found, {name: axes(run.filter, name) for name in found}, run.network.agents)
     except (AttributeError, KeyError, RecursionError, TypeError, ValueError) as error:
         raise _core.IoError(f"{name}: got {error!r}, expected a run written by Run.save") from None
     return run

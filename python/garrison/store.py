@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from garrison import _core, run_file
-from garrison.growing import Growing, chunks
+from garrison.growing import Growing, Writer, chunks
 from garrison.labelled import about, axes, dataset, thinned
 from garrison.labelled_files import DIGEST, DOCUMENT, STREAMED, THINNED, is_run, require_zarr
 from garrison.paths import growing_folder, path, told
@@ -49,7 +49,11 @@ def written(
         yield None
         return
     with growing_folder(to, is_run) as folder:
-        yield Store(to, folder, model, filter, trials, every)
+        store = Store(to, folder, model, filter, trials, every)
+        try:
+            yield store
+        finally:
+            store.close()
 
 
 class Store:
@@ -66,6 +70,7 @@ class Store:
         self._folder, self._filter, self._model, self._trials = folder, filter, model, trials
         self._steps = every | dict.fromkeys(_REPORT, every.get("report", 1))
         self._arrays: dict[str, Growing] = {}
+        self._writer = Writer()
 
     def take(self, trial: int, block: list[tuple[str, NDArray[Any], int, int, int]]) -> None:
         """Write a block of a trial: (name, rows, number of the first one, how many a trial has, time of row 0)."""
@@ -85,6 +90,8 @@ class Store:
 
     def finish(self, run: Run) -> None:
         """Write everything else of the run, which holds no array that was written here."""
+        with told(self._to):
+            self._writer.finish()
         small = run_file.labelled(run)
         whole = [name for name in self._arrays if self._step(name) == 1]
         rest = [name for name in self._arrays if name not in whole]
@@ -97,6 +104,10 @@ class Store:
         data.attrs = {name: str(value) for name, value in data.attrs.items()}
         with told(self._to):
             data.to_zarr(self._folder, mode="a", consolidated=False, zarr_format=2)
+
+    def close(self) -> None:
+        """Write nothing more: the folder may go."""
+        self._writer.close()
 
     def _named(self, name: str, rows: NDArray[Any]) -> Iterator[tuple[str, NDArray[Any]]]:
         """Arrays as a dataset calls them: of signals each is one of its own."""
@@ -112,22 +123,25 @@ class Store:
             if step > 1:
                 names = (names[0], thinned(names[1], step), *names[2:])
             shape = (self._trials, total, *rows.shape[1:])
-            self._arrays[name] = Growing(self._created(name, names, shape, rows), names)
+            from numcodecs import Zstd
+
+            codec = Zstd(level=-1, checksum=True)
+            array = self._created(name, names, shape, rows, codec)
+            self._arrays[name] = Growing(array, names, self._folder / array.path, codec, self._writer)
         return self._arrays[name]
 
-    def _created(self, name: str, names: tuple[str, ...], shape: tuple[int, ...], rows: NDArray[Any]) -> Any:
+    def _created(
+        self, name: str, names: tuple[str, ...], shape: tuple[int, ...], rows: NDArray[Any], codec: Any
+    ) -> Any:
         """A new array of the folder: little time for compression, sums that tell of damage, every chunk written."""
-        from numcodecs import Zstd
-
         return self._group.create_array(
             name,
             shape=shape,
             chunks=chunks(shape, rows.itemsize),
             dtype=rows.dtype,
-            compressors=Zstd(level=-1, checksum=True),
+            compressors=codec,
             fill_value=None,
             attributes={"_ARRAY_DIMENSIONS": list(names), **about(self._model, name)},
-            config={"write_empty_chunks": True},
         )
 
     def _step(self, name: str) -> int:

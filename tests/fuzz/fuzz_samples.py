@@ -90,6 +90,7 @@ def samples() -> dict[str, list[Any]]:
             gr.VaryingModel(model, A=np.repeat(np.asarray(model.A)[None], 3, axis=0)),
             gr.VaryingModel(model, measurement_covariance=np.ones((3, model.outputs))),
         ],
+        "StaticPlant": [gr.StaticPlant.of(np.eye(3)[[0, 1, 2, 0]])],
         "NonlinearModel": [
             gr.NonlinearModel(lambda X, u, t: 0.9 * X, lambda X, t: X[:, 0], states=2, outputs=[1] * model.agents),
             gr.NonlinearModel(
@@ -137,6 +138,7 @@ def certificates() -> list[Any]:
         c.Bank(A, 0.1 * np.eye(2), [(C[[k]], np.ones(1)) for k in range(3)], 1),
         c.meters(meters),
         c.smallest_undetectable(meters, 2),
+        c.sparse_meters((2, 2), [0, 1], [0, 1], np.ones(2)),
         c.observer_table(A, C, np.full((2, 3), 0.1), np.eye(2), noise, s=1, bw=0.1, start=1.0, T=5, lags=4),
     ]
 

@@ -259,3 +259,11 @@ def test_a_filter_that_requires_nothing_of_liars_promises_nothing_about_them() -
     assert words not in str(gr.analyze(model, network, filter=vague))
     sure = gr.filters.Saturation(threshold=1.0, rounds=30, attacked=1, initial_error=2.0)
     assert words in str(gr.analyze(model, network, filter=sure))
+
+
+def test_states_that_are_seen_by_rounding_only_are_no_refusal():
+    """Rows of 1e-9 beside rows of 1: whether one sample determines the state is a matter of scale."""
+    rows = np.array([[1.0, 1e-9], [1.0, 0.0], [1.0, 1e-9]])
+    model = gr.Model(np.diag([1.0, 0.9]), [row[None] for row in rows])
+    found = gr.analyze(model, gr.Network.path(3), seconds=5)
+    assert found.one_sample.fewest <= found.one_sample.most

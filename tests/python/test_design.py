@@ -20,17 +20,18 @@ def random_network(rng):
 
 
 def test_no_point_of_a_grid_is_better():
+    """200 points on each of 50 networks; bench/design_grid.py takes more."""
     rng = np.random.default_rng(1)
     designed = 0
-    for _ in range(25):
+    for _ in range(50):
         model, network = random_network(rng)
         try:
             found = gr.design(model, network, attacked=1, initial_error=2.0, most_rounds=40, curve=False)
         except gr.DesignInfeasible:
             found = None
         best = math.inf
-        for rounds in (1, 3, 10, 40):
-            for threshold in np.geomspace(0.02, 20, 12):
+        for rounds in (1, 2, 3, 5, 8, 13, 24, 40):
+            for threshold in np.geomspace(0.02, 20, 25):
                 filter = gr.filters.Saturation(
                     threshold=threshold, rounds=rounds, attacked=1, initial_error=2.0, chebyshev=True
                 )
@@ -45,7 +46,30 @@ def test_no_point_of_a_grid_is_better():
         verified = gr.check(model, network, found.filter)
         assert verified.holds
         assert verified["asymptotic bound"] == pytest.approx(found.error, rel=1e-6)
-    assert designed >= 10
+    assert designed >= 40
+
+
+def test_a_plant_that_contracts_has_a_design_near_the_limit_of_its_bound():
+    """||A|| < 1 and loud sensors: the bound only falls with the threshold, so that no threshold is best."""
+    rows = [[[1.0, 0.0]], [[0.0, 1.0]]] * 2
+    model = gr.Model(0.9 * np.eye(2), rows, process_bound=0.01, measurement_bound=0.1)
+    network = gr.Network.complete(4)
+    found = gr.design(model, network, attacked=1, initial_error=2.0, curve=False)
+    checked = {
+        threshold: gr.check(
+            model,
+            network,
+            gr.filters.Saturation(
+                threshold=threshold, rounds=found.chosen.rounds, attacked=1, initial_error=2.0, chebyshev=True
+            ),
+        )["asymptotic bound"]
+        for threshold in (1.0, 1e-2, 1e-4, 1e-8)
+    }
+    assert list(checked.values()) == sorted(checked.values(), reverse=True)
+    assert found.error <= checked[1e-8] * (1 + 2e-6) and gr.check(model, network, found.filter).holds
+    quiet = gr.Model(0.9 * np.eye(2), rows, process_bound=0.0, measurement_bound=0.0)
+    with pytest.raises(gr.DesignInfeasible, match="falls as beta -> 0"):
+        gr.design(quiet, network, attacked=1, initial_error=2.0)
 
 
 def plant():

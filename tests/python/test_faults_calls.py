@@ -412,6 +412,20 @@ def test_an_interrupt_ends_a_long_design(call: Callable[..., Any]) -> None:
     assert time.monotonic() - started < 15  # without an answer it takes far longer
 
 
+def test_an_interrupt_ends_a_search_over_subsets() -> None:
+    C = np.random.default_rng(0).normal(size=(400, 8))
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.5)
+    started = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            gr.lambda0(C, 40, max_seconds=120)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert time.monotonic() - started < 15  # 120 without an answer
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [

@@ -1,5 +1,6 @@
 """`garrison import pandapower`: rows, areas, links, what is refused. Cases are pandapower's own."""
 
+import json
 import sys
 import warnings
 from pathlib import Path
@@ -29,8 +30,8 @@ def path_grid(buses: int) -> Grid:
 
 
 def test_a_unit_sees_the_far_ends_of_its_lines() -> None:
-    rows, R, names = _unit(path_grid(3), 1, Assumptions(angle=0.01, flow=0.5))
-    assert np.array_equal(rows, np.eye(3)[[1, 0, 2]])
+    seen, R, names = _unit(path_grid(3), 1, Assumptions(angle=0.01, flow=0.5))
+    assert seen == [1, 0, 2]
     assert names == ["angle at 1", "angle at 0 from 1", "angle at 2 from 1"]
     assert np.allclose(R - np.diag(np.diag(R)), 1e-4 * (1 - np.eye(3)))  # its own error is in all of them
     assert np.allclose(np.diag(R), [1e-4, 1e-4 + 0.0025, 1e-4 + 0.0025], rtol=1e-3)
@@ -38,8 +39,8 @@ def test_a_unit_sees_the_far_ends_of_its_lines() -> None:
 
 def test_parallel_lines_are_one_stronger_line() -> None:
     grid = Grid("two", ["a", "b"], [(0, 1, 10.0), (1, 0, 30.0)], np.zeros(2))
-    rows, R, _ = _unit(grid, 0, Assumptions(angle=1e-9, flow=0.4))
-    assert rows.shape == (2, 2) and R[1, 1] == pytest.approx((0.4 / 40.0) ** 2)
+    seen, R, _ = _unit(grid, 0, Assumptions(angle=1e-9, flow=0.4))
+    assert seen == [0, 1] and R[1, 1] == pytest.approx((0.4 / 40.0) ** 2)
 
 
 def test_areas_are_whole_and_of_all_buses() -> None:
@@ -77,6 +78,21 @@ def test_1354_buses_are_read(tmp_path: Path) -> None:
     scenario = read_scenario(out / "scenario.toml")
     assert (scenario.model.states, scenario.model.agents) == (1354, 300)
     assert scenario.network.connected
+
+
+@needs
+@pytest.mark.filterwarnings("ignore")
+def test_9241_buses_are_analysed_and_no_more(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "largest"
+    assert main(["import", "pandapower", "case9241pegase", "-o", str(out)]) == 0
+    assert "matrices of all states would take 8.3 GB" in capsys.readouterr().out
+    assert main(["analyze", str(out / "scenario.toml"), "--seconds", "120", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert len(told["sensors"]) == 37655 and not told["unfinished"]
+    assert (told["one_sample"]["fewest"], told["one_sample"]["exact"]) == (2, True)
+    assert told["additions"][0]["cheapest"]
+    assert main(["check", str(out / "scenario.toml")]) == 2
+    assert "would take 8" in capsys.readouterr().err
 
 
 @needs

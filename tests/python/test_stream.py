@@ -37,12 +37,20 @@ FILTERS = [
 ]
 
 
+DRIVERS = {"simulate": _core.simulate, "replay": _core.replay}
+
+
+def set_blocks(bytes: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs record in blocks of so many bytes."""
+    for name, driver in DRIVERS.items():
+        monkeypatch.setattr(_core, name, functools.partial(driver, block_bytes=bytes))
+
+
 @pytest.fixture(params=["small", "usual"])
 def sizes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Blocks and chunks so small that every trial has many, which do not end together; and the usual ones."""
     if request.param == "small":
-        for driver in (_core.simulate, _core.replay):
-            monkeypatch.setattr(_core, driver.__name__, functools.partial(driver, block_bytes=5000))
+        set_blocks(5000, monkeypatch)
         monkeypatch.setattr(growing, "_CHUNK", 900)
 
 
@@ -147,7 +155,7 @@ def test_a_mapping_keeps_what_it_names_and_no_more() -> None:
     ("keep", "words"),
     [
         ({"erorr": "all"}, r'keep: got \'erorr\', .*did you mean "error"'),
-        ({"error": "some"}, r"keep\['error'\]: got 'some', expected \"all\" or \"none\", or garrison.every"),
+        ({"error": "some"}, r"keep\['error'\]: got 'some', expected \"all\" or \"none\", garrison.every"),
         ({"details": gr.every(2)}, r"keep\['details'\]: got garrison.every\(2\), expected \"all\" or \"none\""),
         ({3: "all"}, "keep: got 3"),
         (["error"], "keep: got 'error'"),

@@ -135,6 +135,22 @@ def test_exposure_says_what_a_constant_attack_can_do() -> None:
     assert found["largest_harm"] == pytest.approx(found["harm_per_unit"] * found["smallest_seen"])
 
 
+@pytest.mark.parametrize("lonely", [[0.0, 1.0], [0.3, 1.0]])
+def test_an_attack_that_no_test_ever_sees_has_no_largest_harm(lonely: list[float]) -> None:
+    """Agent 3 alone shows the second of two states that stay where they are."""
+    C = [[[1.0, 0.0]], [[1.0, 0.0]], [[1.0, 0.0]], [lonely]]
+    model = gr.Model(np.eye(2), C, process_covariance=0.01 * np.eye(2), measurement_covariance=[[[0.1]]] * 4)
+    network = gr.Network.ring(4)
+    assert structure.undetectable_agents(model) == [3]
+    found = gr.check(model, network, gr.filters.Structural(design="h2", false_alarm=1e-3))
+    assert found["harm of an unseen constant attack"] == np.inf  # not 1e15, which is rounding
+    C[2] = [[0.0, 1.0]]
+    shown = gr.Model(np.eye(2), C, process_covariance=0.01 * np.eye(2), measurement_covariance=[[[0.1]]] * 4)
+    assert gr.check(shown, network, gr.filters.Structural(design="h2", false_alarm=1e-3))[
+        "harm of an unseen constant attack"
+    ] == pytest.approx(5.5, abs=4.5)
+
+
 def test_gains_of_the_lmi_are_stable_where_a_plain_choice_is_not() -> None:
     pytest.importorskip("cvxpy")
     rng = np.random.default_rng(4)

@@ -2,12 +2,14 @@
 
 import argparse
 import sys
+from typing import Any
 
 from garrison._commands.output import new_file, write_picture
 from garrison._commands.terminal import NO, OK, Commands, console_for, number, print_json, print_table, tell_work
 from garrison.answers import Analysis, analyze
 from garrison.answers.text import limit_rows, sensor_rows, sentences
 from garrison.scenario import read_scenario
+from garrison.scenario.static import read_static_scenario
 
 _MOST_ROWS = 60
 
@@ -31,17 +33,7 @@ def add(commands: Commands) -> None:
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
     target = new_file(args.output, args.force) if args.output else None
-    scenario = read_scenario(args.scenario)
-    scenario.require_constant("analyze")
-    found = analyze(
-        scenario.model,
-        scenario.network,
-        scenario.filters[0][1],
-        names=scenario.names,
-        title=scenario.title,
-        seconds=args.seconds,
-        progress=tell_work if sys.stderr.isatty() else None,
-    )
+    found = _analysis(args)
     if target is not None:
         write_picture(target, found.plot())
     if args.json:
@@ -49,6 +41,26 @@ def do(args: argparse.Namespace) -> int:
     else:
         _print(found, args.output)
     return NO if found.over_time.most == 0 else OK
+
+
+def _analysis(args: argparse.Namespace) -> Analysis:
+    options: dict[str, Any] = {
+        "seconds": args.seconds,
+        "progress": tell_work if sys.stderr.isatty() else None,
+    }
+    static = read_static_scenario(args.scenario)
+    if static is not None:
+        return analyze(static.plant, static.network, names=static.names, title=static.title, **options)
+    scenario = read_scenario(args.scenario)
+    scenario.require_constant("analyze")
+    return analyze(
+        scenario.model,
+        scenario.network,
+        scenario.filters[0][1],
+        names=scenario.names,
+        title=scenario.title,
+        **options,
+    )
 
 
 def _print(found: Analysis, output: str | None) -> None:

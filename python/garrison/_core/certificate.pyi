@@ -19,6 +19,7 @@ __all__: list[str] = [
     "Recovery",
     "Region",
     "SmallestAttack",
+    "SparseMeters",
     "Table",
     "TwoNumbers",
     "Window",
@@ -55,6 +56,7 @@ __all__: list[str] = [
     "range_row",
     "scan",
     "smallest_undetectable",
+    "sparse_meters",
     "sub_gaussian_chi",
     "sub_gaussian_levels",
     "sub_gaussian_two_sided",
@@ -1165,6 +1167,52 @@ class ObserverTable:
         (T+1, m): where innovations are clipped; row 0 is 0
         """
 
+class SparseMeters:
+    """
+    What a large static set of meters withstands.
+    """
+    def __reduce__(self) -> tuple: ...
+    @property
+    def complete(self) -> bool:
+        """
+        every row was looked at
+        """
+    @property
+    def critical(self) -> list[int]:
+        """
+        sources nobody checks
+        """
+    @property
+    def example(self) -> list[int]:
+        """
+        `most` rows that can
+        """
+    @property
+    def fewest(self) -> int:
+        """
+        no fewer rows are needed to lie unseen, for certain
+        """
+    @property
+    def least(self) -> float:
+        """
+        the smallest eigenvalue of H'H is at least this, with rows of length 1
+        """
+    @property
+    def leverage(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (rows,), with rows of length 1; nan: no time
+        """
+    @property
+    def most(self) -> int:
+        """
+        so many can; as `fewest`: exact
+        """
+    @property
+    def unseen(self) -> list[int]:
+        """
+        states of which it is not sure that the rows determine them; the rest is then empty
+        """
+
 class Meters:
     """
     What a static set of meters withstands.
@@ -2191,6 +2239,20 @@ def smallest_undetectable(
     ------
     InvalidInput
         Shapes do not fit, or a number is out of range.
+    """
+
+def sparse_meters(
+    shape: tuple[typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex],
+    rows: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    columns: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    values: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    source: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
+    dense: typing.SupportsInt | typing.SupportsIndex = 4000,
+) -> SparseMeters:
+    """
+    H (rows, states) by its entries: shape, and rows, columns, values (k,) of what is not 0, reference removed; source
+    (rows,). Parts of H of up to `dense` rows are searched exactly, larger ones give bounds. Ends with its budget. Raises
+    InvalidInput.
     """
 
 def sub_gaussian_chi(

@@ -1,7 +1,7 @@
 """The cheapest sensors that make one more liar harmless."""
 
 import heapq
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -65,7 +65,35 @@ def cheapest_for_removal(
         before = unseen(A, rest)
         return [k for k, c in enumerate(candidates) if unseen(A, np.vstack([rest, c.row])) < before]
 
-    return _search(goal, candidates, obstacle, next_ones, budget)
+    counted = _counted(A, rows, may_go, spare, candidates)
+    return _search(goal, candidates, obstacle, next_ones, budget, counted)
+
+
+def by_counting(shown: Sequence[int], spare: int, prices: Mapping[int, float]) -> list[int] | None:
+    """States, each for a sensor of it alone, so that more than `spare` rows show every state.
+
+    shown: by how many rows each state is shown. prices: what a sensor of one state costs. A plant that does not move
+    needs that much: without the rows of one state nothing tells it. None: a sensor that is needed is not on offer.
+    """
+    missing = [(k, spare + 1 - rows) for k, rows in enumerate(shown) if rows <= spare]
+    if any(k not in prices for k, _ in missing):
+        return None
+    return [k for k, times in missing for _ in range(times)]
+
+
+def _counted(A: Array, rows: Array, may_go: list[int], spare: int, candidates: Sequence[Candidate]) -> list[int] | None:
+    """by_counting as numbers of candidates; None where it says nothing: they show several states, or A moves them."""
+    states = [np.flatnonzero(c.row) for c in candidates]
+    if not np.array_equal(A, np.eye(len(A))) or any(len(some) != 1 for some in states):
+        return None
+    of: dict[int, int] = {}
+    for number in sorted(range(len(candidates)), key=lambda k: -candidates[k].cost):
+        of[int(states[number][0])] = number
+    loose = np.isin(np.arange(len(rows)), may_go)
+    safe = (rows[~loose] != 0).any(axis=0)  # shown by a sensor that is never lost
+    shown = np.where(safe, spare + 1, (rows[loose] != 0).sum(axis=0))
+    found = by_counting(shown.tolist(), spare, {k: candidates[number].cost for k, number in of.items()})
+    return None if found is None else sorted(of[k] for k in found)
 
 
 def cheapest_for(
@@ -87,11 +115,13 @@ def _search(
     obstacle: Obstacle,
     next_ones: Callable[[Array, list[int]], list[int]],
     budget: Any,
+    needed: Sequence[int] | None = None,
 ) -> Addition:
-    """Uniform-cost search over choices with repetition."""
+    """Uniform-cost search over choices with repetition. needed: what no choice costs less than; None: nothing."""
     n = len(candidates[0].row) if candidates else 0
-    queue: list[tuple[float, tuple[int, ...]]] = [(0.0, ())]
-    seen: set[tuple[int, ...]] = {()}
+    first = tuple(needed or ())
+    queue: list[tuple[float, tuple[int, ...]]] = [(sum(candidates[k].cost for k in first), first)]
+    seen: set[tuple[int, ...]] = {first}
     try:
         while queue and not budget.over:
             cost, chosen = heapq.heappop(queue)

@@ -15,10 +15,12 @@ from garrison.answers.limits import Limit
 from garrison.answers.questions import QUESTIONS, Questions
 from garrison.answers.removals import Removal
 from garrison.answers.sensors import sensors_of
+from garrison.answers.static_questions import STATIC_QUESTIONS, StaticQuestions
 from garrison.answers.watch import Progress, Watch
 from garrison.drawing import drawn
 from garrison.families import require_common_state
 from garrison.result import Result
+from garrison.static_plant import StaticPlant
 from garrison.words import count, hinted, hinted_methods, refusal, require_plant, shown
 
 if TYPE_CHECKING:
@@ -112,7 +114,7 @@ class Analysis(Result):
 
 @hinted
 def analyze(
-    model: _core.Model,
+    model: _core.Model | StaticPlant,
     network: _core.Network,
     filter: _core.Filter | None = None,
     *,
@@ -127,16 +129,17 @@ def analyze(
 
     Parameters
     ----------
-    model : Model
-        The plant and its sensors.
+    model : Model or StaticPlant
+        The plant and its sensors. For a StaticPlant, whose rows are sparse, no matrix of all states is made: bounds
+        instead of exact numbers where a part of it has more than 4000 sensors, and no errors of filters.
     network : Network
         Who hears whom.
     filter : Filter, optional
-        Asks also how many liars it stands with its own parameters.
+        Asks also how many liars it stands with its own parameters; not of a StaticPlant.
     candidates : (k, n) array, optional
-        Rows that a new sensor could have, default: every state by itself.
+        Rows that a new sensor could have, default: every state by itself. Not of a StaticPlant.
     costs : (k,) array, optional
-        Of the candidates, > 0, default 1.
+        Of the candidates, > 0, default 1; of a StaticPlant: of a sensor of each state.
     names : sequence of str, optional
         Of the agents, default the network's.
     title : str
@@ -157,7 +160,10 @@ def analyze(
     InvalidInput
         Something does not fit; the message says which, and what was expected.
     """
-    require_plant("analyze", model, network)
+    if isinstance(model, StaticPlant):
+        _require_network(model, network)
+    else:
+        require_plant("analyze", model, network)
     if filter is not None and not isinstance(filter, _core.Filter):
         raise refusal("filter", shown(filter), "a filter of garrison.filters, or None")
     require_common_state(filter)
@@ -166,16 +172,41 @@ def analyze(
         arguments.callback("progress", progress, "(question, done, total)"),
     )
     names = None if names is None else arguments.texts("names", names)
-    if names and len(names) != model.agents:
-        raise refusal("names", count(len(names), "name"), f"{model.agents}, one per agent")
+    if names and len(names) != network.agents:
+        raise refusal("names", count(len(names), "name"), f"{network.agents}, one per agent")
     seconds = arguments.number("seconds", seconds)
     if not seconds > 0:
         raise refusal("seconds", str(seconds), "a time > 0")
+    called = list(names or network.names) or [f"agent {i}" for i in range(network.agents)]
+    if isinstance(model, StaticPlant):
+        if filter is not None or candidates is not None:
+            which = "filter" if filter is not None else "candidates"
+            raise refusal(which, "one, with a StaticPlant", "none", "a Model of the same rows takes it")
+        watch = Watch(seconds, STATIC_QUESTIONS, progress)
+        asked = StaticQuestions(model, network, _prices(model, costs), watch, called)
+        return Analysis(title=title, **asked.answers())
     sensors = sensors_of(model, network, names or None)
     offered = _candidates(model, candidates, costs)
     watch = Watch(seconds, QUESTIONS, progress)
-    questions = Questions(model, network, sensors, offered, watch, list(names or network.names))
+    questions = Questions(model, network, sensors, offered, watch, called)
     return Analysis(title=title, **questions.answers(filter))
+
+
+def _require_network(plant: StaticPlant, network: _core.Network) -> None:
+    if not isinstance(network, _core.Network):
+        raise refusal("analyze", f"(StaticPlant, {type(network).__name__}, ..)", "(plant, network, ..)")
+    if network.agents < plant.agents:
+        words = f"at least {plant.agents}, because the plant has a sensor of agent {plant.agents - 1}"
+        raise refusal("network", count(network.agents, "agent"), words)
+
+
+def _prices(plant: StaticPlant, costs: ArrayLike | None) -> dict[int, float]:
+    """What a sensor of each state costs."""
+    n = plant.size[1]
+    prices = np.ones(n) if costs is None else arguments.table("costs", costs).ravel()
+    if prices.shape != (n,) or not np.all(prices > 0) or not np.all(np.isfinite(prices)):
+        raise refusal("costs", shown(costs), f"{count(n, 'number')} > 0, one per state")
+    return dict(enumerate(prices.tolist()))
 
 
 def _candidates(model: _core.Model, rows: ArrayLike | None, costs: ArrayLike | None) -> list[Candidate]:

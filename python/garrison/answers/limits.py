@@ -110,9 +110,8 @@ def _unit(rows: Array) -> Array:
     return np.asarray(saturation.normalise_rows(rows, np.zeros(len(rows)))["C"])
 
 
-def contraction(sensors: Sensors) -> float:
-    """gamma of one round on the sensors' network."""
-    net = sensors.network
+def network_contraction(net: _core.Network) -> float:
+    """gamma of one round on a network; 1 where it is directed or in parts."""
     if net.agents == 1:
         return 0.0
     if net.directed or not net.connected:

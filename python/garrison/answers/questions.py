@@ -12,7 +12,7 @@ from garrison import _core
 from garrison._core import certificate, saturation, structure
 from garrison.answers.additions import Addition, Candidate, cheapest_for, cheapest_for_removal
 from garrison.answers.graph import cuts
-from garrison.answers.limits import LATE, Limit, contraction, from_removal, of_filter, saturation_facts
+from garrison.answers.limits import LATE, Limit, from_removal, network_contraction, of_filter, saturation_facts
 from garrison.answers.removals import Removal, smallest_removal
 from garrison.answers.sensors import Sensors
 from garrison.answers.watch import Watch
@@ -28,6 +28,21 @@ DELTA = 1e-3
 _MOST_PATTERN = 3000
 #: pairs of sets of sensors that the bank's steady error goes through, times states cubed
 _MOST_BANK = 2e6
+
+
+def removal_limits(over_time: Removal, one_sample: Removal, names: list[str], can_lie: int) -> list[Limit]:
+    """What follows from the fewest sensors that may not be lost together."""
+    seen = "any s sensors may be lost and the state stays observable"
+    twice = "any 2 s sensors may be lost and the state stays observable"
+    fast = "any s sensors may be lost and one sample determines the state"
+    twice_fast = "any 2 s sensors may be lost and one sample determines the state"
+    bounded = "witness certificate: a bounded region from one sample"
+    return [
+        from_removal("no lie stays unseen for ever", seen, over_time, 1, names, can_lie),
+        from_removal("the state can be determined in the end", twice, over_time, 2, names, can_lie),
+        from_removal("every lie shows in one sample", fast, one_sample, 1, names, can_lie),
+        from_removal(bounded, twice_fast, one_sample, 2, names, can_lie),
+    ]
 
 
 class Questions:
@@ -56,7 +71,7 @@ class Questions:
         if not np.array_equal(self.A, self.identity):
             one_sample = self._removal("fewest sensors without which one sample is not enough", self.identity)
         can_lie = [self.sensors.names[k] for k in self.sensors.can_lie]
-        limits = self._limits(over_time, one_sample)
+        limits = removal_limits(over_time, one_sample, self.sensors.names, len(can_lie))
         gamma, of_saturation = self._saturation(len(can_lie))
         limits.append(of_saturation)
         if filter is not None:
@@ -91,21 +106,6 @@ class Questions:
             self.unfinished.append(words)
         return found
 
-    def _limits(self, over_time: Removal, one_sample: Removal) -> list[Limit]:
-        names, can_lie = self.sensors.names, len(self.sensors.can_lie)
-        seen = "any s sensors may be lost and the state stays observable"
-        twice = "any 2 s sensors may be lost and the state stays observable"
-        fast = "any s sensors may be lost and one sample determines the state"
-        twice_fast = "any 2 s sensors may be lost and one sample determines the state"
-        return [
-            from_removal("no lie stays unseen for ever", seen, over_time, 1, names, can_lie),
-            from_removal("the state can be determined in the end", twice, over_time, 2, names, can_lie),
-            from_removal("every lie shows in one sample", fast, one_sample, 1, names, can_lie),
-            from_removal(
-                "witness certificate: a bounded region from one sample", twice_fast, one_sample, 2, names, can_lie
-            ),
-        ]
-
     def _saturation(self, most: int) -> tuple[float, Limit]:
         guarantee = "saturation filter: some threshold and rounds keep its error bounded (theorem 1)"
         needs = "condition (9) for some threshold, initial error and number of rounds"
@@ -114,7 +114,7 @@ class Questions:
         self.rounds: dict[int, int] = {}
         self.settings: dict[int, saturation.Setting] = {}
         with self.watch.question(words, 0.3) as budget:
-            gamma = contraction(self.sensors)
+            gamma = network_contraction(self.sensors.network)
             for s in range(most + 1):
                 if budget.over:
                     break
@@ -180,7 +180,10 @@ class Questions:
             return None
         found: list[float] | None = None
         with self.watch.question("what each sensor holds alone", 0.4):
-            found = [float(v) for v in certificate.meters(self._whitened()).leverage]
+            try:
+                found = [float(v) for v in certificate.meters(self._whitened()).leverage]
+            except _core.InvalidInput:  # rows that determine the state by their rounding only
+                return None
         if found is None:
             self.unfinished.append("what each sensor holds alone")
         return found
@@ -291,7 +294,7 @@ class Questions:
                     break
                 more = _core.Network([*self.network.edges, (i, j)], agents=N)
                 _, net, _ = _core.split_outputs(self.model, more)
-                gamma = contraction(Sensors(self.sensors.model, net, self.sensors.rows, [], [], []))
+                gamma = network_contraction(net)
                 fewer = saturation.minimal_rounds(base, gamma)
                 if fewer is not None and fewer < (best[1] if best else rounds):
                     best = (i, j), fewer

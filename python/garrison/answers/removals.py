@@ -53,7 +53,10 @@ def smallest_removal(A: Array, rows: Array, may_go: list[int], budget: Any) -> R
     most = len(example)
     certain = 0
     if most > 1 and len(may_go) == len(rows) and at_once and np.all(np.any(rows != 0.0, axis=1)):
-        attack = certificate.smallest_undetectable(rows, most - 1, 1e12)  # stops with the budget
+        try:
+            attack = certificate.smallest_undetectable(rows, most - 1, 1e12)  # stops with the budget
+        except _core.InvalidInput:  # rows that determine the state by their rounding only
+            return Removal(1, most, sorted(example))
         if attack.size is not None:
             return Removal(attack.size, attack.size, sorted(attack.example))
         return Removal(attack.searched + 1, most, sorted(example))

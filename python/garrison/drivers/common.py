@@ -14,6 +14,7 @@ from garrison.drivers.keeping import Kept
 from garrison.families import family_of
 from garrison.objects import described, described_attack, plain_data, plain_lists
 from garrison.record import Run
+from garrison.reductions import Reductions, numbers_of
 from garrison.sizes import require_memory
 from garrison.store import UNSEEN, Store, place
 from garrison.words import count, refusal
@@ -44,9 +45,11 @@ def require_room(
         "signals": 8 * len(filter.signal_names) * N,
         "box": 8 * N * n,
     }
-    bytes_of_one = sum(row.get(name, 0) for name in keep.names)
+    bytes_of_one = sum(row.get(name, 0) for name in keep.whole)
     got = f"{count(steps, 'sample')} in {count(trials, 'trial')} of {count(N, 'agent')}, {bytes_of_one} bytes a sample"
-    require_memory("steps, trials", got, trials * (steps + 1.0) * bytes_of_one / 8.0, _ADVICE)
+    lengths = {"trial": trials, "time": steps + 1, "sample": steps + 1, "agent": N, "state": n, "output": model.outputs}
+    together = trials * (steps + 1.0) * bytes_of_one / 8.0 + numbers_of(filter, keep.reduced, lengths)
+    require_memory("steps, trials", got, together, _ADVICE)
 
 
 def destination(
@@ -56,6 +59,11 @@ def destination(
     if to is not None:
         described(model, network, filter)  # refuses before the run what no file can hold
         return place(to)
+    if keep.reduced and (beside := [name for name in keep.whole if name != "details"]):
+        words = "reductions alone, of a run in memory"
+        raise refusal(
+            "keep", f"{', '.join(beside)} beside garrison.reduce without to", words, 'to="run.zarr" takes both'
+        )
     for name, step in keep.every.items():
         advice = 'to="run.zarr"; in memory slices do it: run.estimate[:, ::100]'
         raise refusal(
@@ -115,7 +123,7 @@ def arguments_of_both(
     links: dict[str, Any],
     keeping: Kept,
     known: dict[str, Any],
-    store: Store | None,
+    sink: Store | Reductions | None,
     *,
     trials: int,
     first_trial: int,
@@ -136,7 +144,7 @@ def arguments_of_both(
         "keep": keeping.names,
         **known,
         "progress": arguments.callback("progress", progress),
-        "sink": store and store.take,
+        "sink": sink and sink.take,
     }
 
 
@@ -189,9 +197,19 @@ def recorded(
     return run
 
 
-def with_recipe(run: Run, made: dict[str, Any], store: Store | None) -> Run:
+def sink_of(filter: _core.Filter, trials: int, keep: Kept, store: Store | None) -> Store | Reductions | None:
+    """Where a run goes as it goes on; None: nowhere, it stays in memory."""
+    if not keep.reduced:
+        return store
+    return Reductions(filter, trials, keep.reduced, keep.keeps, None if store is None else store.take)
+
+
+def with_recipe(run: Run, made: dict[str, Any], sink: Store | Reductions | None, store: Store | None) -> Run:
     """The run with what made it, and the doubts that depend on that; the rest of what its store is to hold, too."""
     run.made = plain_lists(made)
+    if isinstance(sink, Reductions):
+        run.reduced = sink.arrays()
+        run.warnings += [UNSEEN] if store is None else []
     run.warnings += refuted.of_certificates(run.bound_kind, made.get("failure", 0.0))
     if store is not None:
         run.warnings.append(UNSEEN)

@@ -20,6 +20,7 @@ from garrison.drivers.common import (
     recorded,
     require_room,
     require_taken,
+    sink_of,
     with_recipe,
 )
 from garrison.drivers.keeping import KEEP, Keep, kept
@@ -97,8 +98,8 @@ def replay(
         Which arrays of the run are filled: "estimate", "report" (bounds, test statistics, thresholds and verdicts),
         "measurements", "signals" (what the family says of itself, by name), "details" (lists such as sets), "box"
         (the bound of each coordinate, with "report"); beside them errors and truth. A mapping says it of each of these
-        and of "error" and "truth", "all" or `garrison.every(k)`, and what it does not name is not kept: {} keeps
-        counters alone.
+        and of "error" and "truth", "all", `garrison.every(k)` or `garrison.reduce(..)`, and what it does not name is
+        not kept: {} keeps counters alone.
     to : str or Path, optional
         A folder that ends in .zarr (extra: store): the run is written there as it goes, and memory holds a block of
         samples (16 MB) and open chunks per trial that runs, however long the run is. The run that is returned reads
@@ -155,6 +156,7 @@ def replay(
     if path is None:
         require_room(base, filter, keeping, trials, samples, run_options.certified(certificate) or design is not None)
     with written(path, base, filter, trials, keeping.every) as store:
+        sink = sink_of(filter, trials, keeping, store)
         design = designed(base, ground, filter, design, certificate, failure, attacked, levels, memory)
         data = _core.replay(
             design,
@@ -166,7 +168,7 @@ def replay(
                 links,
                 keeping,
                 known,
-                store,
+                sink,
                 trials=trials,
                 first_trial=first_trial,
                 seed=seed,
@@ -180,5 +182,5 @@ def replay(
         if keeping.logs and any(a.target == "measurement" for a in attacks):
             run.log = np.array(y if y.ndim == 3 else y[None])
         both = made_of(trials, first_trial, seed, start, attacks, links, keeping, design, wanted, known)
-        run = with_recipe(run, {"driver": "replay"} | both, store)
+        run = with_recipe(run, {"driver": "replay"} | both, sink, store)
     return run if path is None else stored(path)

@@ -86,7 +86,8 @@ def _network(ax: Any, analysis: Analysis) -> None:
         which = [k for k, name in enumerate(names) if name in some]
         if which:
             size = 150 if N <= 60 else 20
-            style = {"s": size, "c": colour, "marker": marker, "edgecolors": "white", "zorder": 3}
+            edge = "white" if N <= 400 else "none"  # edges of neighbours would hide all of them
+            style = {"s": size, "c": colour, "marker": marker, "edgecolors": edge, "zorder": 3}
             ax.scatter(*place[which].T, label=f"{word} ({len(which)})", **style)
     for k in range(N) if N <= 40 else []:
         side = "left" if place[k, 0] > 0.2 else "right" if place[k, 0] < -0.2 else "center"

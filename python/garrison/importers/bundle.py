@@ -76,22 +76,28 @@ def gate(label: str, false_alarm: float, *, isolate: bool) -> dict[str, Any]:
 
 
 def model_file(
-    A: Array,
-    C: Sequence[Array],
+    A: Array | dict[str, Any],
+    C: Sequence[Array | dict[str, Any]],
     *,
-    process_covariance: Array,
+    process_covariance: Array | dict[str, Any],
     measurement_covariance: Sequence[Array],
     agents: Sequence[str],
     states: Sequence[str],
     outputs: Sequence[str],
     units: dict[str, str],
 ) -> dict[str, Any]:
-    """The content of model.json, as docs/files.md describes it; matrices are stored without their zeros."""
+    """The content of model.json, as docs/files.md describes it; matrices are stored without their zeros, and may be
+    given so.
+    """
+
+    def stored(matrix: Array | dict[str, Any]) -> dict[str, Any]:
+        return matrix if isinstance(matrix, dict) else sparse(matrix)
+
     return {
         "garrison_model": 1,
-        "A": sparse(A),
-        "C": [sparse(one) for one in C],
-        "process_covariance": sparse(process_covariance),
+        "A": stored(A),
+        "C": [stored(one) for one in C],
+        "process_covariance": stored(process_covariance),
         "measurement_covariance": [one.tolist() for one in measurement_covariance],
         "agents": list(agents),
         "states": list(states),

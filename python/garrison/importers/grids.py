@@ -16,7 +16,7 @@ from garrison.importers.areas import areas_of, links_of
 from garrison.importers.bundle import Bundle, model_file
 from garrison.importers.grid_files import Grid, read_grid_case
 from garrison.importers.limits import require_positive
-from garrison.sizes import require_memory
+from garrison.sizes import limit_bytes
 from garrison.words import count, refusal
 
 Array = NDArray[np.float64]
@@ -89,18 +89,16 @@ def import_pandapower(
     grid = read_grid_case(case)
     n = len(grid.names)
     chosen = _chosen(grid, units)
-    measured = sum(1 + len(grid.near[b]) for b in chosen)
-    require_memory("the grid", f"{n} buses, {measured} measurements", 2.0 * (measured + 2 * n) * n)
     members = _members(grid, chosen, assumed.areas)
     agents = [f"area {k}" if len(b) > 1 else f"bus {grid.names[b[0]]}" for k, b in enumerate(members, start=1)]
     blocks = [[_unit(grid, bus, assumed) for bus in buses] for buses in members]
-    C = [np.vstack([rows for rows, _, _ in one]) for one in blocks]
+    seen = [[bus for buses, _, _ in one for bus in buses] for one in blocks]
     outputs = [name for one in blocks for _, _, names in one for name in names]
     states = [f"angle {name}" for name in grid.names]
     model = model_file(
-        np.eye(n),
-        C,
-        process_covariance=assumed.wander**2 * np.eye(n),
+        _diagonal(n, 1.0),
+        [{"size": [len(one), n], "entries": [[r, bus, 1.0] for r, bus in enumerate(one)]} for one in seen],
+        process_covariance=_diagonal(n, assumed.wander**2),
         measurement_covariance=[_block_diagonal([R for _, R, _ in one]) for one in blocks],
         agents=agents,
         states=states,
@@ -108,12 +106,13 @@ def import_pandapower(
         units=dict.fromkeys([*states, *outputs], "rad"),
     )
     angles = [float(v) for v in grid.angles]
-    unseen = [grid.names[b] for b in np.flatnonzero(~np.any([(c != 0).any(axis=0) for c in C], axis=0))]
+    shown = {bus for one in seen for bus in one}
+    unseen = [name for b, name in enumerate(grid.names) if b not in shown]
     tables = {
         "title": f"{grid.title}: {n} buses, {count(sum(map(len, members)), 'phasor unit')}",
         "model": {"file": "model.json"},
         "network": {"edges": [list(e) for e in links_of(grid, members)]},
-        "filter": _filter(n, max(map(len, C)), detected=not unseen),
+        "filter": _filter(n, max(map(len, seen)), detected=not unseen),
         "run": {"steps": assumed.steps or (50 if n <= _MIDDLE else 10), "x0": angles, "start": angles},
     }
     facts = [
@@ -122,7 +121,23 @@ def import_pandapower(
         ("agents", f"{len(members)}: {', '.join(agents[:6])}{', ..' if len(agents) > 6 else ''}"),
         ("buses that no unit sees", f"{len(unseen)}: {', '.join(unseen[:20])}" if unseen else "none"),
     ]
-    return Bundle(tables, SOURCE, None, model, facts, [*_NOTES, *([_UNSEEN] if unseen else [])])
+    notes = [*_NOTES, *([_UNSEEN] if unseen else []), *_too_large(n, len(outputs))]
+    return Bundle(tables, SOURCE, None, model, facts, notes)
+
+
+def _diagonal(n: int, value: float) -> dict[str, Any]:
+    return {"size": [n, n], "entries": [[k, k, value] for k in range(n)]}
+
+
+def _too_large(n: int, measured: int) -> list[str]:
+    """A note where a run would keep more numbers than garrison allows."""
+    needed = 8.0 * 2.0 * (measured + 2 * n) * n
+    if needed <= limit_bytes():
+        return []
+    return [
+        f"matrices of all states would take {needed / 1e9:.3g} GB, so that only garrison analyze reads this scenario: "
+        "it works with sparse rows; for check and run take a part of the grid, or fewer --units"
+    ]
 
 
 def _filter(n: int, rows: int, *, detected: bool) -> dict[str, Any]:
@@ -162,8 +177,8 @@ def _members(grid: Grid, chosen: list[int], areas: int | None) -> list[list[int]
     return [[b] for b in chosen] if areas == len(chosen) else areas_of(grid, chosen, areas)
 
 
-def _unit(grid: Grid, bus: int, assumed: Assumptions) -> tuple[Array, Array, list[str]]:
-    """Rows of C, covariance and names of the measurements of one phasor unit."""
+def _unit(grid: Grid, bus: int, assumed: Assumptions) -> tuple[list[int], Array, list[str]]:
+    """Buses whose angles one phasor unit measures, covariance and names of the measurements."""
     near = grid.near[bus]
     seen = [bus, *sorted(near)]
     R = np.full((len(seen), len(seen)), assumed.angle**2)
@@ -171,9 +186,7 @@ def _unit(grid: Grid, bus: int, assumed: Assumptions) -> tuple[Array, Array, lis
     R += np.diag([1e-4 * assumed.angle**2] * len(seen))  # rounding: without it two rows of one strong line are one
     name = grid.names[bus]
     names = [f"angle at {name}", *(f"angle at {grid.names[k]} from {name}" for k in seen[1:])]
-    rows = np.zeros((len(seen), len(grid.names)))
-    rows[np.arange(len(seen)), seen] = 1.0
-    return rows, R, names
+    return seen, R, names
 
 
 def _block_diagonal(blocks: list[Array]) -> Array:

@@ -1,6 +1,7 @@
 """Model files: what `garrison fit` writes, and what `garrison import` writes (docs/files.md#model-json)."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +10,10 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison.files import contents
-from garrison.numeric import numbers
+from garrison.numeric import numbers, real
 from garrison.scenario.section import whole
 from garrison.sizes import require_memory
+from garrison.static_plant import StaticPlant
 from garrison.words import only, refusal, shown
 
 Array = NDArray[np.float64]
@@ -24,15 +26,58 @@ _EXPECTED = "a model file of garrison fit or garrison import (JSON)"
 
 def read_model_file(path: Path) -> tuple[_core.Model, list[str] | None]:
     """The model of a file, and the names of its agents where they are known. Raises IoError or InvalidInput."""
+    plain = _plain(path)
+    if isinstance(plain, dict) and "garrison_model" in plain:
+        return _imported(str(path), plain)
+    return _fitted(str(path), plain)
+
+
+def read_static_plant(path: Path, least: int) -> tuple[StaticPlant, list[str] | None] | None:
+    """The plant of an imported file that does not move and has `least` states or more, with the names of its agents.
+
+    None: the file is another, and read_model_file() reads it. Raises IoError or InvalidInput.
+    """
+    plain = _plain(path)
+    if not isinstance(plain, dict) or plain.get("garrison_model") != 1 or plain.get("exposed") is not None:
+        return None
+    A, C = plain.get("A"), plain.get("C")
+    if not isinstance(A, dict) or not isinstance(C, list) or not C:
+        return None
+    (n, columns), entries = _sparse(f"{path}: A", A)
+    if n < least or n != columns or not np.array_equal(np.unique(entries, axis=0), _identity(n)):
+        return None
+    blocks: list[Array] = [np.zeros((0, 3))]
+    agent: list[int] = []
+    for k, one in enumerate(C):
+        (rows, columns), own = _sparse(f"{path}: C[{k}]", one) if isinstance(one, dict) else _listed(path, k, one)
+        if columns != n:
+            raise refusal(f"{path}: C[{k}]", f"{rows} x {columns}", f"rows of {n} numbers, one per state")
+        blocks.append(own + np.array([len(agent), 0, 0]))
+        agent += [k] * rows
+    plant = StaticPlant(
+        np.vstack(blocks), (len(agent), n), agent, plain.get("states") or [], plain.get("outputs") or []
+    )
+    return plant, _names(plain.get("agents"), len(C))
+
+
+def _listed(path: Path, k: int, given: Any) -> tuple[tuple[int, int], Array]:
+    table = np.atleast_2d(numbers(f"{path}: C[{k}]", given))
+    at = np.nonzero(table)
+    return (table.shape[0], table.shape[1]), np.column_stack([*at, table[at]])
+
+
+def _identity(n: int) -> Array:
+    each = np.arange(float(n))
+    return np.column_stack([each, each, np.ones(n)])
+
+
+def _plain(path: Path) -> Any:
     try:
-        plain = json.loads(contents(path).decode("utf-8-sig"))
+        return json.loads(contents(path).decode("utf-8-sig"))
     except OSError as error:
         raise _core.IoError(f"{path}: got {error.strerror}, expected {_EXPECTED}") from None
     except (ValueError, RecursionError) as error:
         raise refusal(str(path), f"{error}", _EXPECTED) from None
-    if isinstance(plain, dict) and "garrison_model" in plain:
-        return _imported(str(path), plain)
-    return _fitted(str(path), plain)
 
 
 def _fitted(path: str, plain: Any) -> tuple[_core.Model, list[str] | None]:
@@ -60,6 +105,7 @@ def _imported(path: str, plain: dict[str, Any]) -> tuple[_core.Model, list[str] 
             raise refusal(path, f"no {key}", "A and C")
     if not isinstance(plain["C"], list):
         raise refusal(f"{path}: C", shown(plain["C"]), "a list with a matrix per agent")
+    _require_room(path, plain)
     arguments: dict[str, Any] = {
         key: _matrix(f"{path}: {key}", plain[key]) for key in _NOISE if plain.get(key) is not None
     }
@@ -76,20 +122,39 @@ def _imported(path: str, plain: dict[str, Any]) -> tuple[_core.Model, list[str] 
     return model, _names(plain.get("agents"), model.agents)
 
 
+def _require_room(path: str, plain: dict[str, Any]) -> None:
+    """Refuse matrices that are small one by one and too large together, as those of large grids are."""
+    matrices = [plain["A"], plain.get("process_covariance"), *plain["C"]]
+    sizes = [one.get("size") for one in matrices if isinstance(one, dict)]
+    together = 0.0
+    for size in sizes:
+        lengths = [real(length) for length in size] if isinstance(size, list) else []
+        together += math.prod(length or 0.0 for length in lengths)  # what is no length is refused with its matrix
+    advice = "garrison analyze reads a plant that does not move without these matrices; take a part of it for the rest"
+    require_memory(path, f"{len(sizes)} matrices with all their zeros, kept twice", 2.0 * together, advice)
+
+
 def _matrix(where: str, given: Any) -> Array:
     """A dense matrix from rows of numbers, or from its size and its entries that are not zero."""
     if not isinstance(given, dict):
         return numbers(where, given)
+    (rows, columns), entries = _sparse(where, given)
+    require_memory(f"{where}.size", f"{rows} x {columns}", float(rows) * columns)
+    out = np.zeros((rows, columns))
+    out[entries[:, 0].astype(int), entries[:, 1].astype(int)] = entries[:, 2]
+    return out
+
+
+def _sparse(where: str, given: dict[str, Any]) -> tuple[tuple[int, int], Array]:
+    """The size of a matrix and its entries (k, 3): row, column, value."""
     only(where, given, ("size", "entries"))
     size = given.get("size")
     if not isinstance(size, list) or len(size) != 2:
         raise refusal(f"{where}.size", shown(size), "two numbers: rows and columns")
     rows, columns = (whole(f"{where}.size", v) for v in size)
-    require_memory(f"{where}.size", f"{rows} x {columns}", float(rows) * columns)
-    out = np.zeros((rows, columns))
     entries = numbers(f"{where}.entries", given.get("entries", []))
     if entries.size == 0:
-        return out
+        return (rows, columns), np.zeros((0, 3))
     if entries.ndim != 2 or entries.shape[1] != 3:
         raise refusal(f"{where}.entries", f"shape {entries.shape}", "triples [row, column, value]")
     at = entries[:, :2]
@@ -97,8 +162,7 @@ def _matrix(where: str, given: Any) -> Array:
     if wrong.any():
         row = entries[int(np.argmax(wrong.any(axis=1)))]
         raise refusal(f"{where}.entries", f"an entry at ({row[0]:g}, {row[1]:g})", f"one within {rows} x {columns}")
-    out[at[:, 0].astype(int), at[:, 1].astype(int)] = entries[:, 2]
-    return out
+    return (rows, columns), entries
 
 
 def _names(given: Any, agents: int) -> list[str] | None:

@@ -158,7 +158,7 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
     filters = read_filters(document, folder)
     scenario = Scenario(
         path=path,
-        title=_title(document.get("title", path.stem)),
+        title=read_title(document, path),
         model=model,
         network=network,
         inputs=inputs,
@@ -199,7 +199,9 @@ def read_document(path: Path) -> dict[str, Any]:
         raise refusal(str(path), f"{type(error).__name__}: {error}", "a TOML document") from error
 
 
-def _title(value: Any) -> str:
+def read_title(document: Mapping[str, Any], path: Path) -> str:
+    """What the scenario calls itself; default: the name of its file."""
+    value = document.get("title", path.stem)
     if not isinstance(value, str):
         raise refusal("title", shown(value), "a string, in quotes")
     return value

@@ -4,22 +4,19 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <numeric>
 #include <utility>
 
 #include "../require.hpp"
 #include "../top.hpp"
-#include "dense.hpp"
 #include "garrison/certificate/kernels.hpp"
 #include "garrison/core/budget.hpp"
 #include "row_parts.hpp"
+#include "undetectable_search.hpp"
 
 namespace garrison::certificate {
 namespace {
 
-constexpr double kNear = 1e-9;       // of 1: rounding of a leverage
-constexpr std::int64_t kPoll = 256;  // steps of the search between two looks at the clock
+using detail::kNear;
 
 bool of_full_rank(const Matrix& part) {
   if (part.rows() < part.cols()) return false;
@@ -61,86 +58,6 @@ void require_rows(const MatrixRef& H) {
   detail::require_shape("H", H, H.rows(), H.cols());
   detail::require_room("H", static_cast<double>(H.rows()) * static_cast<double>(H.rows()));
 }
-
-/// Depth-first search for sets of `size` rows of one part whose block of the hat matrix has eigenvalue 1.
-class Search {
- public:
-  /// rows: how those of the part `H` are numbered.
-  Search(Matrix H, std::vector<Eigen::Index> rows, double tries)
-      : H_(std::move(H)), rows_(std::move(rows)), hat_(hat(H_)), size_(hat_.cwiseAbs()), tries_(tries) {
-    const auto m = rows_.size();
-    partners_.resize(m);
-    sums_.resize(m);
-    for (std::size_t i = 0; i < m; ++i) {
-      auto& p = partners_[i];
-      p.resize(m);
-      std::iota(p.begin(), p.end(), 0);
-      p.erase(p.begin() + static_cast<std::ptrdiff_t>(i));
-      const auto row = static_cast<Eigen::Index>(i);
-      std::stable_sort(p.begin(), p.end(), [&](int a, int b) { return size_(row, a) > size_(row, b); });
-      sums_[i].push_back(0.0);
-      for (const int j : p) sums_[i].push_back(sums_[i].back() + size_(row, j));
-    }
-  }
-
-  /// A set, or empty; `complete` turns false when the tries are used up.
-  std::vector<int> find(int size, bool& complete) {
-    for (std::size_t i = 0; i < partners_.size(); ++i) {
-      set_.assign(1, static_cast<int>(i));
-      if (extend(i, 0, size_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)), size - 1, complete))
-        return numbered();
-      if (!complete) break;
-    }
-    return {};
-  }
-
- private:
-  std::vector<int> numbered() const {
-    std::vector<int> out;
-    for (const int k : set_) out.push_back(static_cast<int>(rows_[static_cast<std::size_t>(k)]));
-    return out;
-  }
-
-  /// Row i of an eigenvector to 1 with the largest entry: sum over the set of |Lam_ij| >= 1.
-  bool extend(std::size_t i, std::size_t from, double total, int need, bool& complete) {
-    if (++steps_ % kPoll == 0 && current_budget().over()) complete = false;
-    if (!complete) return false;
-    if (need == 0) return judge(complete);
-    const auto more = static_cast<std::size_t>(need);
-    for (std::size_t q = from; q + more <= partners_[i].size(); ++q) {
-      if (total + sums_[i][q + more] - sums_[i][q] < 1.0 - kNear) return false;  // partners only get weaker
-      set_.push_back(partners_[i][q]);
-      if (extend(i, q + 1, total + size_(static_cast<Eigen::Index>(i), partners_[i][q]), need - 1, complete))
-        return true;
-      set_.pop_back();
-      if (!complete) return false;
-    }
-    return false;
-  }
-
-  bool judge(bool& complete) {
-    complete = tries_-- > 0.0;
-    if (!complete) return false;
-    const auto k = static_cast<Eigen::Index>(set_.size());
-    Matrix block(k, k);
-    for (Eigen::Index a = 0; a < k; ++a)
-      for (Eigen::Index b = 0; b < k; ++b)
-        block(a, b) = hat_(set_[static_cast<std::size_t>(a)], set_[static_cast<std::size_t>(b)]);
-    Matrix room(k, 3);
-    if (!(detail::extreme_eigenvalues(block, room).second > 1.0 - kNear)) return false;
-    // 1 - eigenvalue is the square of the smallest singular value that is left: ask the rows themselves.
-    return !determines(without(H_, set_));
-  }
-
-  Matrix H_;
-  std::vector<Eigen::Index> rows_;
-  Matrix hat_, size_;
-  double tries_;
-  std::int64_t steps_ = 0;
-  std::vector<std::vector<int>> partners_;
-  std::vector<std::vector<double>> sums_;
-  std::vector<int> set_;
-};
 
 }  // namespace
 
@@ -195,16 +112,20 @@ SmallestAttack smallest_undetectable(const MatrixRef& H, int most, double tries)
   if (!(H.rowwise().norm().minCoeff() > 1.0 / kHuge))
     refuse("H", "a row of zeros", "rows that measure something");
   const Matrix unit = H.rowwise().normalized();
-  std::vector<Search> searches;  // the smallest set is one of a single part
+  std::vector<detail::Search> searches;  // the smallest set is one of a single part
   for (detail::RowPart& p : detail::row_parts(unit)) {
     Matrix part = unit(p.rows, p.columns);
     if (!of_full_rank(part)) refuse_rank();
-    searches.emplace_back(std::move(part), std::move(p.rows), tries);
+    Matrix projector = hat(part);
+    searches.emplace_back(
+        std::move(p.rows), std::move(projector),
+        [part = std::move(part)](const std::vector<int>& set) { return !determines(without(part, set)); },
+        tries);
   }
   SmallestAttack found;
   bool complete = true;
   for (int k = 1; k <= std::min(most, static_cast<int>(H.rows())); ++k) {
-    for (Search& search : searches) {
+    for (detail::Search& search : searches) {
       found.example = search.find(k, complete);
       if (!found.example.empty()) {
         found.size = k;

@@ -96,21 +96,48 @@ Threshold designed(const Setting& s, double margin) {
   return {beta, bound_at(s, beta), std::max(s.eta0, fixed_points(best).lo), beta_interval(s)};
 }
 
+/// Of the limit of the bound, where it only falls as beta -> 0: the threshold that is taken instead.
+constexpr double kNearLimit = 1e-6;
+
+/// lim J as beta -> 0, of a plant that contracts.
+double limit(const Setting& s) { return slopes(s).Q1 / (1.0 - s.a); }
+
+/// Where no threshold is best, one whose bound is so near to the limit that no other is better by more.
+Threshold near_limit(const Setting& s) {
+  Setting near = s;
+  near.beta = s.eta0;
+  while (bound_at(s, near.beta) > limit(s) * (1.0 + kNearLimit) && near.beta > 1.0 / kHuge) near.beta *= 0.5;
+  return {near.beta, bound_at(s, near.beta), std::max(s.eta0, fixed_points(near).lo), beta_interval(s)};
+}
+
+/// Whether near_limit() has a limit to come near to.
+bool falls_to_a_limit(const Setting& s) { return s.a < 1.0 && limit(s) > 0.0 && !attained(s); }
+
 void require_fraction(const char* which, double value) {
   if (!(value >= 0.0 && std::isfinite(value))) refuse(which, text(value), "a finite number >= 0");
+}
+
+void require_feasible(const Setting& s, double margin) {
+  require_network(s);
+  require_start_and_noise(s);
+  require_fraction("margin", margin);
+  if (!(feasibility_margin(s) > 0.0)) throw DesignInfeasible(why_infeasible(s));
+}
+
+Threshold best_or_near(const Setting& s, double margin) {
+  if (!falls_to_a_limit(s)) return best_threshold(s, margin);
+  require_feasible(s, margin);
+  return near_limit(s);
 }
 
 }  // namespace
 
 Threshold best_threshold(const Setting& s, double margin) {
-  require_network(s);
-  require_start_and_noise(s);
-  require_fraction("margin", margin);
-  if (!(feasibility_margin(s) > 0.0)) throw DesignInfeasible(why_infeasible(s));
+  require_feasible(s, margin);
   if (!attained(s))
-    throw DesignInfeasible(
-        "no best beta: a = " + text(s.a) + " <= 1 and the bound only falls as beta -> 0, to " +
-        text(s.a < 1.0 ? slopes(s).Q1 / (1.0 - s.a) : 0.0) + "; choose beta for the speed of convergence");
+    throw DesignInfeasible("no best beta: a = " + text(s.a) +
+                           " <= 1 and the bound only falls as beta -> 0, to " +
+                           text(s.a < 1.0 ? limit(s) : 0.0) + "; choose beta for the speed of convergence");
   return designed(s, margin);
 }
 
@@ -125,10 +152,11 @@ Design design_rounds_and_threshold(const Setting& setting, const std::function<d
   if (fewest && *fewest > most)
     throw DesignInfeasible(why_infeasible(s) + " (at most " + std::to_string(most) +
                            " allowed, the smallest feasible L is " + std::to_string(*fewest) + ")");
-  const Threshold best = best_threshold(s, margin);
+  const Threshold best = best_or_near(s, margin);
+  const double enough = best.bound * (1.0 + slack + (falls_to_a_limit(s) ? kNearLimit : 0.0));
   const auto good = [&](int L) {
     s.contraction = contraction(L);
-    return attained(s) && designed(s, margin).bound <= best.bound * (1.0 + slack);
+    return (attained(s) || falls_to_a_limit(s)) && best_or_near(s, margin).bound <= enough;
   };
   int few = std::max(least, *fewest);
   for (int many = most; few < many;) {
@@ -139,7 +167,7 @@ Design design_rounds_and_threshold(const Setting& setting, const std::function<d
       few = middle + 1;
   }
   s.contraction = contraction(few);
-  return {few, s.contraction, designed(s, margin), *fewest};
+  return {few, s.contraction, best_or_near(s, margin), *fewest};
 }
 
 }  // namespace garrison::saturation

@@ -40,9 +40,10 @@ struct Design {
 
 /// More rounds never raise the certified bound, so the best L of `least`..`most` is `most` up to rounding: of
 /// all L whose bound is at most (1 + `slack`) times the best of the range, the smallest is returned (slack
-/// 0.01 often halves the traffic). `contraction`: see minimal_rounds. Setting::beta and Setting::contraction
-/// are not read.
-/// @throws DesignInfeasible as best_threshold, also when `most` rounds are too few
+/// 0.01 often halves the traffic). Where no threshold is best, because a < 1 and the bound only falls as beta
+/// -> 0, to a limit > 0: one whose bound is within 1e-6 of it. `contraction`: see minimal_rounds.
+/// Setting::beta and Setting::contraction are not read.
+/// @throws DesignInfeasible as best_threshold (without such a limit), also when `most` rounds are too few
 /// @throws InvalidInput for a bad setting, 1 <= least <= most violated, slack < 0
 GARRISON_EXPORT Design design_rounds_and_threshold(const Setting& setting,
                                                    const std::function<double(int)>& contraction, int least,
