@@ -57,11 +57,15 @@ class WindowFit {
     theta.array() = g_.head(p_).array() / scale.array();
     solve_lower(G, theta);
     solve_upper(G, theta);
+    rounding_ = kRounding * static_cast<double>(p_) * most / std::sqrt(least) * theta.norm();
     theta.array() /= scale.array();
     return theta.allFinite();
   }
 
   auto theta() const { return theta_.head(p_); }
+  /// Bound on what rounding did to G^1/2 theta: G_s (theta_s + d) = g_s + what is lost of |G_s| |theta_s|, s
+  /// = scaled, so that |G_s^1/2 d| <= ||G_s|| |theta_s|/sqrt(lmin) of it. States far from the origin feel it.
+  double rounding() const { return rounding_; }
   /// v becomes G^-1/2 v (up to a rotation).
   void to_frame(Eigen::Ref<Vector> v) const {
     v.array() /= scale_.head(p_).array();
@@ -69,8 +73,11 @@ class WindowFit {
   }
 
  private:
+  static constexpr double kRounding = 4e-16;
+
   Matrix G_, room_, columns_;
   Vector g_, scale_, theta_;
+  double rounding_ = 0.0;
   Eigen::Index p_ = 0;
 };
 
