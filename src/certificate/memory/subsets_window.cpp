@@ -78,7 +78,7 @@ bool SubsetsWindowWorkspace::Room::explained(const Window& w, const WindowLevels
   apart = apart && length > 0.0;
   for (int r = 0; r < w.rows(); ++r) {
     if (!sources.uses(w, r)) continue;
-    const double free = std::sqrt(std::max(1.0 - V.col(r).head(p).squaredNorm(), 0.0));
+    const double free = sources.fit.free(V.col(r).head(p));
     const double slack = 1e-12 * (1.0 + std::abs(w.z(r))) + 1e-9 + sources.fit.rounding();
     const double size = std::abs(residual(r));
     if (!(size > z.z1 * free + slack)) continue;  // within any room
@@ -279,7 +279,7 @@ Vector subsets_window_width(const Window& w, const WindowAssumption& a, int limi
         frame_of(sd_K);
         const double b_K = bounded();
         for (int r = 0; r < w.rows(); ++r)
-          if (sources.uses(w, r)) free(r) = std::sqrt(std::max(1.0 - V.col(r).squaredNorm(), 0.0));
+          if (sources.uses(w, r)) free(r) = sources.fit.free(V.col(r));
         rest.clear();
         for (const int id : ids)
           if (sources.part[static_cast<std::size_t>(id)] == Part::in) rest.push_back(id);

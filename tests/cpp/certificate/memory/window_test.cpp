@@ -145,6 +145,35 @@ TEST_CASE("states far from the origin are not taken for attacks by rounding") {
   CHECK(proved > test::tried(500));
 }
 
+TEST_CASE("a row of which hardly anything is left in the measurements is not taken for an attack") {
+  // What process noise leaves in measurements is of the size of the square root of the rounding of 1.
+  test::Rng rng(kSeed + 3);
+  for (int k = 0; k < test::tried(1000); ++k) {
+    CAPTURE(k);
+    const int steps = test::whole(rng, 4, 12);
+    const double decay = std::pow(10.0, test::uniform(rng, -2.5, -0.3));
+    const Matrix A = Matrix::Constant(1, 1, decay);
+    const Matrix Gam = Matrix::Constant(1, 1, std::pow(10.0, test::uniform(rng, -9.5, -7.0)));
+    Window w(1, 1, steps, 3, steps * 3);
+    w.begin(steps);
+    double x = std::normal_distribution<>()(rng);
+    for (int t = 0; t < steps; ++t) {
+      for (int j = 0; j < 3; ++j) {
+        const double c = 1.0;
+        w.add(j, {&c, 1}, x + std::normal_distribution<>()(rng), 1.0);
+      }
+      if (t + 1 == steps) break;
+      w.advance(A, Gam, Vector::Zero(1));
+      x = decay * x + Gam(0, 0) * std::normal_distribution<>()(rng);
+    }
+    const WindowAssumption a{1, window_levels(1e-9, steps * 3, 1), false, {}, {}};
+    for (const WindowWitness& found : {subsets_window(w, a), anytime_window(w, a, 10)}) {
+      CHECK_FALSE(found.region.refuted());
+      CHECK(found.proofs.empty());
+    }
+  }
+}
+
 TEST_CASE("with bounded noise at its bounds the sets always hold, and the hull is the smallest of them") {
   test::Rng rng(kSeed + 1);
   Tally leverage;
