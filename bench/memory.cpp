@@ -15,7 +15,8 @@ using namespace garrison::certificate;
 
 namespace {
 
-/// n states that drift, m sources with one row each, s of which are `lie` deviations off.
+/// A chain of n integrators with noise at its end, m sources with one row each, s of which are `lie`
+/// deviations off.
 class Remembered {
  public:
   Remembered(int states, int sources, int attacked, double lie)
@@ -23,7 +24,7 @@ class Remembered {
     for (int i = 0; i + 1 < n_; ++i) A_(i, i + 1) = 0.1;
     std::normal_distribution<double> normal;
     C_ = Matrix::NullaryExpr(n_, m_, [&] { return normal(rng_); });
-    Gam_ = 0.1 * Matrix::Identity(n_, n_);
+    Gam_ = 0.1 * Matrix::Identity(n_, n_).rightCols(1);
   }
 
   /// Seconds of a step.
@@ -48,7 +49,7 @@ class Remembered {
 
   /// Seconds to fill a window of `steps` samples and ask it. leaves: of A; 0 = W2M, -1 = W3M.
   double window(int samples, int steps, bool moving, int leaves) {
-    Window w(n_, n_, steps, m_, steps * m_);
+    Window w(n_, 1, steps, m_, steps * m_);
     const WindowAssumption a{s_, window_levels(1e-6, steps * m_, n_), moving, {}, {}};
     LeverageWindowWorkspace leverage(w);
     std::optional<SubsetsWindowWorkspace> subsets;
