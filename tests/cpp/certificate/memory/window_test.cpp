@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <iostream>
+#include <map>
+#include <string>
 
 #include "garrison/certificate/leverage_ball.hpp"
 #include "garrison/certificate/memory/anytime_window.hpp"
@@ -112,6 +114,49 @@ TEST_CASE("W2M, W3M and A contain the truth at the edge of their events, and acc
   CHECK(moving.proved > test::tried(50));
   CHECK(subsets.proved > test::tried(100));
   CHECK(widths > test::tried(1000));
+}
+
+TEST_CASE("with Gaussian noise W2M, W3M and A fail less often than they say") {
+  test::Rng rng(kSeed + 4);
+  constexpr double kDelta = 0.05;
+  std::map<std::string, std::pair<int, int>> tally;  // answers, failures
+  for (int k = 0; k < test::tried(4000); ++k) {
+    test::WindowCase d = test::draw_window(rng, k % 2 == 0, false);
+    d.random = true;
+    d.levels = window_levels(kDelta, std::max(1, static_cast<int>(d.rows.size())), d.n);
+    test::play(rng, d);
+    const Window w = d.window();
+    const WindowAssumption a{d.s, d.levels, d.moving, {}, {}};
+    const auto judge = [&](const char* name, const WindowWitness& found) {
+      if (std::isinf(found.region.radius)) return;
+      bool failed = found.region.refuted();
+      for (const Proof& proof : found.proofs) {
+        bool lies = false;
+        for (int t = 0; t < d.steps; ++t)
+          lies = lies || ((proof.step == kAlways || proof.step == t) &&
+                          test::contains(d.attacked[static_cast<std::size_t>(t)], proof.source));
+        failed = failed || !lies;
+      }
+      if (!failed) {
+        const Vector error = (d.x.back() - found.region.center).cwiseAbs();
+        failed = (error.array() > found.region.box.array() + 1e-9 * (1.0 + d.x.back().norm())).any() ||
+                 error.norm() > found.region.radius + 1e-9 * (1.0 + d.x.back().norm());
+      }
+      ++tally[name].first;
+      tally[name].second += failed ? 1 : 0;
+    };
+    judge(d.moving ? "W2M, moving" : "W2M", leverage_window(w, a));
+    if (d.moving) continue;
+    judge("W3M", subsets_window(w, a));
+    judge("A", anytime_window(w, a, 10));
+  }
+  for (const auto& [name, count] : tally) {
+    std::cout << name << ", Gaussian noise, promise " << kDelta << ": " << count.second << " of "
+              << count.first << " failed\n";
+    CHECK(count.first > test::tried(1000));
+    CHECK(count.second <= kDelta * count.first);
+  }
+  CHECK(tally.at("W3M").second > 0);  // noise does reach the levels
 }
 
 TEST_CASE("states far from the origin are not taken for attacks by rounding") {
