@@ -11,6 +11,7 @@
 #include "garrison/certificate/memory/hull_window.hpp"
 #include "garrison/certificate/memory/leverage_window.hpp"
 #include "garrison/certificate/memory/subsets_window.hpp"
+#include "garrison/certificate/propagate.hpp"
 #include "random_window.hpp"
 
 using namespace garrison;
@@ -157,6 +158,49 @@ TEST_CASE("with Gaussian noise W2M, W3M and A fail less often than they say") {
     CHECK(count.second <= kDelta * count.first);
   }
   CHECK(tally.at("W3M").second > 0);  // noise does reach the levels
+}
+
+TEST_CASE("a region carried on step by step as a set prior holds, with other liars in every step") {
+  test::Rng rng(kSeed + 5);
+  int answers = 0;
+  for (int k = 0; k < test::tried(1200); ++k) {
+    CAPTURE(k);
+    const int n = test::whole(rng, 1, 3);
+    const int m = test::whole(rng, 4, 7);
+    const int s = test::whole(rng, 0, 1);
+    Matrix A = Matrix::Identity(n, n) + 0.2 * test::normal_matrix(rng, n, n);
+    A *= test::uniform(rng, 0.7, 1.05) / Eigen::JacobiSVD<Matrix>(A).singularValues()(0);
+    const Matrix Gam = 0.1 * test::normal_matrix(rng, n, n);
+    const Matrix C = test::normal_matrix(rng, n, m);
+    const WindowLevels z = window_levels(1e-8, m, n);
+    Vector x = 3.0 * test::normal_matrix(rng, n, 1);
+    Region region = ellipsoid(x + test::unit_vector(rng, n), Matrix::Identity(n, n), 1.0 + 1e-12);
+    for (int t = 0; t < 20; ++t) {
+      CAPTURE(t);
+      Window w(n, n, 2, m, m);
+      w.begin(2);
+      w.prior_set(region.center, region.shape, region.stretch, 15.0);
+      w.advance(A, Gam, Vector::Zero(n));
+      x = A * x + Gam * test::normal_matrix(rng, n, 1);
+      const std::vector<int> liars = test::choose(rng, s, m);
+      const double size = std::pow(10.0, test::uniform(rng, -0.5, 2.0));
+      for (int j = 0; j < m; ++j)
+        w.add(j, {C.col(j).data(), static_cast<std::size_t>(n)},
+              C.col(j).dot(x) + std::normal_distribution<>()(rng) + (test::contains(liars, j) ? size : 0.0),
+              1.0);
+      const WindowAssumption a{s, z, k % 2 == 0, {}, {}};
+      const WindowWitness found = k % 2 == 0 ? leverage_window(w, a) : subsets_window(w, a);
+      REQUIRE_FALSE(found.region.refuted());
+      for (const Proof& proof : found.proofs) CHECK(test::contains(liars, proof.source));
+      if (!found.region.answered()) break;
+      ++answers;
+      CHECK(((x - found.region.center).cwiseAbs().array() <= found.region.box.array()).all());
+      CHECK((x - found.region.center).norm() <= found.region.radius);
+      region = found.region;
+    }
+  }
+  std::cout << "one-step recursion: " << answers << " answers\n";
+  CHECK(answers > test::tried(15000));
 }
 
 TEST_CASE("states far from the origin are not taken for attacks by rounding") {
