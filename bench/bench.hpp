@@ -20,6 +20,7 @@ inline double cpu_seconds() {
 void bind_limits(py::module_& m);
 void bind_consensus(py::module_& m);
 void bind_certificate(py::module_& m);
+void bind_memory(py::module_& m);
 void bind_lambda0(py::module_& m);
 void bind_rdkf_peers(py::module_& m);
 void bind_structure(py::module_& m);

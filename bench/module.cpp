@@ -6,6 +6,7 @@ PYBIND11_MODULE(garrison_bench, m) {
   bind_limits(m);
   bind_consensus(m);
   bind_certificate(m);
+  bind_memory(m);
   bind_lambda0(m);
   bind_rdkf_peers(m);
   bind_structure(m);

@@ -22,6 +22,7 @@ import numpy as np
 import partial_sharing
 import platoon
 import rdkf
+import remembered
 import scipy
 import set_based
 import structure
@@ -30,7 +31,7 @@ from rich.table import Table
 
 HERE = Path(__file__).parent
 #: modules with tasks(repeats)
-TOPICS = (certified, consensus, montecarlo, lambda0, rdkf, partial_sharing, structure, platoon, set_based)
+TOPICS = (certified, remembered, consensus, montecarlo, lambda0, rdkf, partial_sharing, structure, platoon, set_based)
 
 
 def limits() -> dict[str, float]:

@@ -192,6 +192,7 @@ void bind_answer(py::module_& m) {
           "dropped", &always,
           "sources whose rows were not used: the proved, or, where the region is refuted, more than "
           "s that contradict, of which no single one is proved")
+      .def_property_readonly("dropped_at", &by_step, "{step: sources}: the same with a moving set")
       .def_readonly("count", &WindowWitness::count, "consistent subsets, leaves or living members behind it");
 }
 

@@ -5,7 +5,8 @@
 Six position sensors (deviation 1 m) and four velocity sensors (0.3 m/s), or the six positions alone; an acceleration of
 deviation 0.5 m/s2 every 0.1 s; two sensors lie, at most two may. The bounds are garrison's own; what they are compared
 with are the numbers of the reference implementation that they were designed with, on noise of its own. A number is
-confirmed when it is within 5 % of the reference's and no coordinate of any state was outside its box; delta = 1e-6.
+confirmed when it is within 5 % of the reference's (10 % where the liars move) and no coordinate of any state was
+outside its box; delta = 1e-6.
 """
 
 import argparse
@@ -102,7 +103,7 @@ class Run:
 
     def cells(self) -> list[Answer]:
         """One small bank without liars, a Kalman filter, per cell; the interval rule over their boxes."""
-        n, parts = 2, [[j, 6 + j] if j < len(self.sensors.C) - 6 else [j] for j in range(6)]
+        n, parts = 2, [[0], [1], [2, 6], [3, 7], [4, 8], [5, 9]]  # a position each, and the velocities
         sources = self.sensors.sources()
         filters = [certificate.Bank(A, Q, [sources[j] for j in part], 0) for part in parts]
         for f in filters:
@@ -117,7 +118,12 @@ class Run:
 
 
 def described(
-    run: Run, name: str, found: list[Answer], reference: tuple[float, float], everybody: bool = False
+    run: Run,
+    name: str,
+    found: list[Answer],
+    reference: tuple[float, float],
+    everybody: bool = False,
+    near: float = NEAR,
 ) -> list[str]:
     """Mean box against the reference's; `everybody`: both liars must be proved at the end."""
     boxes = [a.box for a in found if a.box is not None]
@@ -125,11 +131,10 @@ def described(
     inside = all((np.abs(run.x[a.t] - a.center) <= a.box).all() for a in found if a.center is not None)
     proved = sorted(set(found[-1].proved))
     innocent = set(proved) <= set(run.sensors.liars) and (run.attack != "no attack" or not proved)
-    close = bool((np.abs(mean - reference) <= NEAR * np.array(reference)).all())
+    close = bool((np.abs(mean - reference) <= near * np.array(reference)).all())
     text = f"{mean[0]:.2f} m, {mean[1]:.2f} m/s ({reference[0]:g}, {reference[1]:g}), proved {proved}"
     holds = inside and innocent and close and (not everybody or proved == sorted(run.sensors.liars))
-    why = "" if close else "the reference does not say which sensors share a cell, nor who lies"
-    return claim(f"{name}, {run.attack}", text if inside else text + ", OUTSIDE", holds, why)
+    return claim(f"{name}, {run.attack}", text if inside else text + ", OUTSIDE", holds)
 
 
 def three(
@@ -153,10 +158,14 @@ def by(steps: int, ask: Callable[..., certificate.WindowWitness], **options: obj
 
 def mixed(steps: int) -> Rows:
     W2M, W3M, search = certificate.leverage_window, certificate.subsets_window, certificate.anytime_window
-    rows = three(MIXED, steps, "W2M, 10 steps", by(10, W2M), [(1.26, 0.76), (1.93, 1.01), (0.75, 0.45)])
+    rows = three(MIXED, steps, "W2M, one step", by(1, W2M), [(3.57, 1.47), (3.95, 1.64), (2.34, 0.91)])
+    rows += three(MIXED, steps, "W3M, one step", by(1, W3M), [(3.08, 1.27), (3.24, 1.37), (2.34, 0.91)])
+    rows += three(MIXED, steps, "W2M, 10 steps", by(10, W2M), [(1.26, 0.76), (1.93, 1.01), (0.75, 0.45)])
     rows += three(MIXED, steps, "W2M, 40 steps", by(40, W2M), [(0.87, 0.88), (1.55, 1.26), (0.47, 0.45)])
     moving = [(1.84, 1.00), (2.20, 1.15), (0.75, 0.45)]
     rows += three(MIXED, steps, "W2M, moving set, 10 steps", by(10, W2M, moving=True), moving)
+    moving = [(1.64, 1.12), (1.97, 1.33), (0.56, 0.45)]
+    rows += three(MIXED, steps, "W2M, moving set, 20 steps", by(20, W2M, moving=True), moving)
     rows += three(MIXED, steps, "W3M, 10 steps", by(10, W3M), [(1.00, 0.58), (1.23, 0.68), (0.75, 0.45)])
     rows += three(MIXED, steps, "W3M, 40 steps", by(40, W3M), [(0.56, 0.56), (0.90, 0.65), (0.47, 0.45)])
     rows += three(
@@ -176,9 +185,50 @@ def positions(steps: int) -> Rows:
     rows += three(POSITIONS, steps, "W2M, 40 steps", by(40, W2M), [(1.29, 1.30), (2.05, 1.48), (0.96, 0.97)])
     moving = [(2.97, 2.91), (3.71, 3.56), (1.14, 1.22)]
     rows += three(POSITIONS, steps, "W2M, moving set, 20 steps", by(20, W2M, moving=True), moving)
+    moving = [(2.54, 2.03), (3.22, 2.51), (0.96, 0.97)]
+    rows += three(POSITIONS, steps, "W2M, moving set, 40 steps", by(40, W2M, moving=True), moving)
     rows += three(POSITIONS, steps, "W3M, 10 steps", by(10, W3M), [(1.81, 3.47), (2.12, 3.47), (1.54, 2.92)])
     rows += three(POSITIONS, steps, "W3M, 40 steps", by(40, W3M), [(1.11, 1.06), (1.53, 1.06), (0.96, 0.97)])
     return rows + three(POSITIONS, steps, "B", Run.bank, [(1.09, 1.04), (1.51, 1.04), (0.95, 0.97)], everybody=True)
+
+
+def movers(steps: int) -> Rows:
+    """Two other liars in every step, 6 m off; and the clipped observer (O), which no such liars ever move further."""
+    rng = np.random.default_rng(5)
+    run = Run(POSITIONS, "no attack", steps)
+    run.attack = "two others in every step"
+    for y in run.y:
+        y[rng.choice(len(y), 2, replace=False)] += 6.0
+    rows = [
+        described(
+            run, f"W2M, moving set, {k} steps", run.windows(k, certificate.leverage_window, moving=True), near, near=0.1
+        )
+        for k, near in ((5, (6.4, 24.5)), (10, (6.6, 12.0)), (20, (6.65, 6.3)))
+    ]
+    for name, sensors, s, larger, reference in (
+        ("6 positions", POSITIONS, 0, 1.0, (5.4, 5.3)),
+        ("6 positions", POSITIONS, 1, 1.0, (10.8, 9.3)),
+        ("6 + 4 sensors", MIXED, 0, 10.0, (5.4, 1.1)),
+        ("6 + 4 sensors", MIXED, 1, 100.0, (8.5, 2.1)),
+    ):
+        gain = steady_gain(sensors, larger)
+        table = certificate.observer_table(
+            A, sensors.C, gain, GAM, 3 * sensors.deviation, s=s, bw=3.0, start=0.0, T=400, lags=200
+        )
+        half = table.d[-1]
+        close = bool((np.abs(half[:2] - reference) <= NEAR * np.array(reference)).all())
+        found = f"{half[0]:.2f} m, {half[1]:.2f} m/s ({reference[0]:g}, {reference[1]:g})"
+        rows.append(claim(f"O, 3 deviations, {name}, s = {s}", found, close))
+    return rows
+
+
+def steady_gain(sensors: Sensors, larger: float) -> np.ndarray:
+    """(2, sensors) gain of the Kalman filter of all sensors and so many times the process noise, settled."""
+    P, R = np.eye(2), np.diag(sensors.deviation**2)
+    for _ in range(2000):
+        L = P @ sensors.C.T @ np.linalg.inv(sensors.C @ P @ sensors.C.T + R)
+        P = A @ (P - L @ sensors.C @ P) @ A.T + larger * Q
+    return L
 
 
 def for_ever() -> Rows:
@@ -233,6 +283,7 @@ def main() -> Rows:
     parts = {
         "Six positions and four velocities, two lying": mixed(args.steps),
         "Six positions, two lying": positions(args.steps),
+        "Liars that move": movers(args.steps),
         "For ever": for_ever(),
         "Gaps": gaps(),
     }

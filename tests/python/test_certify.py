@@ -3,6 +3,7 @@
 import garrison as gr
 import numpy as np
 import pytest
+from garrison.certifying.plant import Plant
 
 Array = np.ndarray
 
@@ -102,6 +103,31 @@ def test_regions_hold_on_random_plants_with_losses_and_any_lies(method: str) -> 
     assert answered > 1000
     assert violated == 0
     assert innocent == 0
+
+
+def test_windows_search_where_there_are_too_many_sets_of_liars() -> None:
+    rng = np.random.default_rng(11)
+    model = gr.Model(
+        np.linalg.qr(rng.normal(size=(3, 3)))[0],
+        rng.normal(size=(16, 3)),
+        process_covariance=0.01 * np.eye(3),
+        measurement_covariance=1.0,
+    )
+    x, y = record(model, 30, 11)
+    y[:, [2, 7, 11, 12]] += [4.0, -6.0, 50.0, 3.0]
+    found = gr.certify(model, y, attacked=4, method="window", window=6)
+    assert found.rule == "A, 20 leaves"  # of 1820 sets
+    assert "window (A, 20 leaves)" in str(found)
+    assert inside(found, x)
+    assert found.answered[5:].all()
+    assert {name for some in found.proved for name in some} <= {f"agent {i}" for i in (2, 7, 11, 12)}
+    levels = gr.certificate.window_levels(1e-6, 6 * 16, 3)
+    window = Plant(model).window(y[-6:])
+    assert found.radius[-1] < 0.7 * gr.certificate.leverage_window(window, 4, *levels).radius
+    small = gr.certify(model, y, attacked=1, method="window", window=6)
+    assert small.rule == "W3M"
+    assert gr.certify(model, y, attacked=1, moving=True).rule == "W2M, moving liars"
+    assert gr.certify(model, y, attacked=1).rule == "B"
 
 
 def test_too_many_liars_are_told_and_the_bank_starts_anew() -> None:

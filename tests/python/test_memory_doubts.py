@@ -103,6 +103,37 @@ def test_white_noise_raises_no_doubt_whatever_is_lost_and_whoever_lies() -> None
         assert not certified.refuted.any()
 
 
+@pytest.mark.parametrize(("agents", "attacked"), [(5, 1), (18, 5)])  # all sets of liars, and too many of them
+def test_windows_tell_noise_that_remembers_its_past_too(agents: int, attacked: int) -> None:
+    rng = np.random.default_rng(7)
+    model = plant(1e-4, agents=agents)
+    for correlation in (0.5, 0.0):
+        y = states(rng, 300, 1e-4) + coloured(rng, (300, agents), correlation)
+        y[:, : attacked - 1] = states(rng, 300, 0.0) + coloured(rng, (300, attacked - 1), 0.9)  # a lie, of fewer
+        found = gr.certify(model, y, attacked=attacked, method="window", window=5)
+        if correlation == 0:
+            assert not found.warnings
+        else:
+            (line,) = found.warnings
+            assert DEPENDENT in line and "(source agent " in line and "over 29" in line
+
+
+def test_liars_that_move_leave_no_honest_past_to_compare_with() -> None:
+    rng = np.random.default_rng(8)
+    y = states(rng, 100, 1e-4) + coloured(rng, (100, 5), 0.9)
+    assert not gr.certify(plant(1e-4), y, attacked=1, moving=True, window=5).warnings
+    assert gr.certify(plant(1e-4), y, attacked=0, moving=True, window=5).warnings  # without liars there is one
+
+
+def test_a_window_apart_from_its_sample_is_told_and_gives_no_region() -> None:
+    rng = np.random.default_rng(9)
+    y = 0.2 * np.arange(60.0)[:, None] + 0.01 * rng.normal(size=(60, 12))  # no process noise of deviation 0.001 does so
+    found = gr.certify(plant(1e-6, agents=12), y, attacked=1, moving=True, window=40)
+    (line,) = told(found.warnings, APART)
+    at = int(line.split("first in sample ")[1].split()[0])
+    assert found.answered[at - 1] and found.refuted[at] and np.isnan(found.box[at]).all()
+
+
 def test_noise_of_one_source_alone_may_be_a_lie() -> None:
     rng = np.random.default_rng(4)
     y = states(rng, 400, 1e-4) + rng.normal(size=(400, 5))

@@ -931,6 +931,11 @@ class WindowWitness:
         sources whose rows were not used: the proved, or, where the region is refuted, more than s that contradict, of which no single one is proved
         """
     @property
+    def dropped_at(self) -> dict[int, list[int]]:
+        """
+        {step: sources}: the same with a moving set
+        """
+    @property
     def mu(self) -> float:
         """
         1 - lambda of W2M: what the attackers leave of the information; nan where it does not apply

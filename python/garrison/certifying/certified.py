@@ -37,6 +37,10 @@ class Certified(Result):
     method : str
         "bank" (one Kalman filter per set of sources left out, over all samples so far) or "window" (one regression
         over the last `window` samples).
+    rule : str
+        The theorem (docs/certificates.md, sections 8 and 9) that it goes by: "B", a bank; "W3M", a window and all sets
+        of sources that may lie; beyond 500 sets "A", a search among them of so many leaves, or "W2M", leverages alone,
+        where windows are too large for that, and where the liars move.
     window : int
         Samples of a regression.
     steady : (n,) array or None
@@ -44,8 +48,9 @@ class Certified(Result):
         measurements (W3D), whatever the liars say; inf where no certificate stays bounded; None with moving liars, or
         where there are too many sets to tell.
     warnings : list of str
-        What the measurements say against the model: innovations of the bank that depend on those before them (of white
-        noise at most one record in 1000 is said to), regions with and without memory that exclude each other.
+        What the measurements say against the model: innovations that depend on those before them (of white noise at
+        most one record in 1000 is said to; not tested where the liars move), regions with and without memory that
+        exclude each other.
     """
 
     center: Array
@@ -56,6 +61,7 @@ class Certified(Result):
     attacked: int
     failure: float
     method: str
+    rule: str
     window: int
     steady: Array | None
     warnings: list[str]
@@ -98,7 +104,7 @@ class Certified(Result):
         names = sorted({name for some in self.proved for name in some})
         liars = f"at most {self.attacked} of {count(len(self.sources), 'source')} lie"
         lines = [
-            f"{self.method}: {liars}, failure probability {self.failure:g} a sample",
+            f"{self.method} ({self.rule}): {liars}, failure probability {self.failure:g} a sample",
             f"a region at {there.sum()} of {count(len(there), 'sample')}, refuted at {self.refuted.sum()}",
         ]
         if there.any():

@@ -10,13 +10,19 @@ from numpy.typing import NDArray
 
 from garrison import _core
 from garrison._core import certificate
+from garrison.certifying.listening import Listener
 from garrison.certifying.plant import Plant
 
 Array = NDArray[np.float64]
 Levels = tuple[float, float, float]
 
-#: sets of sources left out up to which a window goes through all of them; beyond, leverages bound what they do
+#: sets of sources left out up to which a window goes through all of them; beyond, a search goes as far as it can
 MOST_SETS = 500
+#: leaves of that search, and leaves times unknowns times unknowns and rows that are worth a third of a second a sample
+_LEAVES = 20
+_MOST_SEARCH = 2e8
+#: failure probability of the tests of banks that only listen: small beside that of what they are to say
+_LISTENING = 1e-6
 #: pairs of sets, times states cubed, up to which the bank's half widths for ever are worked out: about a second
 _MOST_PAIRS = 2e6
 #: pairs of sets, times unknowns times unknowns and rows, up to which those of a window are: likewise
@@ -33,7 +39,7 @@ class Record:
         self.proved: list[list[int]] = [[] for _ in range(samples)]
         #: (sample, state) where the region and that of the sample alone had no point in common
         self.apart: list[tuple[int, int]] = []
-        #: what innovations of a bank say against white noise: evidence, source, correlation, pairs
+        #: what innovations say against white noise: evidence, source, correlation, pairs
         self.dependence = (-np.inf, -1, 0.0, 0.0)
 
     def take(self, t: int, found: certificate.WindowWitness, last: int = -1) -> bool:
@@ -58,32 +64,59 @@ class Record:
         return False
 
 
+def rule(plant: Plant, s: int, moving: bool, length: int) -> tuple[str, int]:
+    """Which theorem a window of so many samples uses (docs/certificates.md, section 8), and the leaves of A."""
+    if moving:
+        return "W2M, moving liars", 0
+    if comb(len(plant.names), s) <= MOST_SETS:
+        return "W3M", 0
+    unknowns = plant.n + (length - 1) * plant.root.shape[1]
+    rows = unknowns + length * len(plant.rows)
+    leaves = min(_LEAVES, int(_MOST_SEARCH / (unknowns**2 * rows)))
+    return (f"A, {leaves} leaves", leaves) if leaves > 1 else ("W2M", 0)
+
+
 def in_window(plant: Plant, y: Array, s: int, levels: Levels, *, moving: bool) -> certificate.WindowWitness:
-    """W2M or W3M (docs/certificates.md, section 8) over these samples."""
+    """What `rule` says over these samples."""
     window = plant.window(y)
-    if moving or comb(len(plant.names), s) > MOST_SETS:
-        return certificate.leverage_window(window, s, *levels, moving=moving)
-    return certificate.subsets_window(window, s, *levels, limit=MOST_SETS)
+    name, leaves = rule(plant, s, moving, len(y))
+    if name == "W3M":
+        return certificate.subsets_window(window, s, *levels, limit=MOST_SETS)
+    if leaves:
+        return certificate.anytime_window(window, s, *levels, leaves=leaves)
+    return certificate.leverage_window(window, s, *levels, moving=moving)
 
 
 def alone(plant: Plant, y: Array, s: int, failure: float) -> certificate.Region:
-    """What one sample (1, outputs) says: it assumes less than any memory."""
+    """What one sample (1, outputs) says: it assumes less than any memory. Leverages, where there are many sets."""
     levels = certificate.window_levels(failure, max(y.size, 1), plant.n)
-    return in_window(plant, y, s, levels, moving=False).region
+    if comb(len(plant.names), s) > MOST_SETS:
+        return certificate.leverage_window(plant.window(y), s, *levels).region
+    return certificate.subsets_window(plant.window(y), s, *levels, limit=MOST_SETS).region
 
 
 def by_window(
-    plant: Plant, y: Array, s: int, failure: float, length: int, moving: bool, tell: Callable[[int], None]
+    plant: Plant, y: Array, s: int, failure: float, length: int, moving: bool, limit: int, tell: Callable[[int], None]
 ) -> Record:
-    """A window of the last samples for every sample: nothing older counts."""
+    """A window of the last samples for every sample: nothing older counts.
+
+    Where the liars are always the same, what windows take for white noise is tested over the whole record.
+    """
     record = Record(len(y), plant.n)
+    listener = None
+    if s == 0 or not moving:
+        listener = Listener(plant, s, bank_levels(_LISTENING, len(y), y.shape[1], plant.n), limit)
     for t in range(len(y)):
         part = y[max(0, t + 1 - length) : t + 1]
         levels = certificate.window_levels(failure, max(part.size, 1), plant.n)
         found = in_window(plant, part, s, levels, moving=moving)
         if record.take(t, found, last=len(part) - 1) and plant.seen_at_once and len(part) > 1:
             record.agrees(t, found.region, alone(plant, y[t : t + 1], s, failure))
+        if listener:
+            listener.hear(y[t, plant.order])
         tell(t + 1)
+    if listener:
+        record.dependence = listener.dependence
     return record
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,9 +48,11 @@ class Plant:
             at += len(L)
         return out
 
-    def bank(self, s: int, limit: int) -> certificate.Bank:
-        """One Kalman filter per set of s sources left out."""
-        return certificate.Bank(self.A, self.Q, self._sources(), s, limit)
+    def bank(self, s: int, limit: int, sources: Sequence[int] | None = None) -> certificate.Bank:
+        """One Kalman filter per set of s sources left out, of some sources or all of them."""
+        all_sources = self._sources()
+        taken = all_sources if sources is None else [all_sources[k] for k in sources]
+        return certificate.Bank(self.A, self.Q, taken, s, limit)
 
     def steady(self, s: int, levels: tuple[float, float, float], limit: int) -> Array:
         """Half widths that a bank never exceeds (theorem B2)."""

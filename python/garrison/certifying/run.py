@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core, arguments
 from garrison.certifying.certified import Certified
 from garrison.certifying.contradiction import of_apart, of_dependence
-from garrison.certifying.methods import Record, by_bank, by_window, steady, steady_window
+from garrison.certifying.methods import Record, by_bank, by_window, rule, steady, steady_window
 from garrison.certifying.plant import Plant
 from garrison.numeric import matched, numbers, output_names
 from garrison.varying import Inputs, inputs_of
@@ -105,7 +105,7 @@ def certify(
         record = by_bank(plant, white, s, failure, length, first, _MOST_MEMBERS, told)
         for_ever = steady(plant, s, failure, len(y))
     else:
-        record = by_window(plant, white, s, failure, length, moving, told)
+        record = by_window(plant, white, s, failure, length, moving, _MOST_MEMBERS, told)
         for_ever = None if moving else steady_window(plant, s, failure, length)
     return Certified(
         center=record.center + driven,
@@ -116,6 +116,7 @@ def certify(
         attacked=s,
         failure=failure,
         method=chosen,
+        rule="B" if chosen == "bank" else rule(plant, s, moving, length)[0],
         window=length,
         steady=for_ever,
         warnings=_warnings(record, plant, model, failure),

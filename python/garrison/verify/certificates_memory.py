@@ -84,7 +84,7 @@ def _leverage(i: Inputs, expected: Any) -> Any:
     )
     found = _set(w, len(i["A"]))
     if moving:
-        found["proved"] = {str(step): sources for step, sources in w.proved_at.items()}
+        found["proved"] = {str(step): sources for step, sources in w.dropped_at.items()}
         if not expected["proved"] and found["proved"]:
             raise ValueError(f"proved {found['proved']}, expected nobody")
     return found

@@ -110,8 +110,9 @@ bool AnytimeWindowWorkspace::Room::explained(const Window& w, const WindowAssump
     if (!uses(r)) continue;
     v = w.N(r);
     fit.to_frame(v);
-    const double free = std::sqrt(std::max(1.0 - v.squaredNorm(), 0.0));
-    const double room = (a.levels.z1 + std::sqrt(bias2)) * free + 1e-12 * (1.0 + std::abs(w.z(r))) + 1e-9;
+    const double free = fit.free(v);
+    const double slack = 1e-12 * (1.0 + std::abs(w.z(r))) + 1e-9 + fit.rounding();
+    const double room = (a.levels.z1 + std::sqrt(bias2)) * free + slack;
     if (!(std::abs(w.z(r) - w.N(r).dot(fit.theta())) <= room)) return false;
   }
   return true;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../require.hpp"
+#include "bank_limits.hpp"
 #include "bank_sources.hpp"
 #include "choices.hpp"
 #include "core/solvers.hpp"
@@ -102,6 +103,7 @@ void Bank::all_members(const VectorRef& c0, const MatrixRef& P, const MatrixRef&
     member.accused = member.left_out;
     member.number = static_cast<int>(members_.size());
     member.heard = detail::nothing_heard(outputs_);
+    member.free.resize(states());
     members_.push_back(std::move(member));
     return true;
   });
@@ -133,10 +135,7 @@ void Bank::restart(const Region& region) {
 
 void Bank::start_unknown() {
   all_members(Vector::Zero(states()), Matrix::Zero(states(), states()), Matrix(states(), 0));
-  for (BankMember& member : members_) {
-    member.free.resize(states());
-    member.free.all(weight_);
-  }
+  for (BankMember& member : members_) member.free.all(weight_);
 }
 
 void Bank::forget(bool everything) noexcept {
@@ -239,6 +238,7 @@ bool Bank::advance(BankMember& m, const VectorRef& y, const WindowLevels& z, con
     }
     m.free.advance(A, weight_, v_);
   }
+  detail::forget_unknown(m, weight_, v_, Ph_);
   Eigen::Index at = 0;
   auto out = m.left_out.begin();
   for (std::size_t j = 0; j < sources.size(); ++j) {

@@ -59,7 +59,6 @@ void Bank::merge(int most, const WindowLevels& z) {
     other.P.setZero();
     detail::hear_nothing(other.heard);
     if (unknown) {
-      other.free.resize(n);
       other.free.all(weight_);
       other.Psi.setZero();
     } else {

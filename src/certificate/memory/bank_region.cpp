@@ -64,6 +64,7 @@ double Bank::ball(const WindowLevels& z) noexcept {
     v_ = m.c - witness_.region.center;
     const double off = v_.norm();
     const double most = std::sqrt(std::max(m.P.trace(), 0.0));
+    if (!(most < std::sqrt(kHuge))) return kInfinity;  // its square has to be a number
     if (off + z.z2 * most + m.Psi.norm() <= radius) continue;
     double set = 0.0;
     if (m.Psi.cols() > 0) {

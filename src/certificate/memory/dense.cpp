@@ -78,6 +78,11 @@ std::pair<double, double> extreme_eigenvalues(Eigen::Ref<Matrix> S, Eigen::Ref<M
   const double scale = S.cwiseAbs().maxCoeff();
   if (!(scale > 0.0) || !(scale <= kHuge)) return {scale > 0.0 ? kNaN : 0.0, scale > 0.0 ? kNaN : 0.0};
   S /= scale;
+  if (n == 2) {  // most of the time of banks with two states, otherwise
+    const double middle = 0.5 * (S(0, 0) + S(1, 1));
+    const double apart = hypotenuse(0.5 * (S(0, 0) - S(1, 1)), S(1, 0));
+    return {scale * (middle - apart), scale * (middle + apart)};
+  }
   auto d = room.col(0).head(n);
   auto e2 = room.col(1).head(n);
   tridiagonal(S, d, e2, room.col(2));

@@ -21,6 +21,14 @@ void FreeDirections::all(const VectorRef& weight) noexcept {
   count = static_cast<int>(U.cols());
 }
 
+bool FreeDirections::add(const VectorRef& u, const VectorRef& weight) noexcept {
+  const int before = count;
+  if (before == U.cols() || !u.allFinite()) return false;
+  U.col(count++) = u;
+  orthonormalise(weight);
+  return count == before + 1;
+}
+
 void FreeDirections::advance(const MatrixRef& A, const VectorRef& weight, Vector& room) noexcept {
   if (count == 0) return;
   for (int j = 0; j < count; ++j) {

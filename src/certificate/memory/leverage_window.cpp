@@ -275,7 +275,8 @@ double Room::reach(const Window& w, const WindowAssumption& a, const Matrix& M, 
   double noise = zq > 0.0 ? zq * std::min(spread, of(RowNoise::gaussian) + across) : 0.0;
   if (length > 0.0) noise += length * std::min(spread, of(RowNoise::set) + across);
   if (shaped) noise = std::min(noise, 1.0 + across * (zq + length));
-  return attack + std::min(noise + bias, (zq + std::sqrt(length * length + bias2)) * spread);
+  return attack + std::min(noise + bias, (zq + std::sqrt(length * length + bias2)) * spread) +
+         fit.rounding() * std::sqrt(F2);
 }
 
 /// Ellipsoid, box and ball of this pass; the better one stays. False when the state has no spread at all.

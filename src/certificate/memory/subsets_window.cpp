@@ -78,8 +78,8 @@ bool SubsetsWindowWorkspace::Room::explained(const Window& w, const WindowLevels
   apart = apart && length > 0.0;
   for (int r = 0; r < w.rows(); ++r) {
     if (!sources.uses(w, r)) continue;
-    const double free = std::sqrt(std::max(1.0 - V.col(r).head(p).squaredNorm(), 0.0));
-    const double slack = 1e-12 * (1.0 + std::abs(w.z(r))) + 1e-9;
+    const double free = sources.fit.free(V.col(r).head(p));
+    const double slack = 1e-12 * (1.0 + std::abs(w.z(r))) + 1e-9 + sources.fit.rounding();
     const double size = std::abs(residual(r));
     if (!(size > z.z1 * free + slack)) continue;  // within any room
     double push = length * free;
@@ -126,7 +126,8 @@ void SubsetsWindowWorkspace::Room::collect(const Window& w, const WindowLevels& 
   for (Eigen::Index i = 0; i < n; ++i) {
     box(i) += z.zc * std::sqrt(std::max(shape(i, i), 0.0)) +
               w.prior_length() * std::sqrt(std::max(prior(i, i), 0.0));
-    box(i) = std::min(box(i), (z.zc + length) * std::sqrt(std::max(P(i, i), 0.0)));
+    const double reach = std::sqrt(std::max(P(i, i), 0.0));
+    box(i) = std::min(box(i), (z.zc + length) * reach) + sources.fit.rounding() * reach;
   }
   detail::ShapeFrame& frame = all.frame();
   bool apart = w.prior_length() > 0.0;
@@ -144,7 +145,7 @@ void SubsetsWindowWorkspace::Room::collect(const Window& w, const WindowLevels& 
     if (sources.uses(w, r) && w.bias(r) > 0.0) bias += frame.length(f.col(r)) * w.bias(r);
   const double radius =
       apart ? 1.0 + bias : z.z2 + (w.prior_length() > 0.0 ? length : std::min(length, bias));
-  all.add(c, shape, radius, box);
+  all.add(c, shape, radius + sources.fit.rounding() * (apart ? frame.stretch(P) : 1.0), box);
 }
 
 const WindowWitness& SubsetsWindowWorkspace::Room::answer(const Window& w, const WindowAssumption& a) {
@@ -278,7 +279,7 @@ Vector subsets_window_width(const Window& w, const WindowAssumption& a, int limi
         frame_of(sd_K);
         const double b_K = bounded();
         for (int r = 0; r < w.rows(); ++r)
-          if (sources.uses(w, r)) free(r) = std::sqrt(std::max(1.0 - V.col(r).squaredNorm(), 0.0));
+          if (sources.uses(w, r)) free(r) = sources.fit.free(V.col(r));
         rest.clear();
         for (const int id : ids)
           if (sources.part[static_cast<std::size_t>(id)] == Part::in) rest.push_back(id);

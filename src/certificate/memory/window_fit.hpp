@@ -2,6 +2,7 @@
 // Least squares over some rows of a window, and the frame G^-1/2 in which its theorems are written. Internal.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "dense.hpp"
@@ -57,11 +58,22 @@ class WindowFit {
     theta.array() = g_.head(p_).array() / scale.array();
     solve_lower(G, theta);
     solve_upper(G, theta);
+    rounding_ = kRounding * static_cast<double>(p_) * most / std::sqrt(least) * theta.norm();
+    leverage_rounding_ = kRounding * static_cast<double>(p_) * std::sqrt(most / least);
     theta.array() /= scale.array();
     return theta.allFinite();
   }
 
   auto theta() const { return theta_.head(p_); }
+  /// Bound on what rounding did to G^1/2 theta: G_s (theta_s + d) = g_s + what is lost of |G_s| |theta_s|, s
+  /// = scaled, so that |G_s^1/2 d| <= ||G_s|| |theta_s|/sqrt(lmin) of it. States far from the origin feel it.
+  double rounding() const { return rounding_; }
+  /// sqrt(1 - leverage): what is left of the noise of a row in its residual. v: the row in the frame. Never
+  /// less than rounding of a leverage of 1 hides: a row that hardly anything else sees has a residual all the
+  /// same.
+  double free(const Eigen::Ref<const Vector>& v) const {
+    return std::sqrt(std::max(1.0 - v.squaredNorm(), 0.0) + leverage_rounding_);
+  }
   /// v becomes G^-1/2 v (up to a rotation).
   void to_frame(Eigen::Ref<Vector> v) const {
     v.array() /= scale_.head(p_).array();
@@ -69,8 +81,11 @@ class WindowFit {
   }
 
  private:
+  static constexpr double kRounding = 4e-16;
+
   Matrix G_, room_, columns_;
   Vector g_, scale_, theta_;
+  double rounding_ = 0.0, leverage_rounding_ = 0.0;
   Eigen::Index p_ = 0;
 };
 

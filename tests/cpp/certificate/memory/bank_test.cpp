@@ -108,7 +108,7 @@ TEST_CASE(
   int late = 0;
   int proved = 0;
   double largest = 0.0;
-  for (int k = 0; k < 250; ++k) {
+  for (int k = 0; k < test::tried(1000); ++k) {
     CAPTURE(k);
     const BankCase d = draw(rng);
     const Stacked all = stacked(d);
@@ -161,9 +161,9 @@ TEST_CASE(
   }
   std::cout << "bank from nothing: " << answers << " answers, " << late << " samples without, " << proved
             << " proofs, largest error/radius " << largest << "\n";
-  CHECK(answers > 2000);
-  CHECK(late > 50);
-  CHECK(proved > 100);
+  CHECK(answers > test::tried(10000));
+  CHECK(late > test::tried(200));
+  CHECK(proved > test::tried(1000));
   CHECK(largest > 0.99);
 }
 
@@ -208,7 +208,7 @@ TEST_CASE(
   int proved = 0;
   int merged = 0;
   double largest = 0.0;
-  for (int k = 0; k < 150; ++k) {
+  for (int k = 0; k < test::tried(1000); ++k) {
     CAPTURE(k);
     BankCase d = draw(rng);
     Bank bank(d.A, d.Q(), d.sources, d.s);
@@ -262,8 +262,8 @@ TEST_CASE(
   }
   std::cout << "bank: " << steps << " steps, " << proved << " proofs, " << merged
             << " merged, largest error/box " << largest << "\n";
-  CHECK(proved > 100);
-  CHECK(merged > 5);
+  CHECK(proved > test::tried(5000));
+  CHECK(merged > test::tried(60));
   CHECK(largest > 0.3);
 }
 
@@ -289,7 +289,7 @@ TEST_CASE("the width for ever holds for every living member, whatever hides amon
   int comparisons = 0;
   double largest = 0.0;
   double largest_box = 0.0;
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < test::tried(1200); ++k) {
     CAPTURE(k);
     BankCase d = draw(rng);
     d.root += 0.05 * Matrix::Identity(d.n, d.n);
@@ -303,7 +303,7 @@ TEST_CASE("the width for ever holds for every living member, whatever hides amon
     Vector x = Vector::Zero(d.n);
     bank.start_gaussian(x, Matrix::Identity(d.n, d.n));
     const double push = test::uniform(rng, 0.5, 4.0);
-    for (int t = 0; t < 250; ++t) {
+    for (int t = 0; t < 200; ++t) {
       x = d.A * x + noise(rng, d.root);
       Vector y(d.outputs);
       // The attackers pull a member that still lives as far as it stands.
@@ -333,8 +333,8 @@ TEST_CASE("the width for ever holds for every living member, whatever hides amon
   }
   std::cout << "width for ever: " << finite << " systems, " << comparisons
             << " comparisons, largest error/width " << largest << ", box/width " << largest_box << "\n";
-  CHECK(finite > 20);
-  CHECK(comparisons > 2000);
+  CHECK(finite > test::tried(1000));
+  CHECK(comparisons > test::tried(100000));
   CHECK(largest > 0.1);
 }
 

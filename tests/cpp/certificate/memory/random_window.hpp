@@ -19,6 +19,7 @@ enum class Prior { none, gaussian, set };
 struct WindowCase {
   int n, q, steps, sources, s;
   bool moving, bounded;
+  bool random = false;  // noise as it comes, not at the edge
   Prior prior;
   std::vector<Matrix> A, Gam;
   std::vector<Vector> u;
@@ -150,7 +151,7 @@ inline void play(Rng& rng, WindowCase& d) {
   const Window w = d.window();
   Vector e = Vector::Zero(w.rows());
   const Vector along = normal_matrix(rng, w.unknowns(), 1);
-  const bool aligned = whole(rng, 0, 1) == 0;
+  const bool aligned = !d.random && whole(rng, 0, 1) == 0;
   for (int r = 0; r < w.rows(); ++r)
     if (w.noise(r) == RowNoise::gaussian)
       e(r) = aligned ? w.N(r).dot(along) / (1e-9 + w.N(r).norm()) : std::normal_distribution<>()(rng);
@@ -175,7 +176,7 @@ inline void play(Rng& rng, WindowCase& d) {
                          }));
     }
   if (!std::isfinite(stretch)) stretch = 1.0;
-  e *= std::min(stretch, 100.0) * (1.0 - 1e-9);
+  if (!d.random) e *= std::min(stretch, 100.0) * (1.0 - 1e-9);
   // The truth: process noise and start as the rows of the regression see them.
   int r = 0;
   for (int k = 0; k + 1 < d.steps; ++k)
