@@ -3,6 +3,7 @@
 import garrison as gr
 import numpy as np
 import pytest
+from scipy.linalg import solve_discrete_are
 
 NET = gr.Network.complete(6)
 
@@ -130,3 +131,26 @@ def test_process_noise_of_low_rank_that_drives_all_modes_is_enough() -> None:
         gr.prepare(model, gr.Network.complete(2), gr.filters.Structural())
     decays = gr.Model([[0.9, 0.1], [0.0, 0.99]], [[[1.0, 1.0]]] * 2, process_covariance=0.0, measurement_covariance=1.0)
     gr.prepare(decays, gr.Network.complete(2), gr.filters.Structural())
+
+
+@pytest.mark.parametrize("q", [1e-8, 1e-10, 1e-12, 1e-14])
+@pytest.mark.parametrize("A", [np.diag([0.5, 1.0]), np.array([[1.0, 1.0], [0.0, 1.0]]), np.array([[0.9, 0.1], [0, 1]])])
+def test_gains_are_the_best_ones_where_one_state_has_little_noise_beside_another(A: np.ndarray, q: float) -> None:
+    C, Q, R = np.array([[1.0, 1.0]]), np.diag([1.0, q]), np.array([[1.0 / 3.0]])
+    P = solve_discrete_are(A.T, C.T, Q, R)
+    expected = np.trace(P - P @ C.T @ np.linalg.solve(C @ P @ C.T + R, C @ P))
+    model = gr.Model(A, [C] * 3, process_covariance=Q, measurement_covariance=1.0)
+    check = gr.check(model, gr.Network.complete(3), gr.filters.Structural())
+    found = next(c["value"] for c in check.quantities if c["name"] == "mean square error")
+    assert found == pytest.approx(expected, rel=1e-6)  # of which most is that of the other state
+    radius = next(c["value"] for c in check.conditions if "spectral" in c["name"])
+    assert radius < 1.0 - 0.1 * np.sqrt(q)
+
+
+@pytest.mark.parametrize("decay", [0.3, 0.9, 0.999])
+def test_states_without_noise_that_decay_need_none(decay: float) -> None:
+    model = gr.Model(
+        np.diag([0.5, decay]), [[[1.0, 1.0]]] * 3, process_covariance=np.diag([1.0, 0.0]), measurement_covariance=1.0
+    )
+    assert gr.check(model, gr.Network.complete(3), gr.filters.Structural()).holds
+    gr.prepare(model, gr.Network.complete(3), gr.filters.Structural())
