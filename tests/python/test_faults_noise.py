@@ -154,3 +154,14 @@ def test_states_without_noise_that_decay_need_none(decay: float) -> None:
     )
     assert gr.check(model, gr.Network.complete(3), gr.filters.Structural()).holds
     gr.prepare(model, gr.Network.complete(3), gr.filters.Structural())
+
+
+def test_partial_sharing_does_not_blame_sensors_for_noise_that_is_missing() -> None:
+    model = gr.Model(
+        np.diag([0.5, 1.0]), [[[1.0, 1.0]]] * 3, process_covariance=np.diag([1.0, 0.0]), measurement_covariance=1.0
+    )
+    with pytest.raises(gr.InvalidInput, match="no process noise drives needs some"):
+        gr.prepare(model, gr.Network.complete(3), gr.filters.PartialSharing(gain=0.1, gains="steady"))
+    check = gr.check(model, gr.Network.complete(3), gr.filters.PartialSharing(gain=0.1))
+    assert not check.holds
+    assert "no noise drives a mode that stays" in check.conditions[0]["meaning"]
