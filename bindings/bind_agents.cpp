@@ -43,7 +43,8 @@ PyAgent agent_kept(const std::vector<std::byte>& all) {
     case Refusal::order:
       refuse(call, "a call in round " + std::to_string(a->round()) + " of " + at,
              a->round() < a->rounds() ? "fuse to be called first" : "sense to be called first",
-             "this filter needs " + std::to_string(a->rounds()) + " rounds per sample");
+             "this filter needs " + std::to_string(a->rounds()) + (a->rounds() == 1 ? " round" : " rounds") +
+                 " per sample");
     case Refusal::late:
       refuse(call, "t = " + std::to_string(t), "a sample after " + std::to_string(a->sample()),
              "an agent does not go back; use reset(x0, t) to start anew");

@@ -68,11 +68,24 @@ Network from_graph(const py::object& graph, const py::object& agents, Names name
   return build(all, edges, graph.attr("is_directed")().cast<bool>(), std::move(names));
 }
 
+/// A square array of true and false: no list of edges.
+bool matrix_of_flags(const py::object& given) {
+  if (!py::hasattr(given, "dtype") || !py::hasattr(given, "ndim") || !py::hasattr(given, "shape"))
+    return false;
+  if (given.attr("dtype").attr("kind").cast<std::string>() != "b" || given.attr("ndim").cast<int>() != 2)
+    return false;
+  const py::tuple sides(given.attr("shape"));
+  return sides[0].equal(sides[1]);
+}
+
 /// Two rows of two numbers that could be an adjacency matrix as well as two edges that mean something else.
 bool ambiguous(const py::object& given, const py::list& items, bool directed) {
-  if (items.size() != 2) return false;
-  for (const auto& item : items)
+  if (items.size() != 2 || matrix_of_flags(given)) return false;
+  for (const auto& item : items) {
     if (py::isinstance<py::tuple>(item) || !py::hasattr(item, "__len__") || py::len(item) != 2) return false;
+    for (const auto& end : py::list(py::reinterpret_borrow<py::object>(item)))
+      if (py::isinstance<py::str>(end)) return false;  // names of agents
+  }
   const auto a = convert::array("edges", given, kSources);
   if (a.ndim() != 2) return false;
   if (a.at(0, 0) == 1.0 && a.at(1, 1) == 1.0 && a.at(0, 1) == 0.0 && a.at(1, 0) == 0.0) return true;
@@ -117,6 +130,12 @@ py::object aligned(const py::object& given) {
 /// A table of two columns that can be no adjacency matrix: senders and receivers.
 bool edge_table(const py::object& given) {
   return table(given) && py::len(given.attr("columns")) == 2 && py::len(given) != 2;
+}
+
+/// Rows that begin with the name of an agent.
+bool named_edges(const py::list& items) {
+  if (items.size() == 0 || !py::hasattr(items[0], "__len__") || py::len(items[0]) < 2) return false;
+  return py::isinstance<py::str>(py::list(py::reinterpret_borrow<py::object>(items[0]))[0]);
 }
 
 /// A square table of more than two rows is an adjacency matrix.
@@ -196,7 +215,9 @@ Network make_network(const py::object& source, const py::object& agents, bool di
                          : table(source) ? py::list(source.attr("to_numpy")())
                                          : py::list(source);
   const bool unclear = ambiguous(source, items, directed);
-  if (!unclear && (sparse || (table(source) && !edge_table(source)) || square(items))) {
+  const bool names_edges = !sparse && table(source) && named_edges(items);
+  if (!unclear && !names_edges &&
+      (sparse || (table(source) && !edge_table(source)) || matrix_of_flags(source) || square(items))) {
     Network network = from_adjacency(source, directed, std::move(names));
     const int count = agents.is_none() ? network.agents() : convert::small("agents", agents);
     if (count != network.agents())

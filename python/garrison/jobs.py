@@ -18,6 +18,7 @@ from garrison.prepared import Prepared, prepare
 from garrison.record import Run
 from garrison.run_file import ARRAYS
 from garrison.scenario import Scenario
+from garrison.scenario.section import renamed
 from garrison.varying_network import links_of
 from garrison.words import count, refusal
 
@@ -306,9 +307,12 @@ def _kalman(scenario: Scenario, label: str, y: Array, start: Array | None = None
     """Estimates (samples + 1, agents or 1, n) of a Kalman filter of the scenario."""
     inputs = None if scenario.inputs is None else scenario.inputs[: len(y)]
     known: dict[str, Any] = {"inputs": inputs, "start": start, **scenario.screens[label]}
-    if label in scenario.local:
-        return local_kalman(scenario.plant, scenario.network, y, **known)
-    return central_kalman(scenario.plant, y, **known)[:, None]
+    try:
+        if label in scenario.local:
+            return local_kalman(scenario.plant, scenario.network, y, **known)
+        return central_kalman(scenario.plant, y, **known)[:, None]
+    except _core.Error as error:
+        raise renamed(error, label) from None
 
 
 def _distance(estimate: Array | None, states: Array | None) -> Array | None:

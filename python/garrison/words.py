@@ -38,8 +38,15 @@ def near(name: str, known: Iterable[str]) -> str:
     """Ending of a refusal: the known name that was probably meant, or nothing."""
     known = list(known)
     other_case = (one for one in known if one.casefold() == name.casefold())
-    found = next(other_case, "") or (_core.nearest_name(name, known) if name.isprintable() else "")
+    found = next(other_case, "") or (_nearest(name, known) if name.isprintable() else "")
     return f'did you mean "{found}"?' if found else ""
+
+
+def _nearest(name: str, known: list[str]) -> str:
+    try:
+        return _core.nearest_name(name, known)
+    except _core.Error:  # a wrong GARRISON_MEMORY_GB is refused by what needs memory, not by the import of a module
+        return ""
 
 
 def refuse_attribute(module: str, name: str, known: Iterable[str]) -> NoReturn:

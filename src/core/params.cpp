@@ -18,16 +18,20 @@ std::string join(std::span<const std::string> names) {
   return all;
 }
 
+/// Letters put in, left out, replaced, or exchanged with the next one, that lead from a to b.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
+  std::vector<std::size_t> last = row;
+  std::vector<std::size_t> before = row;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    before.swap(last);
+    last.swap(row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t swap = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({swap, row[j] + 1, row[j - 1] + 1});
+      row[j] = std::min({last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1), last[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
     }
   }
   return row.back();
@@ -62,7 +66,7 @@ std::string range(const ParamInfo& info) {
 
 std::string nearest_name(const std::string& unknown, std::span<const std::string> known) {
   std::string best;
-  std::size_t least = unknown.size() / 2 + 2;
+  std::size_t least = std::max<std::size_t>(unknown.size() / 2, 1) + 1;
   for (const auto& name : known)
     if (const auto distance = edit_distance(unknown, name); distance < least) {
       least = distance;
@@ -79,7 +83,7 @@ std::string nearest_name(const std::string& unknown, std::span<const std::string
 void refuse_unknown(const std::string& owner, const std::string& name, std::span<const std::string> known) {
   const std::string near = nearest_name(name, known);
   refuse(owner, "unknown name \"" + name + "\"", "one of: " + join(known),
-         near.empty() ? "see `garrison list`" : "did you mean \"" + near + "\"?");
+         near.empty() ? "" : "did you mean \"" + near + "\"?");
 }
 
 void refuse_absent(const std::string& owner, const ParamInfo& info) {

@@ -451,5 +451,35 @@ def test_methods_of_fits_and_records_refuse(wind: Path, call: Callable[[Any, Any
     assert said in str(refused.value)
 
 
+def test_matrices_of_flags_and_edges_of_names() -> None:
+    pair = [(0, 1)]
+    assert gr.Network(np.array([[False, True], [True, False]])).edges == pair
+    assert gr.Network(np.array([[0, 1, 0], [1, 0, 1], [0, 1, 0]], dtype=bool)).edges == [(0, 1), (1, 2)]
+    with pytest.raises(gr.InvalidInput, match="not symmetric"):
+        gr.Network(np.array([[False, True], [False, False]]))
+    names = ["a", "b", "c"]
+    expected = gr.Network([(0, 1), (1, 2)], names=names)
+    assert gr.Network([["a", "b"], ["b", "c"]], names=names) == expected
+    table = pd.DataFrame({"source": ["a", "b"], "target": ["b", "c"]})
+    assert gr.Network(table, names=names) == expected
+    with pytest.raises(gr.InvalidInput, match="names need names="):
+        gr.Network(table)
+
+
+def test_the_least_numbers_are_numbers() -> None:
+    for value in (5e-324, -1e-310):
+        assert gr.attacks.Constant(agents=[0], value=value).params["value"] == repr(value)
+    for wrong in ("1e999", "5 m", "", " "):
+        with pytest.raises(gr.InvalidInput, match="expected a number such as"):
+            gr.attacks.Constant(agents=[0], value=wrong)
+
+
+@pytest.mark.parametrize(("slip", "meant"), [("rnu", "run"), ("fliter", "filter"), ("attackd", "attack")])
+def test_near_names_are_near(slip: str, meant: str) -> None:
+    assert gr._core.nearest_name(slip, ["run", "filter", "attack", "stop", "value", "edges"]) == meant
+    for far in ("factor", "chance", "names"):
+        assert gr._core.nearest_name(far, ["stop", "value", "edges", "start"]) == ""
+
+
 def test_verdicts_by_their_words() -> None:
     assert gr.Verdict("not tested") is gr.Verdict.NOT_TESTED is gr.Verdict("NOT_TESTED") is gr.Verdict(4)

@@ -2,6 +2,8 @@
 
 import errno
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import garrison as gr
@@ -371,3 +373,79 @@ def test_a_full_disk_is_called_so(
     assert main(["fit", str(wind / "irish_wind.csv"), "-o", str(tmp_path / "m.json")]) == 2
     assert "got a disk that is full, expected room for it; free some" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ("kind = ring", ["line 8: got 'kind = ring' (invalid value)", "text stands in quotes"]),
+        ('kind = "ring";', ["line 8", "lines such as key = value"]),
+        ('kind: "ring"', ["line 8: got ", "(expected '=' after a key"]),
+        ('kind = "ring"\nkind = "path"', ["line 9", "which is there already", "every key and every [table] once"]),
+        ('kind = "ring"\n[model]', ["line 9: got '[model]', which is there already"]),
+        ('kind = "ring', ["line 8"]),
+        ('kind = "ring"\nagents = .5', ["line 9: got 'agents = .5'", "numbers are like 0.5"]),
+    ],
+)
+def test_lines_that_are_no_toml_are_shown(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], wrong: str, said: list[str]
+) -> None:
+    path = tmp_path / "s.toml"
+    path.write_text(SCENARIO.replace('kind = "ring"', wrong))
+    assert main(["check", str(path)]) == 2
+    error = capsys.readouterr().err
+    for words in said:
+        assert words in error, error
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("[run]", '[[compare]]\nname = "rdkf"\nweigth = 1\n[run]', "[[compare]] 1 rdkf: got the unknown key 'weigth'"),
+        (
+            "[run]",
+            '[[compare]]\nname = "dkf"\n[[compare]]\nname = "rdkf"\nweight = -1\n[run]',
+            "[[compare]] 2 rdkf.weight",
+        ),
+        ("[run]", '[[compare]]\nname = "central_kalman"\nlabel = "ideal"\ngate = -1\n[run]', "ideal gate: got -1"),
+        (
+            'kind = "ring"',
+            'kind = "random_geometric"\nradius = -1',
+            "[network] kind = 'random_geometric' radius: got -1",
+        ),
+        ('kind = "ring"', 'edges = [["a", "b"]]', "the agents have no names; the key names in [model]"),
+        ("steps = 5", 'steps = 5\nx0 = "x0.csv"', "[run].x0: got 'x0.csv', expected numbers, or { file = "),
+    ],
+)
+def test_refusals_name_the_table(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, said: str
+) -> None:
+    path = tmp_path / "s.toml"
+    path.write_text(SCENARIO.replace(old, new))
+    assert main(["check", str(path)]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_wrong_memory_limit_is_refused_not_a_crash(tmp_path: Path) -> None:
+    path = tmp_path / "s.toml"
+    path.write_text(SCENARIO)
+    for command in (["check", str(path)], ["list"]):
+        done = subprocess.run(
+            [sys.executable, "-m", "garrison", *command],
+            capture_output=True,
+            text=True,
+            env={**os.environ, "GARRISON_MEMORY_GB": "abc"},
+            check=False,
+        )
+        assert "Traceback" not in done.stderr
+        assert done.returncode == (2 if command[0] == "check" else 0), done.stderr
+
+
+@pytest.mark.parametrize("content", ["", "hello", '{"family": 1', "\udcff"])
+def test_a_case_that_is_no_json_is_called_so(tmp_path: Path, capsys: pytest.CaptureFixture[str], content: str) -> None:
+    path = tmp_path / "case.json"
+    path.write_bytes(content.encode("utf-8", "surrogateescape"))
+    assert main(["verify", str(path)]) == 1
+    said = capsys.readouterr().out
+    assert "is no JSON" in said
+    assert "Expecting" not in said and "codec" not in said

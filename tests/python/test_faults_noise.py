@@ -3,6 +3,7 @@
 import garrison as gr
 import numpy as np
 import pytest
+from scipy.linalg import solve_discrete_are
 
 NET = gr.Network.complete(6)
 
@@ -93,3 +94,74 @@ def test_singular_covariances_are_simulated(seed: int) -> None:
     assert np.isfinite(run.error).all() and np.isfinite(run.measurements).all()  # type: ignore[type-var]
     w = run.truth[0, 1:] - run.truth[0, :-1] @ np.asarray(model.A).T  # type: ignore[index]
     assert np.allclose(np.cov(w.T), G @ G.T, atol=0.6 * np.abs(G @ G.T).max())
+
+
+@pytest.mark.parametrize(
+    ("A", "Q", "mode"),
+    [
+        (np.diag([0.5, 1.0]), np.diag([1.0, 0.0]), "1"),
+        (np.array([[1.0, 1.0], [0.0, 1.0]]), np.diag([1.0, 0.0]), "1"),  # a constant speed
+        (np.array([[0.0, 1.0], [-1.0, 0.0]]), np.zeros((2, 2)), "1i"),
+        (np.array([[0.6, 0.8], [-0.8, 0.6]]), np.zeros((2, 2)), "0.8i"),
+        (np.diag([-1.0, 0.5]), np.diag([0.0, 1.0]), "-1"),
+    ],
+)
+@pytest.mark.parametrize("design", ["auto", "riccati", "kalman", "h2"])
+def test_a_mode_that_stays_and_that_no_noise_drives_has_no_steady_gain(
+    A: np.ndarray, Q: np.ndarray, mode: str, design: str
+) -> None:
+    rows = [[[1.0, 0.3]]] * 3
+    filt = gr.filters.Structural(design=design)
+    model = gr.Model(A, rows, process_covariance=Q, measurement_covariance=1.0)
+    with pytest.raises(gr.DesignInfeasible, match="drives no part of the mode") as refused:
+        gr.prepare(model, gr.Network.complete(3), filt)
+    assert mode in str(refused.value)
+    little = gr.Model(A, rows, process_covariance=Q + 1e-4 * np.eye(2), measurement_covariance=1.0)
+    run = gr.simulate(little, gr.Network.complete(3), filt, steps=4, noise="none")
+    radius = next(c["value"] for c in gr.check(little, run.network, filt).conditions if "spectral" in c["name"])
+    assert radius < 1.0 - 1e-3
+
+
+def test_process_noise_of_low_rank_that_drives_all_modes_is_enough() -> None:
+    for T in (1e-3, 1.0, 100.0):
+        g = np.array([[T * T / 2], [T]])
+        model = gr.Model(
+            [[1.0, T], [0.0, 1.0]], [[[1.0, 0.0]]] * 2, process_covariance=g @ g.T, measurement_covariance=1.0
+        )
+        gr.prepare(model, gr.Network.complete(2), gr.filters.Structural())
+    decays = gr.Model([[0.9, 0.1], [0.0, 0.99]], [[[1.0, 1.0]]] * 2, process_covariance=0.0, measurement_covariance=1.0)
+    gr.prepare(decays, gr.Network.complete(2), gr.filters.Structural())
+
+
+@pytest.mark.parametrize("q", [1e-8, 1e-10, 1e-12, 1e-14])
+@pytest.mark.parametrize("A", [np.diag([0.5, 1.0]), np.array([[1.0, 1.0], [0.0, 1.0]]), np.array([[0.9, 0.1], [0, 1]])])
+def test_gains_are_the_best_ones_where_one_state_has_little_noise_beside_another(A: np.ndarray, q: float) -> None:
+    C, Q, R = np.array([[1.0, 1.0]]), np.diag([1.0, q]), np.array([[1.0 / 3.0]])
+    P = solve_discrete_are(A.T, C.T, Q, R)
+    expected = np.trace(P - P @ C.T @ np.linalg.solve(C @ P @ C.T + R, C @ P))
+    model = gr.Model(A, [C] * 3, process_covariance=Q, measurement_covariance=1.0)
+    check = gr.check(model, gr.Network.complete(3), gr.filters.Structural())
+    found = next(c["value"] for c in check.quantities if c["name"] == "mean square error")
+    assert found == pytest.approx(expected, rel=1e-6)  # of which most is that of the other state
+    radius = next(c["value"] for c in check.conditions if "spectral" in c["name"])
+    assert radius < 1.0 - 0.1 * np.sqrt(q)
+
+
+@pytest.mark.parametrize("decay", [0.3, 0.9, 0.999])
+def test_states_without_noise_that_decay_need_none(decay: float) -> None:
+    model = gr.Model(
+        np.diag([0.5, decay]), [[[1.0, 1.0]]] * 3, process_covariance=np.diag([1.0, 0.0]), measurement_covariance=1.0
+    )
+    assert gr.check(model, gr.Network.complete(3), gr.filters.Structural()).holds
+    gr.prepare(model, gr.Network.complete(3), gr.filters.Structural())
+
+
+def test_partial_sharing_does_not_blame_sensors_for_noise_that_is_missing() -> None:
+    model = gr.Model(
+        np.diag([0.5, 1.0]), [[[1.0, 1.0]]] * 3, process_covariance=np.diag([1.0, 0.0]), measurement_covariance=1.0
+    )
+    with pytest.raises(gr.InvalidInput, match="no process noise drives needs some"):
+        gr.prepare(model, gr.Network.complete(3), gr.filters.PartialSharing(gain=0.1, gains="steady"))
+    check = gr.check(model, gr.Network.complete(3), gr.filters.PartialSharing(gain=0.1))
+    assert not check.holds
+    assert "no noise drives a mode that stays" in check.conditions[0]["meaning"]

@@ -114,3 +114,31 @@ def test_bounds_and_tests_that_end_with_a_lost_message_are_told(link: dict[str, 
     filt = gr.filters.Saturation(threshold=1.0, rounds=12, attacked=1, initial_error=2.0, detector=True)
     run = gr.simulate(model, gr.Network.complete(8), filt, steps=60, link=link)
     assert any("no sensor is tested after sample" in line for line in run.warnings) == told
+
+
+@pytest.mark.parametrize("positions", [1, 2])
+@pytest.mark.parametrize("jump", [300.0, 3e4, 3e6])
+def test_the_first_way_back_is_short_where_nobody_else_tells(positions: int, jump: float) -> None:
+    """One jump that nothing comes back from: it is not followed at once, but within sixty samples, however far.
+
+    With a second position sensor that stays right it is never followed.
+    """
+    A = np.array([[1.0, 1.0], [0.0, 1.0]])
+    C = np.array([[1.0, 0.0]] * positions + [[0.0, 1.0]])
+    deviations = np.array([1.0] * positions + [0.5])
+    model = gr.Model(
+        A, C, process_covariance=[[1e-4, 0.0], [0.0, 1e-2]], measurement_covariance=(deviations**2).tolist()
+    )
+    rng = np.random.default_rng(3)
+    x, y = np.zeros(2), []
+    for t in range(400):
+        x = A @ x + rng.normal(size=2) * [1e-2, 1e-1]
+        y.append(C @ x + rng.normal(size=len(C)) * deviations)
+        y[-1][0] += jump if t >= 200 else 0.0
+    filt = gr.filters.Structural(false_alarm=1e-6, isolate=True)
+    run = gr.replay(model, gr.Network.complete(len(C)), filt, measurements=np.array(y))
+    accused = run.verdict[0, 1:, 0] == gr.Verdict.ATTACKED
+    assert not accused[:200].any()
+    assert accused[200:230].all()
+    assert accused[260:].any() == (positions == 2)
+    assert accused[260:].all() == (positions == 2)

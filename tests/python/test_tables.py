@@ -267,6 +267,15 @@ REFUSED = {
     "clocks go back": ("t,A\n2024-10-27 02:00,1\n2024-10-27 02:00,2\n", ["line 3", "where clocks change", "zone"]),
     "backwards": ("date,A\n2024-01-02,1\n2024-01-01,2\n", ["line 3", "before", "sort"]),
     "irregular": ("date,A\n2024-01-01,1\n2024-01-03,2\n2024-01-06,2\n", ["line 4", "whole number of periods of 2 day"]),
+    "one row off": (
+        "t,A\n" + "".join(f"{k + (0.4 if k == 5 else 0)},{k}\n" for k in range(9)),
+        ["line 7", "got 5.4 after 4.0, expected a whole number of periods of 1 s later"],
+    ),
+    "one date off": (
+        "t,A\n" + "".join(f"2024-01-{k:02}{'T06:00' * (k == 7)},1\n" for k in range(1, 12)),
+        ["line 8", "2024-01-07 06:00:00 after 2024-01-06", "periods of 1 day later"],
+    ),
+    "a title": ("Records of 2024\ndate,A\n2024-01-01,1\n2024-01-02,2\n", ["line 1", "above rows of 2 columns"]),
     "mixed zones": ("t,A\n2024-01-01T00:00Z,1\n2024-01-01T01:00,2\n", ["line 3", "without a time zone"]),
     "ambiguous": ("date,A\n1/2/2024,1\n1/3/2024,2\n", ["either order", "YYYY-MM-DD"]),
     "text": ("date,A,B\n2024-01-01,1,2\n2024-01-02,x,y\n", ["line 3, column A", "'x'", "also in column B"]),
@@ -276,7 +285,7 @@ REFUSED = {
     "no time": ("A,B\n1,2\n2,3\n", ["without times"]),
     "empty time": ("date,A\n2024-01-01,1\n,2\n", ["line 3", "no time"]),
     "not a date": ("date,A\n2024-01-01,1\nsoon,2\n", ["line 3", "'soon'"]),
-    "not a day": ("date,A\n2024-02-30,1\n2024-03-01,2\n", ["line 2", "2024-02-30"]),
+    "not a day": ("date,A\n2024-02-30,1\n2024-03-01,2\n", ["line 2", "'2024-02-30', expected a day of the calendar"]),
     "no header, but dates": ("2024-01-01,1\n2024-01-02,1\n2024-01-03,2\n", HEADLESS),
     "no header": ("1,2\n3,4\n5,6\n", HEADLESS),
     "no header, months": ("2024-01,1\n2024-02,1\n2024-03,2\n", HEADLESS),
@@ -443,3 +452,21 @@ def test_fit_speaks_of_stations_by_name(tmp_path: Path) -> None:
     values[3, 1] = np.inf
     with pytest.raises(gr.InvalidInput, match=r"^station south, record of 3\.0: got inf"):
         gr.fit(type(records)(records.dates, records.stations, values), period=20, harmonics=1)
+
+
+@pytest.mark.parametrize("time", ["date", "year,month,day"])
+def test_rows_of_separators_alone_are_left_out(tmp_path: Path, time: str) -> None:
+    rows = [f"2024-01-{k:02},{k}" for k in range(1, 6)]
+    if time != "date":
+        rows = [row.replace("-", ",") for row in rows]
+    empty = "," * rows[0].count(",")
+    expected = read_records(write(tmp_path, "\n".join([f"{time},A", *rows])))
+    got = read_records(write(tmp_path, "\n".join([f"{time},A", *rows[:3], empty, *rows[3:], empty, empty])))
+    assert got.dates == expected.dates
+    assert np.array_equal(got.values, expected.values)
+
+
+def test_infinite_values_are_said_aloud(tmp_path: Path) -> None:
+    got = read_records(write(tmp_path, "date,A\n2024-01-01,1\n2024-01-02,inf\n2024-01-03,2\n"))
+    assert np.isinf(got.values[1, 0])
+    assert any("column A: 1 infinite value" in note for note in got.notes)

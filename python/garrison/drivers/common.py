@@ -28,7 +28,7 @@ MOST_TRIALS = 2**24
 
 #: bytes of one agent in the arrays of "report", and in that of the family's own bound with a certificate
 _REPORT, _PUBLISHED = 3 * 8 + 2, 8
-_ADVICE = 'keep less (keep=...), write it as it goes (to="run.zarr")'
+_ADVICE = 'take fewer steps or trials; in Python keep less (keep=...), or write it as it goes (to="run.zarr")'
 
 
 def require_room(

@@ -5,7 +5,7 @@ from typing import Any
 
 from garrison import _core, filters
 from garrison.parameters import cleaned
-from garrison.scenario.section import Section, tables_of
+from garrison.scenario.section import Section, renamed, tables_of
 from garrison.words import count, near, refusal, shown
 
 #: names of the baselines that are no distributed filters: one Kalman filter of all measurements, or one per agent
@@ -62,7 +62,10 @@ def _filter(section: Section, known: list[str]) -> tuple[str, _core.Filter | Non
         section.only(["name", "label", *SCREENS])
         return label, None
     info = next(i for i in _core.filter_infos() if i["name"] == name)
-    return label, filters.make_filter(name, cleaned(name, info["params"], params))
+    try:
+        return label, filters.make_filter(name, cleaned(name, info["params"], params))
+    except _core.Error as error:
+        raise renamed(error, section.where) from None
 
 
 def _unused(label: str, taken: list[str]) -> str:

@@ -104,7 +104,8 @@ def agent_number(where: str, value: Any, names: list[str]) -> int:
         if value in names:
             return names.index(value)
         words = f"a number or one of {', '.join(names)}" if names else "a number: the agents have no names"
-        raise refusal(where, f"the agent {value!r}", words, near(value, names) if names else "")
+        advice = near(value, names) if names else 'the key names in [model], as names = ["a", "b"], gives them some'
+        raise refusal(where, f"the agent {value!r}", words, advice)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise refusal(where, f"the agent {shown(value)}", "a number" + (" or a name" if names else ""))
     return whole(where, value)
@@ -130,7 +131,10 @@ def _generated(section: Section, agents: int) -> _core.Network:
         got = f"{arguments['rows']} x {arguments['columns']} agents"
         raise refusal(section.where, got, f"{agents}, because C has one matrix per agent")
     require_memory(section.where, f"{agents} agents", float(agents) ** 2 / 4 if kind == "complete" else float(agents))
-    network: _core.Network = getattr(_core.Network, kind)(**arguments)
+    try:
+        network: _core.Network = getattr(_core.Network, kind)(**arguments)
+    except _core.Error as error:
+        raise renamed(error, section.where) from None
     return network
 
 

@@ -1,5 +1,6 @@
 """A scenario file as objects, all of it checked."""
 
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -187,16 +188,34 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
 
 def read_document(path: Path) -> dict[str, Any]:
     """The tables of a scenario file, unchecked. Raises IoError or InvalidInput."""
+    text = ""
     try:
-        return tomllib.loads(decoded(path, contents(path), "a TOML document"))
+        text = decoded(path, contents(path), "a TOML document")
+        return tomllib.loads(text)
     except _core.IoError:
         raise
     except OSError as error:
         raise _core.IoError(f"{path}: got {error.strerror}, expected a scenario file (TOML)") from error
     except tomllib.TOMLDecodeError as error:
-        raise refusal(str(path), str(error), "a TOML document") from error
+        raise _no_toml(path, text, str(error)) from None
     except (ValueError, RecursionError) as error:  # a NUL in the path, a number or nesting without end
         raise refusal(str(path), f"{type(error).__name__}: {error}", "a TOML document") from error
+
+
+def _no_toml(path: Path, text: str, error: str) -> _core.InvalidInput:
+    """The line of a file that Python's reader stumbled over, and how such lines are written."""
+    place = re.search(r"\(at line (\d+), column \d+\)", error)
+    reason = error.partition(" (at ")[0].lower()
+    if place is None:
+        return refusal(str(path), f"the end of the file ({reason})", "a TOML document", "close all brackets and quotes")
+    number = int(place[1])
+    where, line = f"{path}, line {number}", shown(text.split("\n")[number - 1].strip())
+    if any(word in reason for word in ("twice", "overwrite", "mutate", "redefine")):
+        return refusal(where, f"{line}, which is there already", "every key and every [table] once")
+    advice = (
+        "text stands in quotes, numbers are like 0.5, dates like 2024-01-31, lists in [ ]; true and false are small"
+    )
+    return refusal(where, f"{line} ({reason})", "a TOML document: lines such as key = value", advice)
 
 
 def read_title(document: Mapping[str, Any], path: Path) -> str:

@@ -89,6 +89,8 @@ class Section:
             inner = Section(self.place(key), value, self.folder)
             inner.only(["file"])
             return read_matrix(inner.file("file"))
+        if isinstance(value, str):
+            raise refusal(self.place(key), shown(value), 'numbers, or { file = ".." } with the path of a file of them')
         return value
 
     def numbers(self, key: str) -> Array:

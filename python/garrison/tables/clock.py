@@ -207,16 +207,24 @@ def _regular(places: list[str], moments: list[Moment]) -> Clock:
     daily = all(isinstance(m, dt.date) and not isinstance(m, dt.datetime) for m in moments)
     # Dates are exact; clocks and printed seconds are rounded.
     if (off > (1e-6 if daily else _JITTER) * step).any():
-        wrong = int(np.argmax(np.abs(steps / least - np.rint(steps / least)))) + 1
+        wrong, period = _first_off(steps, least)
         raise refusal(
             places[wrong],
             f"{moments[wrong]} after {moments[wrong - 1]}",
-            f"a whole number of periods of {_words(least)} later",
+            f"a whole number of periods of {_words(period)} later",
             "resample the records to a regular period (in UTC where clocks change)",
         )
     return Clock(
         _whole(moments, at.tolist(), [_later(moments[0], k, step) for k in range(at[-1] + 1)]), step, at.tolist()
     )
+
+
+def _first_off(steps: Array, least: float) -> tuple[int, float]:
+    """The first row that breaks the period, and the period: the step of most rows, or the least of all."""
+    kinds, counts = np.unique(np.round(steps, 6), return_counts=True)
+    usual = float(kinds[np.argmax(counts)]) if counts.max() > len(steps) / 2 else least
+    off = np.abs(steps / usual - np.rint(steps / usual))
+    return int(np.argmax(off > _JITTER) if (off > _JITTER).any() else np.argmax(off)) + 1, usual
 
 
 def _whole(moments: list[Moment], at: list[int], regular: list[Moment]) -> list[Moment]:

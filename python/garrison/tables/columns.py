@@ -79,7 +79,7 @@ def read_table(path: str | Path) -> Table:
     Separators (comma, semicolon, tab, bar, blanks) and decimal commas are detected; units may stand in the header as
     `name [unit]`. Raises IoError or InvalidInput with the line when something does not fit.
     """
-    rows = _with_joined_time(with_joined_date(_with_header(read_rows(path))))
+    rows = _with_joined_time(with_joined_date(_without_empty_rows(_with_header(read_rows(path)))))
     head = rows.cells[0]
     if _starts_with_data(rows):
         row = ", ".join(head)[:60]
@@ -157,6 +157,14 @@ def _with_header(rows: Rows) -> Rows:
     return Rows(rows.path, [names, *rows.cells], [max(rows.lines[0] - 1, 1), *rows.lines], rows.separator)
 
 
+def _without_empty_rows(rows: Rows) -> Rows:
+    """Without rows of separators alone, as spreadsheets write them, where every row of records has a time."""
+    timed = len(rows.cells) > 1 and _is_timed(_column(rows.cells[0][0]).name, [rows.cells[1][0]])
+    there = [k for k, row in enumerate(rows.cells) if any(row) or not timed]
+    cells, lines = [rows.cells[k] for k in there], [rows.lines[k] for k in there]
+    return Rows(rows.path, cells, lines, rows.separator, rows.comment)
+
+
 def _column(text: str) -> Column:
     found = _UNIT.fullmatch(text.strip())
     name, unit = (found[1], found[2]) if found and found[1] else (text.strip(), "")
@@ -224,6 +232,9 @@ def _suspicious(columns: list[Column], values: Array) -> list[str]:
     notes = []
     for column, series in zip(columns, values.T, strict=True):
         known = series[np.isfinite(series)]
+        if infinite := int(np.isinf(series).sum()):
+            what = count(infinite, "infinite value")
+            notes.append(f"column {column.name}: {what}; if that means that there is none, make the cells empty")
         if len(known) < 4:
             continue
         middle = np.median(known)

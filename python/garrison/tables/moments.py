@@ -111,15 +111,17 @@ def order_of(places: list[str], cells: list[str]) -> str:
 
 def moment_of(place: str, cell: str, order: str) -> dt.datetime:
     """What one cell says. order: of the numbers of dates with slashes or points. Raises InvalidInput."""
+    found = _parts(cell.strip())
     try:
-        found = _parts(cell.strip())
         if found is None:
             raise ValueError
         date, clock = found
         y, m, d = _date(date, order)
         return _with_clock(dt.datetime(y, m, d), clock) if clock else dt.datetime(y, m, d)
     except (ValueError, OverflowError):
-        raise _core.InvalidInput(f"{place}: got the date {cell!r}, expected {EXPECTED}") from None
+        no_such = found is not None and found[1] == "" and _ISO.fullmatch(found[0]) is not None
+        words = "a day of the calendar" if no_such else EXPECTED
+        raise _core.InvalidInput(f"{place}: got the date {cell!r}, expected {words}") from None
 
 
 def _date(text: str, order: str) -> tuple[int, int, int]:

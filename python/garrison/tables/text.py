@@ -74,7 +74,8 @@ def _text(path: Path) -> str:
         raise _core.IoError(f"{path}: got {error.strerror}, expected a readable CSV file") from error
     text = decoded(path, data, "a readable CSV file")
     if "\0" in text:
-        raise _core.IoError(f"{path}: got a file with zero bytes, expected a readable CSV file")
+        got = "characters that are zero, as in UTF-16 without its mark"
+        raise _core.IoError(f"{path}: got {got}, expected a readable CSV file; save it as UTF-8")
     return text
 
 
@@ -177,6 +178,14 @@ def _mixed(column: list[str]) -> bool:
 
 def require_widths(rows: Rows, first: int, width: int) -> None:
     """Refuse rows (from index `first` on) that have not `width` cells."""
+    widths = {len(row) for row in rows.cells[first:]}
+    if width == 1 and len(widths) == 1 and min(widths) > 1:
+        raise refusal(
+            f"{rows.path}, line {rows.lines[0]}",
+            f"{rows.cells[0][0]!r} above rows of {min(widths)} columns",
+            "the names of the columns",
+            "leave out what stands above them, or begin it with #",
+        )
     for line, row in zip(rows.lines[first:], rows.cells[first:], strict=True):
         if len(row) != width:
             more = ""

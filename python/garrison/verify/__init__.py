@@ -70,12 +70,20 @@ def _template(case: dict[str, Any], family: str, path: Path) -> dict[str, Any]:
     return {}
 
 
+def _unread(path: Path, why: str) -> FileResult:
+    return FileResult(path.name, "unknown", [FieldResult.failure("file", why)])
+
+
 def verify_file(path: Path, family: str | None = None) -> FileResult | None:
     """Recompute one file; None when it belongs to another family than the one asked for."""
     try:
         case = json.loads(contents(path).decode("utf-8-sig"))
-    except (OSError, ValueError, RecursionError) as error:
-        return FileResult(path.name, "unknown", [FieldResult.failure("file", f"cannot be read: {error}")])
+    except json.JSONDecodeError as error:
+        return _unread(path, f"is no JSON from line {error.lineno}, column {error.colno} on")
+    except OSError as error:
+        return _unread(path, f"cannot be read: {error.strerror or error}")
+    except (ValueError, RecursionError):  # bytes that are no text, or nesting without end
+        return _unread(path, "is no JSON in UTF-8")
     paper = _family(case, path) if isinstance(case, dict) else "unknown"
     if family is not None and family not in (paper, getattr(FAMILIES.get(paper), "NAME", None)):
         return None

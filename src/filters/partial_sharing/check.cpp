@@ -28,9 +28,10 @@ Check PartialSharing::check(const Params& params, const Model& model, const Netw
   const std::vector<int> lost = undetectable_agents(s);
   const auto detected = static_cast<double>(s.agents()) - static_cast<double>(lost.size());
   c.conditions.push_back({"detectable agents", detected, "= " + std::to_string(s.agents()), lost.empty(),
-                          lost.empty()
-                              ? "every (A, H_i) is detectable: (11) has a limit"
-                              : "(11) diverges for agents" + named(lost) + "; neighbours do not help it"});
+                          lost.empty() ? "every (A, H_i) is detectable: (11) has a limit"
+                                       : "(11) does not settle for agents" + named(lost) +
+                                             ": what they do not see grows, which neighbours do not help, or "
+                                             "no noise drives a mode that stays"});
   const double rarest = s.selection.frequency().minCoeff();
   c.conditions.push_back(
       {"least sharing frequency", rarest, "> 0", rarest > 0.0,

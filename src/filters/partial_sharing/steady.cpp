@@ -62,10 +62,11 @@ std::optional<LocalGains> limit(const Setting& s, int agent) {
 
 LocalGains steady_gains(const Setting& setting, int agent) {
   if (auto gains = limit(setting, agent)) return *std::move(gains);
-  refuse("agent " + std::to_string(agent),
-         "a pair (A, H) that is not detectable: its recursion (11) diverges",
-         "a detectable pair for a steady state",
-         "neighbours do not help the local covariance; give this agent a sensor of the unstable part");
+  refuse(
+      "agent " + std::to_string(agent), "a recursion (11) that does not settle",
+      "one that does, for a steady state",
+      "a pair (A, H) that is not detectable needs a sensor of what does not decay, which neighbours do not "
+      "replace; a mode that stays and that no process noise drives needs some");
 }
 
 std::vector<LocalGains> steady_gains(const Setting& setting) {

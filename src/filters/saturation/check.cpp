@@ -38,8 +38,10 @@ std::string above(double value) { return "> " + text(value); }
 
 /// Three digits, never below the value: what satisfies a condition still does.
 std::string rounded_up(double value) {
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-  return text(std::ceil(value / unit * (1.0 - 1e-12)) * unit);
+  const double digits = 2.0 - std::floor(std::log10(value));
+  const double scale = std::pow(10.0, std::abs(digits));  // a whole number: 31.9, not 31.900000000000002
+  return text(digits >= 0.0 ? std::ceil(value * scale * (1.0 - 1e-12)) / scale
+                            : std::ceil(value / scale * (1.0 - 1e-12)) * scale);
 }
 
 bool scalar_unit_rows(const Model& model) {

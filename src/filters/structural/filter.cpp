@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "blocks.hpp"
 #include "garrison/analysis/modes.hpp"
@@ -21,6 +23,7 @@ using structural::Setting;
 constexpr Index kExact = 1200;  // N n up to which the joint covariance is formed
 constexpr double kSettled = 0.01;
 constexpr double kDoubt = 1.1;
+constexpr double kHaste = 3.0;  // 25 samples from there are a factor of 1e6 in deviations
 
 std::string at(int i, int j) {
   return std::string("[").append(std::to_string(i)).append(", ").append(std::to_string(j)).append("]");
@@ -59,16 +62,18 @@ void require_detectable(const Model& model) {
            "every mode of modulus >= 1 is seen by some agent", "add a sensor on the state that it moves");
 }
 
-/// How fast P grows while sensor i is left out: faster than an error that nothing corrects; where the others
-/// see all that does not decay, slower than what their measurements take away.
-double doubt_without(const Setting& s, Index i, double rho) {
+/// How fast P grows while sensor i is left out, at first and once the estimate is lost: faster than an error
+/// that nothing corrects; where the others see all that does not decay, slower than what their measurements
+/// take away, whatever P is.
+std::pair<double, double> growth_without(const Setting& s, Index i, double rho) {
   Matrix others = s.C;
   others.row(i).setZero();
   double lost = 0.0;
   for (const auto& mode : unseen_modes(s.A, others, 1.0)) lost = std::max(lost, std::abs(mode));
-  if (lost > 0.0) return kDoubt * std::max(1.0, lost * lost);
+  if (lost > 0.0) return {kDoubt * std::max(1.0, lost * lost), kHaste * std::max(1.0, lost * lost)};
   const double growth = std::max(1.0, spectral_radius(s.A));
-  return std::min(kDoubt * growth * growth, rho > 0.0 ? 1.0 / std::sqrt(rho) : kInfinity);
+  const double always = std::min(kDoubt * growth * growth, rho > 0.0 ? 1.0 / std::sqrt(rho) : kInfinity);
+  return {always, always};
 }
 
 /// What agents need to carry a bound of their error's covariance from `covariance(i)` on.
@@ -86,8 +91,11 @@ void add_spread(Structural::Gains& g, const Setting& s, const Covariance& covari
   const double density = std::exp(-0.5 * m * m) / std::sqrt(2.0 * std::numbers::pi);
   g.surprise = 2.0 * m * density / structural::false_alarm_of_level(m);
   g.doubt.assign(static_cast<std::size_t>(s.N()), 1.0);
-  for (Index i = 0; i < s.N() && g.isolate; ++i)
-    g.doubt[static_cast<std::size_t>(i)] = doubt_without(s, i, g.rho);
+  g.haste = g.doubt;
+  for (Index i = 0; i < s.N() && g.isolate; ++i) {
+    const auto id = static_cast<std::size_t>(i);
+    std::tie(g.doubt[id], g.haste[id]) = growth_without(s, i, g.rho);
+  }
 }
 
 /// Standard deviations of what is tested, and the window's matrices: exact, or bounds of them.

@@ -8,6 +8,7 @@
 
 #include "blocks.hpp"
 #include "core/solvers.hpp"
+#include "garrison/analysis/modes.hpp"
 #include "garrison/core/params.hpp"
 #include "garrison/core/spectrum.hpp"
 #include "garrison/filters/structural/errors.hpp"
@@ -22,6 +23,23 @@ constexpr Index kDense = 400;  // N n up to which eigenvalues are taken from the
 /// Distance of a spectral radius from 1 that may be rounding.
 double rounding_of_radius(const Setting& s) {
   return 4.0 * std::numeric_limits<double>::epsilon() * static_cast<double>(s.N() * s.n());
+}
+
+/// Refuses modes on the unit circle that no process noise drives. Their error in the steady state is 0, and
+/// with it the gain: an estimate that starts off there stays off, and no recursion tells, as P falls like
+/// 1/t.
+void require_driven(const Setting& s) {
+  constexpr double kCircle = 1e-9;
+  const Eigen::LLT<Matrix> llt(s.E);
+  if (s.E.size() == 0 || llt.info() == Eigen::Success) return;
+  for (const auto& mode : unseen_modes(s.A.transpose(), s.E, 1.0 - kCircle))
+    if (std::abs(mode) <= 1.0 + kCircle)
+      throw DesignInfeasible(
+          "process_covariance drives no part of the mode " + text(mode.real()) +
+          (mode.imag() != 0.0 ? (mode.imag() < 0.0 ? " - " : " + ") + text(std::abs(mode.imag())) + "i"
+                              : "") +
+          ", which does not decay: its best steady gain is 0, so that a wrong start is never corrected; give "
+          "the states it moves some process noise, however small");
 }
 
 [[noreturn]] void refuse_unsettled(int sweeps, const std::string& method) {
@@ -103,6 +121,7 @@ Designed design_gains(const Setting& s, const std::string& method) {
   const std::vector<std::string> known{"auto", "riccati", "kalman", "h2", "projection"};
   if (std::find(known.begin(), known.end(), method) == known.end())
     refuse_unknown("gain design", method, known);
+  if (method != "projection") require_driven(s);
   const bool any = method == "auto";
   double reached = kInfinity;
   Designed d;

@@ -111,6 +111,21 @@ class Coupled {
     return false;
   }
 
+  /// Whether the variance of no state still changes, in its own size: a small one that grows by as much as
+  /// all the noise that drives it is not seen beside large ones.
+  bool rests(const RiccatiGains& g) {
+    constexpr double kChange = 1e-6;
+    constexpr double kRounding = 1e-15;  // of the largest
+    Matrix prior;
+    for (std::size_t i = 0; i < g.P.size(); ++i) {
+      const Vector now = g.P[i].diagonal();
+      const Vector change = update(i, g.P, prior).diagonal() - now;
+      if ((change.cwiseAbs().array() > kChange * now.array() + kRounding * now.maxCoeff()).any())
+        return false;
+    }
+    return true;
+  }
+
  private:
   const Setting& s_;
   std::vector<std::vector<Link>> links_;
@@ -190,13 +205,13 @@ RiccatiGains coupled_riccati(const Setting& s, int most_sweeps, double tolerance
   RiccatiGains g;
   g.P.assign(N, s.E + 1e-12 * Matrix::Identity(s.n(), s.n()));
   g.Pprior = g.P;
-  g.converged = coupled.settle(g, tolerance, std::min(most_sweeps, kQuickSweeps));
+  g.converged = coupled.settle(g, tolerance, std::min(most_sweeps, kQuickSweeps)) && coupled.rests(g);
   if (!g.converged && !g.diverged && most_sweeps > kQuickSweeps) {
     g.converged = newton(s, coupled, g);
     if (g.converged)
       for (std::size_t i = 0; i < N; ++i) coupled.update(i, g.P, g.Pprior[i]);
     else
-      g.converged = coupled.settle(g, tolerance, most_sweeps - g.sweeps);
+      g.converged = coupled.settle(g, tolerance, most_sweeps - g.sweeps) && coupled.rests(g);
   }
   for (std::size_t i = 0; i < N; ++i) g.K.push_back(coupled.gain(i) * coupled.view(i).basis.transpose());
   return g;

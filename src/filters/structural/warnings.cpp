@@ -103,7 +103,8 @@ std::vector<std::string> Structural::warnings(const Params& params, const Model&
       ++more;
   }
   if (more > 0)
-    all.push_back(std::to_string(more) + " more sensors were tested in less than half of the samples");
+    all.push_back(std::to_string(more) + (more == 1 ? " more sensor was" : " more sensors were") +
+                  " tested in less than half of the samples");
   if (c.longest >= long_row(params, log))
     all.push_back("more than half of the sensors were accused for " + std::to_string(c.longest) +
                   " samples in a row: that may as well be a wrong model or a wrong estimate");

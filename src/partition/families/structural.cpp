@@ -29,6 +29,7 @@ Structural::Gains cut(const Structural::Gains& all, const Cast& cast) {
   g.covariance = rows_of(all.covariance, cast, n * n);
   g.noise = rows_of(all.noise, cast, 1);
   g.doubt = rows_of(all.doubt, cast, 1);
+  g.haste = rows_of(all.haste, cast, 1);
   g.has_sensor.clear();
   g.offsets.assign(1, 0);
   g.heard.clear();

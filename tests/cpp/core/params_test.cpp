@@ -87,6 +87,9 @@ TEST_CASE("an unknown name is refused with the nearest one") {
                        doctest::Contains("one of: heat, door, trays, fan, mode, timers"), InvalidInput);
   const std::vector<std::string> known{"threshold", "rounds"};
   CHECK(nearest_name("rouns", known) == "rounds");
+  CHECK(nearest_name("rnu", std::vector<std::string>{"init", "run"}) ==
+        "run");  // exchanged letters are one slip
+  CHECK(nearest_name("factor", std::vector<std::string>{"start", "stop"}).empty());
   CHECK(nearest_name("zzzzzzzzzzzzzzzzzzzzz", known).empty());
   CHECK(nearest_name("", known).empty());
 }

@@ -265,6 +265,9 @@ struct GARRISON_EXPORT Structural {
   /// accused for long: who was right is open, so a second jump is followed within a minute of samples,
   /// however far.
   static constexpr double kHaste = 3.0;
+  /// Deviations, in stationary ones, from which an estimate is lost: where nobody else tells, it is then
+  /// worth no more than the sensor that is left out, and P grows by `haste`.
+  static constexpr double kLost = 15.0;
   /// What became of a sensor: used, left out, used again after a jump that the estimate followed, left out
   /// once more, used again after that until the estimate has settled.
   enum Trust : char { trusted, out, followed, out_again, returning };

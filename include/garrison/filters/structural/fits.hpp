@@ -44,7 +44,8 @@ inline bool fits(const Gains& g, const Local& l, std::span<const int> neighbours
   const bool carried = g.covariance.size() == n * n || g.covariance.size() == agents * n * n;
   if (!g.covariance.empty() && !(carried && g.process.size() == n * n && g.noise.size() == agents))
     return false;
-  if (g.isolate && !g.covariance.empty() && g.doubt.size() != agents) return false;
+  if (g.isolate && !g.covariance.empty() && (g.doubt.size() != agents || g.haste.size() != agents))
+    return false;
   if (g.innovation && g.noise.size() != agents && !g.covariance.empty()) return false;
   return hears(g, l, neighbours);
 }

@@ -53,6 +53,7 @@ struct Gains {
   std::vector<double> process;  ///< E, n x n
   std::vector<double> noise;    ///< R_jj per agent
   std::vector<double> doubt;    ///< by which P grows, per sample, while agent j's measurement is left out
+  std::vector<double> haste;    ///< the same once the estimate is lost there: more where j alone sees a mode
   double level = kNaN;          ///< m, or the chi-square level
   double sample_level = kNaN;   ///< m
   double rho = kNaN;            ///< rho(Ahat)
@@ -81,6 +82,7 @@ struct Gains {
     v("process", process);
     v("noise", noise);
     v("doubt", doubt);
+    v("haste", haste);
     v("level", level);
     v("sample_level", sample_level);
     v("rho", rho);

@@ -252,13 +252,15 @@ inline void Structural::leave(const Local& l, const Gains& g, Memory& s, int e, 
   doubts.out = true;
   const bool used_before = before != Trust::out && before != Trust::out_again;
   const bool again = before != Trust::trusted && before != Trust::out;
+  const auto id = static_cast<std::size_t>(j.id);
+  const double* c = row(g, j.id, nn);
+  const double spread = doubts.carried ? structural::quadratic<Dynamic>(prior, c, nn) + g.noise[id] : 0.0;
+  const double usual = kLost * g.innovation_std[id];
+  const bool lost = spread > usual * usual;
   if (doubts.carried)
-    doubts.growth = std::max(doubts.growth, again ? kHaste : g.doubt[static_cast<std::size_t>(j.id)]);
+    doubts.growth = std::max(doubts.growth, again ? kHaste : lost ? g.haste[id] : g.doubt[id]);
   if (by_level && used_before && doubts.carried) {
     // That a measurement was over its level says of an honest sensor that the estimate is off.
-    const double* c = row(g, j.id, nn);
-    const double spread =
-        structural::quadratic<Dynamic>(prior, c, nn) + g.noise[static_cast<std::size_t>(j.id)];
     if (spread > 0.0) structural::add_seen_outer(prior, c, g.surprise / spread, nn, more);
   }
   before = again ? Trust::out_again : Trust::out;
