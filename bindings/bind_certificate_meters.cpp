@@ -52,9 +52,17 @@ void bind_sparse_meters(py::module_& m) {
   m.def("sparse_meters", &of_entries, py::arg("shape"), py::arg("rows"), py::arg("columns"),
         py::arg("values"), py::arg("source") = Ids(), py::arg("dense") = 4000,
         py::call_guard<py::gil_scoped_release>(),
-        "H (rows, states) by its entries: shape, and rows, columns, values (k,) of what is not 0, reference "
-        "removed; source\n(rows,). Parts of H of up to `dense` rows are searched exactly, larger ones give "
-        "bounds. Ends with its budget. Raises\nInvalidInput.");
+        numpydoc(R"(What a large static set of meters withstands, H by its entries.
+Parts of H that have no state in common with the rest are searched one by one. Ends with its budget.
+
+shape : (int, int) | Rows and states of H, both >= 1.
+rows, columns : sequences of int | Where H is not 0; entries at one place add up.
+values : (k,) array | What stands there, divided by the deviations, reference removed.
+source : sequence of int | Of each row; empty = its position.
+dense : int | Parts of up to so many rows are searched exactly, larger ones give bounds; >= 0.
+< SparseMeters
+! InvalidInput | Sizes do not fit, a place is outside of the shape, or a number is not finite.)")
+            .c_str());
 }
 
 }  // namespace

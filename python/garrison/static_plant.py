@@ -59,7 +59,26 @@ class StaticPlant(Result):
 
     @classmethod
     def of(cls, rows: Any, agent: ArrayLike | None = None, **names: Sequence[str]) -> StaticPlant:
-        """From a matrix of scipy.sparse, or an array (sensors, states). Raises InvalidInput."""
+        """The plant of a matrix of rows.
+
+        Parameters
+        ----------
+        rows : scipy.sparse matrix or (sensors, states) array
+            H, finite.
+        agent : (sensors,) sequence of int, optional
+            Whose sensor a row is, >= 0; default: an agent per sensor.
+        **names : sequences of str
+            `states` and `outputs`: their names.
+
+        Returns
+        -------
+        StaticPlant
+
+        Raises
+        ------
+        InvalidInput
+            Where something does not fit.
+        """
         if hasattr(rows, "tocoo"):
             found = rows.tocoo()
             entries = np.column_stack([found.row, found.col, numbers("rows", found.data)])

@@ -2255,9 +2255,30 @@ def sparse_meters(
     dense: typing.SupportsInt | typing.SupportsIndex = 4000,
 ) -> SparseMeters:
     """
-    H (rows, states) by its entries: shape, and rows, columns, values (k,) of what is not 0, reference removed; source
-    (rows,). Parts of H of up to `dense` rows are searched exactly, larger ones give bounds. Ends with its budget. Raises
-    InvalidInput.
+    What a large static set of meters withstands, H by its entries.
+    Parts of H that have no state in common with the rest are searched one by one. Ends with its budget.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        Rows and states of H, both >= 1.
+    rows, columns : sequences of int
+        Where H is not 0; entries at one place add up.
+    values : (k,) array
+        What stands there, divided by the deviations, reference removed.
+    source : sequence of int
+        Of each row; empty = its position.
+    dense : int
+        Parts of up to so many rows are searched exactly, larger ones give bounds; >= 0.
+
+    Returns
+    -------
+    SparseMeters
+
+    Raises
+    ------
+    InvalidInput
+        Sizes do not fit, a place is outside of the shape, or a number is not finite.
     """
 
 def sub_gaussian_chi(
