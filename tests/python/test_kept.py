@@ -17,7 +17,17 @@ from test_objects import keeps
 #: objects that are worked with, and `Design`, which only Prepared holds
 NOT_KEPT = {
     *("Window", "WindowWitness", "Witness", "Region", "Bank", "Propagation", "Recovery", "TwoNumbers", "ErrorSystem"),
-    *("Kernels", "Table", "GaussianTable", "ObserverTable", "Meters", "SmallestAttack", "Response", "AgentInfo"),
+    *(
+        "Kernels",
+        "Table",
+        "GaussianTable",
+        "ObserverTable",
+        "Meters",
+        "SparseMeters",
+        "SmallestAttack",
+        "Response",
+        "AgentInfo",
+    ),
     *("rdkf.Setting", "Analysis", "Design", "NonlinearModel"),
 }
 COVARIANCES = {"process_covariance": 1e-4, "measurement_covariance": 1e-4}
