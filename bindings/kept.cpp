@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kept.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -70,6 +71,19 @@ std::string code_of_entries(py::handle sequence, char first, char last, bool com
   return code + (comma && k == 1 ? "," : "") + last;
 }
 
+/// In the order of their codes: equal sets may list what they hold in any.
+std::string code_of_set(py::handle set) {
+  std::vector<std::string> entries;
+  for (const auto& one : set) entries.push_back(code_of(one));
+  std::sort(entries.begin(), entries.end());
+  std::string code;
+  for (const std::string& one : entries) code += (code.empty() ? "{" : ", ") + one;
+  if (!entries.empty()) code += "}";
+  return PySet_Check(set.ptr()) && !entries.empty()
+             ? code
+             : py::str(py::type::of(set).attr("__name__")).cast<std::string>() + "(" + code + ")";
+}
+
 std::string code_of(py::handle given) {
   const Deeper deeper;
   const py::object value = listed(given);
@@ -81,6 +95,7 @@ std::string code_of(py::handle given) {
       code += (code.empty() ? "" : ", ") + code_of(key) + ": " + code_of(one);
     return "{" + code + "}";
   }
+  if (PyAnySet_CheckExact(value.ptr())) return code_of_set(value);
   if (PyUnicode_Check(value.ptr())) return py::repr(value).cast<std::string>();
   if (py::isinstance(value, py::module_::import("pathlib").attr("PurePath")))
     return "Path(" + py::repr(py::str(value)).cast<std::string>() + ")";

@@ -106,6 +106,12 @@ def test_attributes_of_a_filter_come_back_as_they_were(p: Any, tmp_path: Path) -
         assert exactly(again.filter.p, p)  # type: ignore[attr-defined]
 
 
+def test_sets_are_shown_in_one_order() -> None:
+    assert repr(Own({"b", "a"})).endswith("Own(p={'a', 'b'})")
+    assert repr(Own(frozenset("ba"))).endswith("Own(p=frozenset({'a', 'b'}))")
+    assert repr(Own(set())).endswith("Own(p=set())")
+
+
 @pytest.mark.parametrize("p", IN_PICKLES_ALONE, ids=lambda p: type(p).__name__)
 def test_what_no_file_holds_is_refused_by_name_and_pickled(p: Any, tmp_path: Path) -> None:
     run = gr.simulate(MODEL, RING, Own(p), steps=2)
