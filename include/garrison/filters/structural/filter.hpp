@@ -110,8 +110,7 @@ struct GARRISON_EXPORT Structural {
     if (carries(g)) {
       fresh.P.assign(structural::entries(nn), 0.0);
       fresh.work.assign(4 * structural::entries(nn), 0.0);
-      fresh.whole = when_whole(l, g);
-      for (int k = 0; k < nn; ++k) fresh.usual.push_back(usual_variance(l, g, k));
+      fresh.fixed = fixed(l, g);
     }
     fresh.pace = g.rho > 0.0 && g.rho < 1.0 ? -1.0 / std::log(g.rho) : 0.0;
     fresh.senders.assign(fresh.left_out.size(), 0);
@@ -330,14 +329,14 @@ struct GARRISON_EXPORT Structural {
   /// The largest of them.
   static double largest_usual(const Memory& s) noexcept {
     double most = 0.0;
-    for (const double usual : s.usual) most = std::max(most, usual);
+    for (const double usual : s.usual()) most = std::max(most, usual);
     return most;
   }
   /// P = the covariance of the stationary error.
   static void settle(const Local& l, const Gains& g, Memory& s) noexcept;
   /// I - sum K_i c_j c_j', column by column, and sum R_jj K_i c_j (K_i c_j)', over all measurements that are
-  /// due.
-  static std::vector<double> when_whole(const Local& l, const Gains& g);
+  /// due; then usual_variance of each state.
+  static std::vector<double> fixed(const Local& l, const Gains& g);
   /// Finds out who sent each message, and whose is missing.
   template <int n>
   static void receive(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox) noexcept;

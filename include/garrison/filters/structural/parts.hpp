@@ -120,15 +120,17 @@ struct Memory {
   std::vector<double> P;       // n x n
   std::vector<double> work;    // room for four n x n
   // What follows from the gains, and is not part of a snapshot: I - sum K_i c_j c_j', column by column, and
-  // sum R_jj K_i c_j (K_i c_j)', when no measurement is missing; n x n each.
-  std::vector<double> whole;
-  std::vector<double> usual;  // Structural::usual_variance of each state
-  double pace = 0.0;          // samples in which the deviation of an error falls by the factor e
-  std::vector<int> senders;   // of this sample: the Heard behind each message of the inbox
-  std::vector<int> missing;   // Heard whose measurement is not used, the first `gone`
+  // sum R_jj K_i c_j (K_i c_j)', when no measurement is missing, n x n each; then `usual`.
+  std::vector<double> fixed;
+  double pace = 0.0;         // samples in which the deviation of an error falls by the factor e
+  std::vector<int> senders;  // of this sample: the Heard behind each message of the inbox
+  std::vector<int> missing;  // Heard whose measurement is not used, the first `gone`
   int gone = 0;
   double own = 0.0;  // weight of the own estimate in (3) at this sample
   AgentSet accused;
+
+  /// Structural::usual_variance of each state; none where no P is carried.
+  std::span<const double> usual() const noexcept { return std::span(fixed).subspan(2 * P.size()); }
 
   template <class V>
   void visit(V& v) {

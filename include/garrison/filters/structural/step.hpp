@@ -26,30 +26,32 @@ inline double Structural::reaction(const Gains& g, int id, int nn) noexcept {
 inline void Structural::begin(const Gains& g, Memory& s, double factor) noexcept {
   if (!carries(g)) return;
   const double most = largest_usual(s);
+  const auto usual = s.usual();
   std::fill(s.P.begin(), s.P.end(), 0.0);
-  for (std::size_t k = 0; k < s.usual.size(); ++k)
-    s.P[k * (s.usual.size() + 1)] = factor * (s.usual[k] > 0.0 ? s.usual[k] : most);
+  for (std::size_t k = 0; k < usual.size(); ++k)
+    s.P[k * (usual.size() + 1)] = factor * (usual[k] > 0.0 ? usual[k] : most);
 }
 
 inline void Structural::settle(const Local& l, const Gains& g, Memory& s) noexcept {
   if (carries(g)) std::copy_n(stationary(g, l.id, l.states), s.P.size(), s.P.data());
 }
 
-inline std::vector<double> Structural::when_whole(const Local& l, const Gains& g) {
+inline std::vector<double> Structural::fixed(const Local& l, const Gains& g) {
   const int nn = l.states;
   const std::size_t size = structural::entries(nn);
-  std::vector<double> both(2 * size, 0.0);
-  for (int k = 0; k < nn; ++k) both[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] = 1.0;
+  std::vector<double> all(2 * size, 0.0);
+  for (int k = 0; k < nn; ++k) all[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] = 1.0;
   const auto id = static_cast<std::size_t>(l.id);
   for (int at = g.offsets[id]; at < g.offsets[id + 1]; ++at) {
     const Heard& j = g.heard[static_cast<std::size_t>(at)];
     if (!expects(g, j)) continue;
     const double* column = g.columns.data() + j.first;
-    structural::add_outer<1, Dynamic>(row(g, j.id, nn), column, -1.0, nn, both.data());
+    structural::add_outer<1, Dynamic>(row(g, j.id, nn), column, -1.0, nn, all.data());
     structural::add_outer<1, Dynamic>(column, column, g.noise[static_cast<std::size_t>(j.id)], nn,
-                                      both.data() + size);
+                                      all.data() + size);
   }
-  return both;
+  for (int k = 0; k < nn; ++k) all.push_back(usual_variance(l, g, k));
+  return all;
 }
 
 template <int n>
@@ -291,8 +293,8 @@ GARRISON_INLINE void Structural::update_spread(const Local& l, const Gains& g, M
   double* prior = s.work.data();
   double* G = prior + size;
   double* half = G + size;
-  std::copy_n(s.whole.data(), size, G);
-  std::copy_n(s.whole.data() + size, size, s.P.data());
+  std::copy_n(s.fixed.data(), size, G);
+  std::copy_n(s.fixed.data() + size, size, s.P.data());
   for (int k = 0; k < s.gone; ++k) {
     const Heard& j = heard[s.missing[static_cast<std::size_t>(k)]];
     if (!expects(g, j)) continue;
@@ -318,8 +320,9 @@ inline void Structural::pass(const Local& l, const Gains& g, Memory& s, bool who
   if (s.start > 0) --s.start;
   if (!whole) {
     double ratio = 1.0;
-    for (std::size_t k = 0; k < s.usual.size(); ++k)
-      if (s.usual[k] > 0.0) ratio = std::max(ratio, s.P[k * (s.usual.size() + 1)] / s.usual[k]);
+    const auto usual = s.usual();
+    for (std::size_t k = 0; k < usual.size(); ++k)
+      if (usual[k] > 0.0) ratio = std::max(ratio, s.P[k * (usual.size() + 1)] / usual[k]);
     const double more = ratio > 1.0 ? std::ceil(0.5 * std::log(ratio) * s.pace) : 0.0;
     const double most = std::min<double>(structural::kMostRest, std::max(1, g.recover) + more);
     s.rest = std::max(s.rest, static_cast<int>(most));
