@@ -17,8 +17,12 @@ double least_eigenvalue(const MatrixRef& S) {
 }
 
 Matrix covariance_root(const MatrixRef& P) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(P);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  Vector scale = P.diagonal().cwiseMax(0.0).cwiseSqrt();
+  scale = (scale.array() > 0.0).select(scale, 1.0);
+  const Vector inverse = scale.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(inverse.asDiagonal() * P * inverse.asDiagonal());
+  return scale.asDiagonal() * eigen.eigenvectors() *
+         eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace detail

@@ -9,7 +9,9 @@ namespace garrison::detail {
 /// Least eigenvalue of the symmetric matrix S, n >= 1.
 double least_eigenvalue(const MatrixRef& S);
 
-/// L with L L' = P, from the eigenvalues: P may be singular, and its zeros of either sign by rounding.
+/// L with L L' = P, from the eigenvalues: P may be singular, and its zeros of either sign by rounding. Those
+/// of P scaled to variances of 1: states have units, and what is rounding beside one is all there is of
+/// another.
 Matrix covariance_root(const MatrixRef& P);
 
 }  // namespace garrison::detail

@@ -122,7 +122,7 @@ def test_windows_search_where_there_are_too_many_sets_of_liars() -> None:
     assert found.answered[5:].all()
     assert {name for some in found.proved for name in some} <= {f"agent {i}" for i in (2, 7, 11, 12)}
     levels = gr.certificate.window_levels(1e-6, 6 * 16, 3)
-    window = Plant(model).window(y[-6:])
+    window = Plant(model).window(y[-6:], np.zeros((6, model.states)))
     assert found.radius[-1] < 0.7 * gr.certificate.leverage_window(window, 4, *levels).radius
     small = gr.certify(model, y, attacked=1, method="window", window=6)
     assert small.rule == "W3M"
@@ -198,6 +198,48 @@ def test_models_that_certificates_cannot_use_are_refused() -> None:
         gr.certify(shared, y, attacked=0)
     with pytest.raises(gr.InvalidInput, match="measurements"):
         gr.certify(double_integrator(), np.zeros((4, 5)), attacked=1)
+
+
+def test_inputs_that_hold_an_unstable_plant_are_predicted_with() -> None:
+    rng = np.random.default_rng(1)
+    A, B, C = np.array([[1.2, 0.1], [0, 0.9]]), np.array([[1.0], [0.5]]), np.array([[1.0, 0], [0, 1]] * 4)
+    x, X, Y, U = np.zeros(2), [], [], []
+    for _ in range(600):  # the response of the plant alone would be 1e46
+        u = np.array([-0.7 * x[0] - 0.1 * x[1]])
+        x = A @ x + B @ u + 0.1 * rng.normal(size=2)
+        X.append(x)
+        U.append(u)
+        Y.append(C @ x + 0.1 * rng.normal(size=8))
+    model = gr.Model(A, C, B=B, process_covariance=0.01, measurement_covariance=0.01)
+    for options in ({}, {"moving": True, "window": 6}, {"method": "window", "window": 6}):
+        samples = 600 if not options else 200
+        found = gr.certify(model, np.array(Y)[:samples], attacked=1, inputs=np.array(U)[:samples], **options)
+        assert found.answered[5:].all() and inside(found, np.array(X)[:samples])
+        assert found.box[5:].max() < 1.5 and found.proved[-1] == [] and found.warnings == []
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e-8, 1.0, 1e9])
+def test_units_of_states_do_not_matter(unit: float) -> None:
+    """A clock in seconds beside metres, and a chain of three with a third state in small units."""
+    clock = gr.Model(
+        np.eye(2),
+        [[[1.0, 0.0], [0.0, 1.0]]] * 4,
+        process_covariance=np.diag([1.0, 25 * unit**2]),
+        measurement_covariance=[np.diag([1.0, unit**2])] * 4,
+    )
+    S = np.diag([1.0, 1.0, 1.0 / unit])
+    chain = gr.Model(
+        S @ (np.eye(3) + np.diag([0.1] * 2, 1)) @ np.linalg.inv(S),
+        np.array([[1.0, 0, 0]] * 6),
+        process_covariance=np.diag([0.0, 0.0, 1e-2 / unit**2]),
+        measurement_covariance=1.0,
+    )
+    for model, options in ((clock, {"method": "window", "window": 10}), (clock, {"moving": True}), (chain, {})):
+        for seed in range(3):
+            states, y = record(model, 60, seed)
+            found = gr.certify(model, y, attacked=1, **options)
+            assert inside(found, states) and not np.isnan(found.radius).any()
+            assert found.proved[-1] == [] and found.answered[20:].all()
 
 
 def test_known_inputs_are_taken_out() -> None:

@@ -32,10 +32,10 @@ class Listener:
         for bank in self._banks:
             bank.start_unknown()
 
-    def hear(self, sample: Array) -> None:
-        """One sample (outputs,), in the order of the sources."""
+    def hear(self, sample: Array, moved: Array) -> None:
+        """One sample (outputs,), in the order of the sources; moved: what known inputs add to its state."""
         for bank, rows in zip(self._banks, self._rows, strict=True):
-            if np.isnan(bank.update(sample[rows], *self._levels).radius):
+            if np.isnan(bank.update(sample[rows], *self._levels, u=moved).radius):
                 bank.start_unknown()
 
     @property

@@ -76,9 +76,11 @@ def rule(plant: Plant, s: int, moving: bool, length: int) -> tuple[str, int]:
     return (f"A, {leaves} leaves", leaves) if leaves > 1 else ("W2M", 0)
 
 
-def in_window(plant: Plant, y: Array, s: int, levels: Levels, *, moving: bool) -> certificate.WindowWitness:
+def in_window(
+    plant: Plant, y: Array, moved: Array, s: int, levels: Levels, *, moving: bool
+) -> certificate.WindowWitness:
     """What `rule` says over these samples."""
-    window = plant.window(y)
+    window = plant.window(y, moved)
     name, leaves = rule(plant, s, moving, len(y))
     if name == "W3M":
         return certificate.subsets_window(window, s, *levels, limit=MOST_SETS)
@@ -90,15 +92,24 @@ def in_window(plant: Plant, y: Array, s: int, levels: Levels, *, moving: bool) -
 def alone(plant: Plant, y: Array, s: int, failure: float) -> certificate.Region:
     """What one sample (1, outputs) says: it assumes less than any memory. Leverages, where there are many sets."""
     levels = certificate.window_levels(failure, max(y.size, 1), plant.n)
+    window = plant.window(y, np.zeros((1, plant.n)))
     if comb(len(plant.names), s) > MOST_SETS:
-        return certificate.leverage_window(plant.window(y), s, *levels).region
-    return certificate.subsets_window(plant.window(y), s, *levels, limit=MOST_SETS).region
+        return certificate.leverage_window(window, s, *levels).region
+    return certificate.subsets_window(window, s, *levels, limit=MOST_SETS).region
 
 
 def by_window(
-    plant: Plant, y: Array, s: int, failure: float, length: int, moving: bool, limit: int, tell: Callable[[int], None]
+    plant: Plant,
+    y: Array,
+    moved: Array,
+    s: int,
+    failure: float,
+    length: int,
+    moving: bool,
+    limit: int,
+    tell: Callable[[int], None],
 ) -> Record:
-    """A window of the last samples for every sample: nothing older counts.
+    """A window of the last samples for every sample: nothing older counts. moved: what known inputs add to its state.
 
     Where the liars are always the same, what windows take for white noise is tested over the whole record.
     """
@@ -107,13 +118,14 @@ def by_window(
     if s == 0 or not moving:
         listener = Listener(plant, s, bank_levels(_LISTENING, len(y), y.shape[1], plant.n), limit)
     for t in range(len(y)):
-        part = y[max(0, t + 1 - length) : t + 1]
+        taken = slice(max(0, t + 1 - length), t + 1)
+        part = y[taken]
         levels = certificate.window_levels(failure, max(part.size, 1), plant.n)
-        found = in_window(plant, part, s, levels, moving=moving)
+        found = in_window(plant, part, moved[taken], s, levels, moving=moving)
         if record.take(t, found, last=len(part) - 1) and plant.seen_at_once and len(part) > 1:
             record.agrees(t, found.region, alone(plant, y[t : t + 1], s, failure))
         if listener:
-            listener.hear(y[t, plant.order])
+            listener.hear(y[t, plant.order], moved[t])
         tell(t + 1)
     if listener:
         record.dependence = listener.dependence
@@ -129,6 +141,7 @@ def bank_levels(failure: float, samples: int, outputs: int, n: int) -> Levels:
 def by_bank(
     plant: Plant,
     y: Array,
+    moved: Array,
     s: int,
     failure: float,
     length: int,
@@ -151,16 +164,17 @@ def by_bank(
         bank.start_gaussian(*start)
     for t in range(len(y)):
         if running:
-            found = bank.update(ordered[t], *levels, predict=not (t == 0 and start is not None))
+            found = bank.update(ordered[t], *levels, u=moved[t], predict=not (t == 0 and start is not None))
             running = record.take(t, found)
             if running and plant.seen_at_once:
                 one = alone(plant, y[t : t + 1], s, failure / 4.0 / len(y))
                 running = record.agrees(t, found.region, one)
             first = t + 1
         else:
-            part = y[max(first, t + 1 - length) : t + 1]
+            taken = slice(max(first, t + 1 - length), t + 1)
+            part = y[taken]
             share = certificate.window_levels(failure / 4.0 / len(y), max(part.size, 1), plant.n)
-            found = in_window(plant, part, s, share, moving=False)
+            found = in_window(plant, part, moved[taken], s, share, moving=False)
             running = record.take(t, found)
             if running:
                 bank.restart(found.region)
@@ -197,7 +211,7 @@ def steady_window(plant: Plant, s: int, failure: float, length: int) -> Array | 
     members, pairs = comb(len(plant.names), s), _pairs(len(plant.names), s)
     if pairs == 0:
         return np.full(plant.n, np.inf)
-    window = plant.window(np.zeros((length, len(plant.rows))))
+    window = plant.window(np.zeros((length, len(plant.rows))), np.zeros((length, plant.n)))
     unknowns = plant.n + (length - 1) * plant.root.shape[1]
     if members > MOST_SETS or pairs * unknowns**2 * (unknowns + window.rows) > _MOST_WINDOW:
         return None

@@ -58,13 +58,13 @@ class Plant:
         """Half widths that a bank never exceeds (theorem B2)."""
         return certificate.bank_steady_width(self.A, self.Q, self._sources(), s, *levels, limit)
 
-    def window(self, y: Array) -> certificate.Window:
-        """One regression over these samples (whitened)."""
+    def window(self, y: Array, moved: Array) -> certificate.Window:
+        """One regression over these samples (whitened); moved: what known inputs add to the state of each."""
         found = certificate.Window(self.n, self.root.shape[1], len(y), len(self.names), max(y.size, 1))
         found.begin(len(y))
         for k, sample in enumerate(y):
             if k > 0:
-                found.advance(self.A, self.root, np.zeros(self.n))
+                found.advance(self.A, self.root, moved[k])
             for source, row, value in zip(self.source, self.rows, sample, strict=True):
                 found.add(int(source), row, value, 1.0)
         return found
@@ -86,9 +86,12 @@ def model_agents(model: _core.Model) -> list[str]:
 
 
 def _root(Q: Array) -> Array:
-    values, vectors = np.linalg.eigh((Q + Q.T) / 2)
+    """Gam with Gam Gam' = Q, without its zero columns: zero where all variances are scaled to 1, since units differ."""
+    deviation = np.sqrt(np.diag(Q))
+    scale = np.where(deviation > 0, deviation, 1.0)
+    values, vectors = np.linalg.eigh((Q + Q.T) / 2 / np.outer(scale, scale))
     kept = values > 1e-14 * max(float(values.max()), 0.0)
-    return np.asarray(vectors[:, kept] * np.sqrt(values[kept]))
+    return np.asarray(scale[:, None] * vectors[:, kept] * np.sqrt(values[kept]))
 
 
 def _factors(R: list[Array], source: NDArray[np.int_]) -> list[Array]:

@@ -97,18 +97,16 @@ def certify(
     first = _start(model.states, start, start_covariance, chosen)
     tell = arguments.callback("progress", progress)
     told = (lambda done: tell(done, len(y))) if tell else (lambda _: None)
-    driven = _driven(model, inputs_of(model, inputs, len(y)), len(y))
-    if first is not None:
-        first = first[0] - driven[0], first[1]
-    white = plant.whitened(y - driven @ np.concatenate([np.asarray(C) for C in model.C]).T)
+    moved = _moved(model, inputs_of(model, inputs, len(y)), len(y))
+    white = plant.whitened(y)
     if chosen == "bank":
-        record = by_bank(plant, white, s, failure, length, first, _MOST_MEMBERS, told)
+        record = by_bank(plant, white, moved, s, failure, length, first, _MOST_MEMBERS, told)
         for_ever = steady(plant, s, failure, len(y))
     else:
-        record = by_window(plant, white, s, failure, length, moving, _MOST_MEMBERS, told)
+        record = by_window(plant, white, moved, s, failure, length, moving, _MOST_MEMBERS, told)
         for_ever = None if moving else steady_window(plant, s, failure, length)
     return Certified(
-        center=record.center + driven,
+        center=record.center,
         box=record.box,
         radius=record.radius,
         proved=[[plant.names[k] for k in some] for some in record.proved],
@@ -134,18 +132,13 @@ def _warnings(record: Record, plant: Plant, model: _core.Model, failure: float) 
     return lines + of_dependence(evidence, 1, f"source {plant.names[source]}", correlation, pairs)
 
 
-def _driven(model: _core.Model, inputs: Array, samples: int) -> Array:
-    """What known inputs alone did to the state by every sample (docs/adr/0016)."""
-    states = np.zeros((samples, model.states))
+def _moved(model: _core.Model, inputs: Array, samples: int) -> Array:
+    """What the known inputs add to the state of every sample: B u."""
     if not inputs.size:
-        return states
+        return np.zeros((samples, model.states))
     if len(inputs) != samples:
         raise refusal("inputs", f"{len(inputs)} rows", f"{samples}, one per row of the measurements")
-    response = _core.Response(model)
-    for k, u in enumerate(inputs):
-        response.advance(u)
-        states[k] = response.state
-    return states
+    return np.asarray(inputs @ np.asarray(model.B).T, dtype=float)
 
 
 def _method(method: Any, moving: bool, members: int) -> str:

@@ -39,7 +39,9 @@ inline void Structural::settle(const Local& l, const Gains& g, Memory& s) noexce
 inline std::vector<double> Structural::fixed(const Local& l, const Gains& g) {
   const int nn = l.states;
   const std::size_t size = structural::entries(nn);
-  std::vector<double> all(2 * size, 0.0);
+  std::vector<double> all;
+  all.reserve(2 * size + static_cast<std::size_t>(nn));
+  all.resize(2 * size, 0.0);
   for (int k = 0; k < nn; ++k) all[static_cast<std::size_t>(k) * (static_cast<std::size_t>(nn) + 1)] = 1.0;
   const auto id = static_cast<std::size_t>(l.id);
   for (int at = g.offsets[id]; at < g.offsets[id + 1]; ++at) {
