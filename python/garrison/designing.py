@@ -74,11 +74,11 @@ class Designed(Result):
 
     def __str__(self) -> str:
         c = self.chosen
+        fewest = f"{count(self.fewest_rounds, 'round')} {'is' if self.fewest_rounds == 1 else 'are'} the fewest"
         return (
-            f"{self.filter!r}\nstands {count(self.attacked, 'liar')} with an error of at most {self.error:.4g} in the long "
-            f"run; {count(c.rounds, 'round')}, {count(c.bytes_per_sample, 'byte')} per sample; "
-            f"{count(self.fewest_rounds, 'round')} "
-            f"{'is' if self.fewest_rounds == 1 else 'are'} the fewest"
+            f"{self.filter!r}\n"
+            f"stands {count(self.attacked, 'liar')} with an error of at most {self.error:.4g} in the long run; "
+            f"{count(c.rounds, 'round')}, {count(c.bytes_per_sample, 'byte')} per sample; {fewest}"
         )
 
     def plot(self) -> Figure:
