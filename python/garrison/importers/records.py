@@ -127,7 +127,7 @@ def import_csv(path: Path, choice: Choice | None = None) -> Bundle:
         *records.notes,
         "the records up to the end of the fit are taken as right; --to chooses another end",
         "a model that was fitted alarms more often than asked: garrison calibrate finds what to ask for, from "
-        f"{1 / choice.false_alarm:.0f} tests on (one per sensor and record after the fit) with the rate of this scenario",
+        f"{1 / choice.false_alarm:.0f} tests on (one per sensor and record after the fit) for the rate asked for",
     ]
     return RecordsBundle(tables, SOURCE, None, None, facts, notes, copies)
 
