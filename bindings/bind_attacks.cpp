@@ -122,7 +122,7 @@ std::string documentation(const AttackInfo& info) {
                      "`schedule`.\n";
   for (const ParamInfo& p : info.params) body += described(p) + "\n";
   body +=
-      R"(start : int, optional | First sample that is attacked, >= 1; default 1.
+      R"(start : int, optional | First sample that is attacked; below 1 is as 1; default 1.
 stop : int, optional | First sample that is not attacked any more; default: never.
 schedule : sequence of (start, agents), optional | Phases in order of time, instead of agents and start.
 probability : float | Chance that an agent is attacked at a sample, 0..1.

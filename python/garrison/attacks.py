@@ -120,7 +120,7 @@ def custom(
     agents : int or sequence of int, optional
         Ids that are attacked from `start` on; or give `schedule`.
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -166,7 +166,7 @@ def custom_message(
     agents : int or sequence of int, optional
         Ids that are attacked from `start` on; or give `schedule`.
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -217,7 +217,7 @@ def worst_covariance(
         "steady" maximises the network's MSE over a cycle of the periodic steady state; "one_step" the next step alone,
         (37) of the paper.
     start : int
-        First sample that is attacked, >= 1.
+        First sample that is attacked; below 1 is as 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
 

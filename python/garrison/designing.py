@@ -16,7 +16,7 @@ from garrison.drawing import drawn
 from garrison.drivers import simulate
 from garrison.filters import make_filter
 from garrison.result import Result
-from garrison.words import hinted, hinted_methods, near, refusal, require_plant
+from garrison.words import count, hinted, hinted_methods, near, refusal, require_plant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,6 +26,8 @@ GOALS = ("error", "bytes", "liars")
 _FAMILIES = ("saturation",)
 #: rounds of the trade-off curve: so many, at equal factors
 _CURVE = 16
+#: ||A|| of a plant that keeps some direction comes out this close to 1
+_ROUNDING = 1e-12
 
 
 @hinted_methods
@@ -72,9 +74,11 @@ class Designed(Result):
 
     def __str__(self) -> str:
         c = self.chosen
+        fewest = f"{count(self.fewest_rounds, 'round')} {'is' if self.fewest_rounds == 1 else 'are'} the fewest"
         return (
-            f"{self.filter!r}\nstands {self.attacked} liars with an error of at most {self.error:.4g} in the long run; "
-            f"{c.rounds} rounds, {c.bytes_per_sample} bytes per sample; {self.fewest_rounds} rounds are the fewest"
+            f"{self.filter!r}\n"
+            f"stands {count(self.attacked, 'liar')} with an error of at most {self.error:.4g} in the long run; "
+            f"{count(c.rounds, 'round')}, {count(c.bytes_per_sample, 'byte')} per sample; {fewest}"
         )
 
     def plot(self) -> Figure:
@@ -113,7 +117,8 @@ def design(
     goal : {"error", "bytes", "liars"}
         "error": the smallest certified error (within 1e-6 of it, where the bound of a plant that contracts only
         falls with the threshold); "bytes": the fewest rounds whose certified error is at most
-        `error_at_most`; "liars": the smallest certified error with the most liars for which one exists.
+        `error_at_most`; "liars": the smallest certified error with the most liars s for which one exists and
+        lambda_0 > s, so that it does not rest on the contraction of the plant alone.
     error_at_most : float, optional
         With "bytes"; default any.
     chebyshev : bool
@@ -187,9 +192,10 @@ class _Saturation:
 
     def _setting(self, attacked: int) -> saturation.Setting:
         found = self._check(attacked)
+        a = found["||A||"]
         return saturation.Setting(
             agents=self.model.agents,
-            a=found["||A||"],
+            a=1.0 if 1.0 - _ROUNDING < a < 1.0 else a,  # a bound that rests on such a contraction rests on rounding
             lambda0=found["lambda_0"],
             contraction=0.0,
             attacked=attacked,
@@ -218,9 +224,15 @@ class _Saturation:
         return dict(saturation.design(self._setting(attacked), gamma, chebyshev=self.chebyshev, **options))
 
     def most_liars(self) -> int:
-        """The most for which a design exists; more liars never make one feasible."""
+        """The most for which a design exists that uses the sensors; more liars never make one feasible.
+
+        With lambda_0 <= s a plant that contracts has a bound by its contraction alone: no liars are stood, all
+        sensors are ignored.
+        """
         last = -1
         for attacked in range(self.model.agents + 1):
+            if attacked > 0 and self._check(attacked)["lambda_0"] <= attacked:
+                break
             try:
                 self._design(attacked, 1, self.most, 1e-9)
             except _core.DesignInfeasible:

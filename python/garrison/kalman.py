@@ -52,7 +52,8 @@ def central_kalman(
     start_variance : float
         Variance of every entry of `start`, >= 0.
     gate : float, optional
-        Probability, 0..1, at which an honest output is left out by a chi-square test of its own innovation.
+        Probability, in (0, 1), or 0 for none, at which an honest output is left out by a chi-square test of its own
+        innovation.
     huber : float, optional
         Deviations, > 0 (1.345 is usual), from which on a larger residual pulls no harder (M-estimation by iterated
         weights, Durovic and Kovacevic 1999).

@@ -120,7 +120,8 @@ def _read(path: Path, how: dict[str, Any]) -> tuple[dict[str, Any], dict[str, An
 def _require_whole(path: Path, rest: list[str]) -> None:
     """Refuse a run of which some arrays lack times."""
     if rest:
-        got = f"{path}, whose {', '.join(rest)} lack times (garrison.every)"
+        lacks = "lacks" if len(rest) == 1 else "lack"
+        got = f"{path}, whose {', '.join(rest)} {lacks} times (garrison.every)"
         raise refusal("load", got, "a run that has all times", "xarray.open_zarr reads it")
 
 

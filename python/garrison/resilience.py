@@ -62,7 +62,7 @@ def resilience_per_byte(
     agents : iterable of int
         The attackers.
     gain : float
-        Of filters.PartialSharing, > 0.
+        Of filters.PartialSharing, >= 0.
     energy : float
         Largest trace of the covariance of the attack.
     shared : iterable of int, optional
@@ -84,6 +84,10 @@ def resilience_per_byte(
         got = f"({type(model).__name__}, {type(network).__name__})"
         raise refusal("resilience_per_byte", got, "(model, network, agents)")
     liars = whole_numbers("agents", agents)
+    if wrong := [a for a in liars if not 0 <= a < model.agents]:
+        raise refusal("agents", str(wrong[0]), f"numbers in 0..{model.agents - 1}")
+    if twice := [a for a in liars if liars.count(a) > 1]:
+        raise refusal("agents", f"{twice[0]} twice", "every agent once")
     out = []
     for entries in range(1, model.states + 1) if shared is None else whole_numbers("shared", shared, 1):
         filt = PartialSharing(gain=gain, shared=entries, **params)

@@ -200,8 +200,15 @@ def count(number: int, noun: str, plural: str = "") -> str:
     return f"{number} {noun if number == 1 else plural or noun + 's'}"
 
 
+def _require_constant(function: str, model: object) -> None:
+    kind = type(model).__name__
+    if kind in ("VaryingModel", "NonlinearModel"):
+        raise refusal(function, f"a {kind}", "a constant Model", f"simulate and replay take a {kind}")
+
+
 def require_plant(function: str, model: object, network: object) -> None:
     """Refuse what is no model and no network, or these in another order."""
+    _require_constant(function, model)
     if not isinstance(model, _core.Model) or not isinstance(network, _core.Network):
         raise refusal(function, f"({type(model).__name__}, {type(network).__name__}, ..)", "(model, network, ..)")
 
@@ -219,6 +226,7 @@ def require_order(function: str, model: object, network: object, filter: object)
     given = (model, network, filter)
     if all(isinstance(value, kind) for value, (_, kind) in zip(given, kinds, strict=True)):
         return
+    _require_constant(function, model)
     got = [next((name for name, kind in kinds if isinstance(v, kind)), _kind(v)) for v in given]
     old = "; the order changed: it is the same everywhere now" if sorted(got) == ["filter", "model", "network"] else ""
     raise _core.InvalidInput(f"{function}: got ({', '.join(got)}), expected (model, network, filter){old}")

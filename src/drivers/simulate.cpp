@@ -14,7 +14,7 @@ Record simulate(const Prepared& prepared, const PlantOptions& plant, const RunOp
   const bool own = prepared.filter().own_states();
   const int width = own ? model.agents() * model.states() : model.states();
   if (plant.x0.size() != 0 && plant.x0.size() != width)
-    refuse("x0", std::to_string(plant.x0.size()) + " numbers",
+    refuse("x0", std::to_string(plant.x0.size()) + (plant.x0.size() == 1 ? " number" : " numbers"),
            std::to_string(width) + (own ? ", one per agent and state" : ", one per state"));
   if (!plant.x0.allFinite()) refuse("x0", "a number that is not finite", "a finite initial state");
   if (!(plant.start_error >= 0.0) || !std::isfinite(plant.start_error))

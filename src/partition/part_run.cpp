@@ -79,7 +79,7 @@ PartRun::PartRun(PartRunner& runner, const Model& model, std::vector<int> ids, i
     runner.require(*attack, agents);
   }
   if (plant_.x0.size() != 0 && plant_.x0.size() != model.states())
-    refuse("x0", std::to_string(plant_.x0.size()) + " numbers",
+    refuse("x0", std::to_string(plant_.x0.size()) + (plant_.x0.size() == 1 ? " number" : " numbers"),
            std::to_string(model.states()) + ", one per state");
   if (options_.start.size() == 0) options_.start = Vector::Zero(model.states());
   if (options_.start.rows() != model.states() || options_.start.cols() != 1)

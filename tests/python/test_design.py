@@ -148,3 +148,28 @@ steps = 5
     assert main(["design", str(scenario), "--initial-error", "2", "--goal", "liars", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["attacked"] >= 1
     assert main(["design", str(scenario), "--initial-error", "2", "--attacked", "8"]) == 2
+
+
+def test_a_contraction_by_rounding_stands_no_liars():
+    """||A|| is 1 exactly (eigenvalues 1 and 0.96) and comes out a few 1e-16 below it."""
+    model = gr.Model(
+        [[0.98, 0.02], [0.02, 0.98]], [[[1.0, 0.0]], [[0.0, 1.0]]] * 4, process_bound=0.01, measurement_bound=0.05
+    )
+    found = gr.design(model, gr.Network.complete(8), initial_error=3.0, goal="liars", curve=False)
+    assert found.attacked == 1
+    assert found.error < 1.0
+    assert "stands 1 liar with" in str(found)
+    assert "1 round," in str(found)
+    with pytest.raises(gr.DesignInfeasible, match=r"lambda0 < s = 8.*attacked = 1 is feasible"):
+        gr.design(model, gr.Network.complete(8), attacked=8, initial_error=3.0)
+
+
+def test_most_liars_are_those_that_the_sensors_stand():
+    """A plant that contracts has a bound without any sensor: these are not the liars that are stood."""
+    model = gr.Model(
+        [[0.9, 0.0], [0.0, 0.9]], [[[1.0, 0.0]], [[0.0, 1.0]]] * 4, process_bound=0.01, measurement_bound=0.05
+    )
+    assert gr.design(model, gr.Network.complete(8), attacked=3, initial_error=3.0, curve=False).error > 0
+    found = gr.design(model, gr.Network.complete(8), initial_error=3.0, goal="liars", curve=False)
+    assert found.attacked == 1
+    assert gr.check(model, gr.Network.complete(8), found.filter)["lambda_0"] > 1

@@ -483,3 +483,37 @@ def test_near_names_are_near(slip: str, meant: str) -> None:
 
 def test_verdicts_by_their_words() -> None:
     assert gr.Verdict("not tested") is gr.Verdict.NOT_TESTED is gr.Verdict("NOT_TESTED") is gr.Verdict(4)
+
+
+def test_agents_of_resilience_are_named_as_agents() -> None:
+    for agents, words in (([9], r"^agents: got 9, expected numbers in 0\.\."), ([0, 0], "^agents: got 0 twice")):
+        with pytest.raises(gr.InvalidInput, match=words):
+            gr.resilience_per_byte(MODEL, NET, agents, gain=0.1, energy=1.0)
+
+
+def test_what_takes_a_constant_model_says_who_takes_others() -> None:
+    varying = gr.VaryingModel(MODEL, A=[MODEL.A, MODEL.A])
+    rest = "got a VaryingModel, expected a constant Model; simulate and replay take a VaryingModel"
+    for function in (gr.prepare, gr.check):
+        with pytest.raises(gr.InvalidInput, match=f"^{function.__name__}: {rest}"):
+            function(varying, NET, gr.filters.ScalarGain(rounds=1))
+    with pytest.raises(gr.InvalidInput, match=f"^design: {rest}"):
+        gr.design(varying, NET, attacked=0, initial_error=1.0)
+    with pytest.raises(gr.InvalidInput, match=r"^size: got -1, expected a finite number > 0"):
+        gr.compare(MODEL, NET, [0], size=-1)
+
+
+def test_a_start_below_1_is_as_1() -> None:
+    runs = [
+        gr.simulate(*PARTS, steps=5, seed=1, attack=gr.attacks.Bias(agents=[0], value=3.0, start=start))
+        for start in (1, 0, -1, 2)
+    ]
+    for run in runs[1:3]:
+        np.testing.assert_array_equal(run.measurements, runs[0].measurements)
+    assert not np.array_equal(runs[3].measurements, runs[0].measurements)
+
+
+def test_one_number_is_one_number() -> None:
+    model = gr.Model(np.eye(2) * 0.8, [np.eye(2)[:1], np.eye(2)[1:]], process_bound=0.1, measurement_bound=0.1)
+    with pytest.raises(gr.InvalidInput, match="x0: got 1 number, expected 2"):
+        gr.simulate(model, gr.Network.path(2), gr.filters.ScalarGain(rounds=1), steps=1, x0=[1.0])

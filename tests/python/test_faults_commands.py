@@ -206,16 +206,21 @@ SOURCES = UNIT.replace(
             UNIT,
             "[run]",
             "[[attack]]\nkind = 'bias'\nvalue = 1.0\nagents = []\n[run]",
-            "[[attack]] 1.agents: got no agents",
+            "attack[0].agents: got no agents",
         ),
-        (UNIT, "[run]", "[[attack]]\nkind = 'silence'\nagents = []\n[run]", "[[attack]] 1.agents: got no agents"),
+        (UNIT, "[run]", "[[attack]]\nkind = 'silence'\nagents = []\n[run]", "attack[0].agents: got no agents"),
         (
             UNIT,
             "[run]",
             "[[attack]]\nkind = 'bias'\nvalue = 1.0\nschedule = []\n[run]",
-            "[[attack]] 1: schedule: got no phase",
+            "attack[0]: schedule: got no phase",
         ),
-        (UNIT, "[run]", "[[attack]]\nkind = 'bias'\nvalue = 1.0\nschedule = [[3, []]]\n[run]", "1.schedule: got no"),
+        (
+            UNIT,
+            "[run]",
+            "[[attack]]\nkind = 'bias'\nvalue = 1.0\nschedule = [[3, []]]\n[run]",
+            "attack[0].schedule: got no",
+        ),
         (
             SOURCES,
             "faulty = 0",
@@ -401,11 +406,11 @@ def test_lines_that_are_no_toml_are_shown(
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("[run]", '[[compare]]\nname = "rdkf"\nweigth = 1\n[run]', "[[compare]] 1 rdkf: got the unknown key 'weigth'"),
+        ("[run]", '[[compare]]\nname = "rdkf"\nweigth = 1\n[run]', "compare[0] rdkf: got the unknown key 'weigth'"),
         (
             "[run]",
             '[[compare]]\nname = "dkf"\n[[compare]]\nname = "rdkf"\nweight = -1\n[run]',
-            "[[compare]] 2 rdkf.weight",
+            "compare[1] rdkf.weight",
         ),
         ("[run]", '[[compare]]\nname = "central_kalman"\nlabel = "ideal"\ngate = -1\n[run]', "ideal gate: got -1"),
         (

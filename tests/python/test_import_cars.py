@@ -182,7 +182,9 @@ def test_strangers_in_a_string_are_refused(tmp_path: Path) -> None:
         import_openacc([SAMPLE, SAMPLE])
     with pytest.raises(_core.IoError, match="No such file"):
         import_openacc([tmp_path / "absent.csv"])
-    with pytest.raises(_core.InvalidInput, match="--attacked: got 3"):
+    with pytest.raises(
+        _core.InvalidInput, match=r"--attacked: got 3, expected 1\.\.\d: at most half of the other cars"
+    ):
         import_openacc([SAMPLE], Noise(attacked=3))
 
 

@@ -138,12 +138,12 @@ REFUSED = [
     ("plant.toml", "steps = 20", "steps = 20\n[link]\ndrop = 10", ["[link].drop", "10", "0..1"]),
     ("plant.toml", "steps = 20", "steps = 20\n[link]\ndelay_rounds = 1.5", ["delay_rounds", "1.5"]),
     ("plant.toml", "steps = 20", "steps = 20\n[data]", ["[data]", "no file"]),
-    ("plant.toml", "start = 10", "start = 21", ["[[attack]] 1.start", "21", "20 samples"]),
-    ("plant.toml", "start = 10", 'start = "1961-01-01"', ["[[attack]] 1.start", "sample number"]),
-    ("plant.toml", "start = 10", "start = 10.5", ["[[attack]] 1.start", "10.5"]),
-    ("plant.toml", "start = 10", "start = true", ["[[attack]] 1.start", "true"]),
-    ("plant.toml", "start = 10", "schedule = [1, 2]", ["[[attack]] 1.schedule", "pairs"]),
-    ("plant.toml", "agents = [1]", "agents = [true]", ["[[attack]] 1.agents", "true"]),
+    ("plant.toml", "start = 10", "start = 21", ["attack[0].start", "21", "20 samples"]),
+    ("plant.toml", "start = 10", 'start = "1961-01-01"', ["attack[0].start", "sample number"]),
+    ("plant.toml", "start = 10", "start = 10.5", ["attack[0].start", "10.5"]),
+    ("plant.toml", "start = 10", "start = true", ["attack[0].start", "true"]),
+    ("plant.toml", "start = 10", "schedule = [1, 2]", ["attack[0].schedule", "pairs"]),
+    ("plant.toml", "agents = [1]", "agents = [true]", ["attack[0].agents", "true"]),
     ("plant.toml", "agents = [1]", "agents = [1.5]", ["1.5", "whole number"]),
     ("plant.toml", "agents = [1]", 'agents = "DUB"', ["DUB"]),
     ("plant.toml", "agents = [1]", "agents = 6", ["6", "0..4"]),
@@ -151,7 +151,7 @@ REFUSED = [
     ("plant.toml", "value = 5.0", "value = {}", ["value", "a number"]),
     ("plant.toml", "value = 5.0", "value = 1961-01-01", ["value", "1961-01-01"]),
     ("plant.toml", "value = 5.0", "valeu = 5.0", ["valeu", "value"]),
-    ("plant.toml", 'kind = "bias"', "kind = 3", ["[[attack]] 1.kind", "3"]),
+    ("plant.toml", 'kind = "bias"', "kind = 3", ["attack[0].kind", "3"]),
     ("plant.toml", 'kind = "ring"', 'kind = "ring"\nagents = 4', ["[network]", "4", "5"]),
     ("plant.toml", 'kind = "ring"', 'kind = "complete"\nagents = 2147483647', ["2147483647", "5"]),
     ("plant.toml", 'kind = "ring"', 'kind = "band"', ["range"]),
@@ -230,9 +230,9 @@ REFUSED = [
     ("wind.toml", "radius_km = 180", "radius_km = -1", ["radius_km", "-1"]),
     ("wind.toml", 'file = "wind.csv"', "file = 3", ["[data].file", "3"]),
     ("wind.toml", 'file = "wind.csv"', 'file = "none.csv"', ["none.csv"]),
-    ("wind.toml", 'start = "1961-04-01"', 'start = "1999-04-01"', ["[[attack]] 1.start", "1961-03-01..1961-06-29"]),
-    ("wind.toml", 'start = "1961-04-01"', 'start = "1960-04-01"', ["[[attack]] 1.start", "1961-03-01..1961-06-29"]),
-    ("wind.toml", 'start = "1961-04-01"', "start = 200", ["[[attack]] 1.start", "200", "121 samples"]),
+    ("wind.toml", 'start = "1961-04-01"', 'start = "1999-04-01"', ["attack[0].start", "1961-03-01..1961-06-29"]),
+    ("wind.toml", 'start = "1961-04-01"', 'start = "1960-04-01"', ["attack[0].start", "1961-03-01..1961-06-29"]),
+    ("wind.toml", 'start = "1961-04-01"', "start = 200", ["attack[0].start", "200", "121 samples"]),
     ("wind.toml", 'agents = ["DUB"]', 'agents = ["DUBL"]', ["DUBL", "DUB"]),
     ("wind.toml", "[data]", "[noise]\nlaw = 'normal'\n[data]", ["[noise]", "[data]"]),
     ("wind.toml", "[data]", "[run]\nx0 = [1.0]\n[data]", ["[run].x0", "[data]"]),
@@ -412,3 +412,21 @@ def test_python_m_garrison() -> None:
 
     found = subprocess.run([sys.executable, "-m", "garrison", "--version"], capture_output=True, text=True, check=True)
     assert found.stdout.startswith("garrison ")
+
+
+def test_what_is_refused_is_named_as_it_was_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plant = tmp_path / "plant.toml"
+    plant.write_text(PLANT, encoding="utf-8")
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "notes.txt").touch()
+    other = str(tmp_path / "other")
+    for command, words in (
+        (["compare", str(plant), "--size", "-1"], "--size: got -1, expected a finite number > 0"),
+        (["design-file", str(plant)], f"{plant}: design file: got"),
+        (["sweep", str(plant), "--set", "filter.rounds=1", "-o", other], f"-o: got {other}, which holds"),
+        (["run", str(plant), "--set", "attack[0].agents=[9]"], "attack[0].agents: got 9, expected numbers in 0.."),
+    ):
+        assert main(command) == 2
+        assert words in capsys.readouterr().err
+    assert main(["verify", str(plant)]) == 1
+    assert "file: is no JSON from line" in capsys.readouterr().out

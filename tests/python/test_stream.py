@@ -134,8 +134,14 @@ def test_times_can_be_left_out(sizes: None, tmp_path: Path) -> None:
     assert run.estimate is None and run.truth is None and "truth" not in data and "bound" not in data
     with pytest.raises(gr.InvalidInput, match=r"load: got .*, whose measurements, estimate lack times"):
         gr.Run.load(tmp_path / "run.zarr")
-    with pytest.raises(gr.InvalidInput, match=r"keep\['estimate'\]: got garrison.every\(7\) without to"):
+    words = r"keep\['estimate'\]: got garrison.every\(7\) without to.*run\.estimate\[:, ::7\]"
+    with pytest.raises(gr.InvalidInput, match=words):
         gr.simulate(STEERED, RING, FILTERS[0], **given, keep=keep)
+    gr.simulate(STEERED, RING, FILTERS[0], **given, keep={"estimate": gr.every(7)}, to=tmp_path / "one.zarr")
+    with pytest.raises(gr.InvalidInput, match=r"load: got .*, whose estimate lacks times"):
+        gr.Run.load(tmp_path / "one.zarr")
+    with pytest.raises(gr.InvalidInput, match=r"run\.measurements\[:, 3::4\]"):
+        gr.simulate(STEERED, RING, FILTERS[0], **given, keep={"measurements": gr.every(4)})
 
 
 def test_a_mapping_keeps_what_it_names_and_no_more() -> None:
@@ -240,7 +246,9 @@ def test_places_that_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_what_is_too_large_is_refused_with_its_size(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("GARRISON_MEMORY_GB", "0.001")
-    with pytest.raises(gr.InvalidInput, match=r'9000 samples .* would take .* GB, .*; keep less .*to="run.zarr"'):
+    with pytest.raises(
+        gr.InvalidInput, match=r'9000 samples .* would take .* GB, .*; take fewer .* keep less .*to="run.zarr"'
+    ):
         gr.simulate(MODEL, RING, FILTERS[0], steps=9000)
     run = gr.simulate(MODEL, RING, FILTERS[0], steps=9000, to=tmp_path / "run.zarr")
     assert run.error is not None and np.isfinite(run.error[0, -1]).all()

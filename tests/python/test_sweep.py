@@ -262,3 +262,15 @@ def test_sweeps_of_no_end_are_refused_at_once(tmp_path: Path, capsys: pytest.Cap
     assert "filter.threshold: got 1000000000 values, expected at most 1000000" in capsys.readouterr().err
     assert main([*given, "filter.threshold=0.5:1:2000", "--set", "run.seed=1:2000:2000"]) == 2
     assert "got 4000000 points in all" in capsys.readouterr().err
+
+
+def test_a_key_whose_values_are_words_is_a_column_of_texts(scenario: Path, tmp_path: Path) -> None:
+    pq = pytest.importorskip("pyarrow.parquet")
+    words = {"network.kind": ["ring", "complete"], "filter.rounds": [6, "x"], "attack.value": [1, 5]}
+    found = gr.sweep(scenario, out=tmp_path / "words", set=words, trials=1)
+    assert len(found.refused) == 4  # rounds = "x", one row for each
+    table = pq.read_table(tmp_path / "words" / "trials.parquet").to_pydict()
+    assert set(table["network.kind"]) == {"ring", "complete"}
+    assert set(table["filter.rounds"]) == {"6", "x"}
+    assert set(table["attack.value"]) == {1.0, 5.0}
+    assert all(isinstance(text, str) for text in table["scenario_hash"])

@@ -1,6 +1,7 @@
 """`garrison compare`: all families and baselines against all attacks on a scenario's plant."""
 
 import argparse
+import math
 import sys
 from typing import Any
 
@@ -48,6 +49,8 @@ def do(args: argparse.Namespace) -> int:
     target = new_file(args.output, args.force) if args.output else None
     scenario = read_scenario(args.scenario)
     scenario.require_constant("compare")
+    if args.size is not None and not 0 < args.size < math.inf:
+        raise refusal("--size", f"{args.size:g}", "a finite number > 0")
     own = {label: filter for label, filter in scenario.filters if filter is not None}
     attacked = _agents(args.agents, scenario.names) if args.agents else scenario.hit
     if not attacked:

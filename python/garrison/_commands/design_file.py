@@ -10,6 +10,7 @@ from garrison import _core
 from garrison._commands.terminal import OK, Commands, print_json
 from garrison.files import contents
 from garrison.prepared import Prepared
+from garrison.scenario.section import renamed
 from garrison.words import count
 
 
@@ -27,7 +28,7 @@ def add(commands: Commands) -> None:
 def do(args: argparse.Namespace) -> int:
     """Run the command."""
     data = contents(Path(args.file))
-    summary = _core.design_summary(data)
+    summary = _summary(args.file, data)
     whole = summary["agent"] is None
     gains = Prepared.from_bytes(data).outline if args.show and whole else []
     if args.json:
@@ -46,6 +47,13 @@ def do(args: argparse.Namespace) -> int:
     for line in gains:
         print(f"  {line}")
     return OK
+
+
+def _summary(file: str, data: bytes) -> dict[str, Any]:
+    try:
+        return dict(_core.design_summary(data))
+    except _core.Error as error:
+        raise renamed(error, f"{file}:") from None
 
 
 #: numbers in a matrix, and entries of a list, that are printed in full

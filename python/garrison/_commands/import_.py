@@ -62,13 +62,15 @@ def _openacc(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentPars
     own.add_argument(
         "--measurement-noise",
         type=number,
-        help="bound on that of odometers and gaps, m (default: 2, or what admits all but --attacked)",
+        help="bound on the noise of odometers and gaps, m (default: 2, or what admits all but --attacked)",
     )
-    own.add_argument("--process-noise", type=number, default=0.06, help="bound on that of a sample, m and m/s (0.06)")
+    own.add_argument(
+        "--process-noise", type=number, default=0.06, help="bound on the process noise of a sample, m and m/s (0.06)"
+    )
     own.add_argument(
         "--initial-error",
         type=number,
-        help="bound on that of the first estimate, m (10 times the measurement noise)",
+        help="bound on the error of the first estimate, m (10 times the measurement noise)",
     )
     own.add_argument("--from", dest="start", type=number, metavar="SECONDS", help="first time that is used")
     own.add_argument("--to", dest="end", type=number, metavar="SECONDS", help="last time that is used")
@@ -136,9 +138,11 @@ def _mcap(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentParser:
 
 
 def _robot(own: argparse.ArgumentParser) -> None:
-    own.add_argument("--topic", action="append", default=[], help="use this topic, as often as wanted; default all")
+    own.add_argument("--topic", action="append", default=[], help="use this topic; may be repeated (default: all)")
     own.add_argument("--period", type=number, default=0.1, help="sampling period, s (0.1)")
-    own.add_argument("--align", type=number, default=60.0, help="s from the start in which frames are aligned (60)")
+    own.add_argument(
+        "--align", type=number, default=60.0, help="seconds at the start that are used to align the frames (60)"
+    )
     own.add_argument("--position-noise", type=number, default=0.5, help="standard deviation of positions, m (0.5)")
     own.add_argument("--heading-noise", type=number, default=0.1, help="standard deviation of headings, rad (0.1)")
     own.add_argument("--velocity-noise", type=number, default=0.3, help="standard deviation of velocities, m/s (0.3)")
@@ -177,7 +181,7 @@ def _pandapower(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentP
         "--units", type=whole_number, metavar="COUNT", help="phasor units, at the buses with most lines"
     )
     chosen.add_argument("--at", nargs="+", metavar="BUS", help="buses with a phasor unit; default all")
-    own.add_argument("--steps", type=whole_number, help="samples to simulate (50; 10 from 200 buses on)")
+    own.add_argument("--steps", type=whole_number, help="samples to simulate (50; 10 above 200 buses)")
     own.add_argument(
         "--angle-noise", type=number, default=0.002, help="standard deviation of measured angles, rad (0.002)"
     )
@@ -185,7 +189,12 @@ def _pandapower(kinds: "Parsers[argparse.ArgumentParser]") -> argparse.ArgumentP
         "--flow-noise", type=number, default=0.02, help="standard deviation of measured flows, per unit (0.02)"
     )
     own.add_argument("--wander", type=number, default=0.001, help="how far an angle moves per sample, rad (0.001)")
-    own.add_argument("--areas", type=whole_number, metavar="COUNT", help="divide the buses among so many agents")
+    own.add_argument(
+        "--areas",
+        type=whole_number,
+        metavar="COUNT",
+        help="divide the buses among so many agents (8 for 41 to 200 buses with more than 40 units, else one per unit)",
+    )
     own.set_defaults(make=_make_pandapower)
     return own
 

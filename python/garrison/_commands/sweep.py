@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from garrison import _core
 from garrison._commands.output import write_picture
 from garrison._commands.terminal import (
     INTERRUPTED,
@@ -87,6 +88,9 @@ def do(args: argparse.Namespace) -> int:
             independent=args.independent,
             progress=_tell if sys.stderr.isatty() else None,
         )
+    except _core.InvalidInput as error:
+        words = str(error)
+        raise type(error)(f"-o{words[3:]}" if words.startswith("out:") else words) from None
     except KeyboardInterrupt:
         again = shlex.join(["garrison", *sys.argv[1:]])
         print(f"\ngarrison: interrupted; what is done is kept, go on with: {again}", file=sys.stderr)

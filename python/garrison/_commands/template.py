@@ -6,7 +6,7 @@ TEMPLATE = """\
 # All filters and attacks with their parameters: garrison list
 title = "Two states, six sensors, one liar"
 
-[model]  # x(t) = A x(t-1) + w(t), and sensor i measures y_i(t) = C_i x(t) + v_i(t)
+[model]  # x(t) = A x(t-1) + w(t-1), and sensor i measures y_i(t) = C_i x(t) + v_i(t)
 A = [[0.95, 0.1], [0.0, 0.9]]                        # or { file = "A.csv" }
 C = [[1, 0], [0, 1], [1, 0], [0, 1], [1, 0], [0, 1]] # one entry per agent; [] for one without sensors
 process_bound = 0.02                                 # length of w at most

@@ -52,10 +52,8 @@ def do(args: argparse.Namespace) -> int:
         for r in results:
             for f in r.fields:
                 if not f.ok or args.fields:
-                    console.print(
-                        f"{'ok  ' if f.ok else 'MISS'} {r.file} {f.name}: {f.deviation:.2e} {f.note}",
-                        markup=False,
-                    )
+                    far = f"{f.deviation:.2e} " if math.isfinite(f.deviation) else ""
+                    console.print(f"{'ok  ' if f.ok else 'MISS'} {r.file} {f.name}: {far}{f.note}", markup=False)
     if not results:
         print(f"verify: no case files in {args.folder}", file=sys.stderr)
         return REFUSED

@@ -56,7 +56,7 @@ def Autoregressive(
     size : float, optional
         standard deviation of its noise [measurement], >= 0
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -99,7 +99,7 @@ def Bias(
     value : float
         added to the measurement [measurement]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -142,7 +142,7 @@ def Constant(
     value : str, optional
         what the sensor says instead: a number as text, nan or inf included [measurement]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -185,7 +185,7 @@ def Coordinated(
     covariance : sequence of float, optional
         of the perturbations of all attacked agents together, agents in ascending order, one number per state: a square matrix, row by row; may be singular [state^2]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -225,7 +225,7 @@ def Denial(
     agents : sequence of int, optional
         Ids that are attacked from `start` on; or give `schedule`.
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -268,7 +268,7 @@ def Equivocate(
     size : float, optional
         length of the lie sent to each neighbour [state], >= 0
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -314,7 +314,7 @@ def FalseTrajectory(
     push : sequence of float, optional
         added to the displacement at every sample; left out: 0 [state/sample]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -363,7 +363,7 @@ def Falsify(
     members : sequence of float, optional
         what a set becomes [agents], >= 0
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -409,7 +409,7 @@ def Forge(
     replace : bool, optional
         send the offset alone
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -452,7 +452,7 @@ def Outdated(
     age : int
         how old what is sent is [samples], >= 1
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -498,7 +498,7 @@ def Perturb(
     deltas : sequence of float, optional
         what is added, sample by sample from the start on; agents in ascending order, one number per state [state]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -541,7 +541,7 @@ def Ramp(
     slope : float, optional
         growth of the added drift [measurement/sample]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -590,7 +590,7 @@ def Random(
     replace : bool, optional
         drop the measurement, send noise only
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -633,7 +633,7 @@ def Replay(
     delay : int, optional
         age of the recorded measurement that is sent [samples], >= 1
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -676,7 +676,7 @@ def Scale(
     factor : float, optional
         the measurement is multiplied by it (3 = the paper's attack) [1]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -716,7 +716,7 @@ def Silence(
     agents : sequence of int, optional
         Ids that are attacked from `start` on; or give `schedule`.
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -765,7 +765,7 @@ def Sinusoid(
     phase : float, optional
         phase at the start [rad]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional
@@ -808,7 +808,7 @@ def Stealthy(
     fraction : float, optional
         share of the tolerated deviation that is used; its sign is the direction [1]
     start : int, optional
-        First sample that is attacked, >= 1; default 1.
+        First sample that is attacked; below 1 is as 1; default 1.
     stop : int, optional
         First sample that is not attacked any more; default: never.
     schedule : sequence of (start, agents), optional

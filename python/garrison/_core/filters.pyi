@@ -286,7 +286,7 @@ class Structural(garrison._core.Filter):
     clear_after : int, optional
         tests in a row below it before the verdict is taken back [samples], >= 1, <= 1e+06
     settle : int, optional
-        samples without a test after the start; -1: until rho^k < 0.01 [samples], >= -1, <= 1e+06
+        samples without a test after the start; -1: until rho^k < 0.01 (rho: spectral radius of the error dynamics) [samples], >= -1, <= 1e+06
     isolate : bool, optional
         leave out measurements over their level, the own one while the alarm lasts
     accuse_missing : bool, optional
@@ -335,7 +335,7 @@ class Platoon(garrison._core.Filter):
     attacked : int, optional
         most absolute sensors attacked, 1..L [sensors]
     process_noise : float
-        ||d_i(t)|| <= eps [m, m/s], >= 0
+        bound on the process noise of a vehicle per sample [m, m/s], >= 0
     measurement_noise : float, optional
         length of the noise vector of every absolute and relative sensor is at most mu; may be left out when the four bounds on entries are given [m, m/s], >= 0
     absolute_position_noise : float, optional
@@ -347,7 +347,7 @@ class Platoon(garrison._core.Filter):
     relative_velocity_noise : float, optional
         the same for their velocity [m/s], >= 0
     initial_error : float
-        ||xhat_i(0) - x_i(0)|| <= q [m, m/s], > 0
+        bound on the error of the first estimate [m, m/s], > 0
     varpi : float, optional
         1/varpi is the observer gain of vehicles that hear fewer than 2L others [1], > 1
     reference : sequence of float, optional
@@ -433,7 +433,7 @@ class PlatoonBaseline(garrison._core.Filter):
     Parameters
     ----------
     kind : str
-        which one; one of: pwm, pbe, ptd
+        which controller: pwm, ptd or pbe; one of: pwm, pbe, ptd
     attacked : int, optional
         pbe: values trimmed from each end [sensors], >= 0
     varpi : float, optional

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 
 from numpy.typing import ArrayLike
@@ -57,7 +58,7 @@ def compare(
         agent; they get the measurements of the first filter's run, in at most five trials (they are slow), and no lies
         in messages.
     size : float, optional
-        Of the lies, in the unit of the measurement, default ten times the noise.
+        Of the lies, > 0, in the unit of the measurement; default ten times the noise.
     steps : int
         Samples of a trial, >= 1.
     start : int
@@ -95,7 +96,7 @@ def compare(
     steps = arguments.whole("steps", steps, 2)
     start = arguments.whole("start", start, 1, steps - 1)
     trials = arguments.whole("trials", trials, 1)
-    size = typical_size(model, steps) if size is None else arguments.number("size", size)
+    size = typical_size(model, steps) if size is None else _size(size)
     chosen = filters_for(model, network, len(liars), size) if own is None else own
     against = attacks_for(liars, model.states, start, size) if theirs is None else theirs
     job = Job(model, network, liars, steps, start, trials, arguments.whole("seed", seed, 0, 2**63 - 1), x0)
@@ -122,3 +123,10 @@ def compare(
     if progress is not None:
         progress("done", total, total)
     return Comparison(title, liars, rows)
+
+
+def _size(given: float) -> float:
+    size = arguments.number("size", given)
+    if not 0 < size < math.inf:
+        raise refusal("size", f"{size:g}", "a finite number > 0")
+    return size

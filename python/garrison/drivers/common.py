@@ -65,7 +65,8 @@ def destination(
             "keep", f"{', '.join(beside)} beside garrison.reduce without to", words, 'to="run.zarr" takes both'
         )
     for name, step in keep.every.items():
-        advice = 'to="run.zarr"; in memory slices do it: run.estimate[:, ::100]'
+        first = step - 1 if name == "measurements" else 0  # of sample 1 on, other arrays of time 0 on
+        advice = f'to="run.zarr"; in memory slices do it: run.{name}[:, {first or ""}::{step}]'
         raise refusal(
             f"keep[{name!r}]", f"garrison.every({step}) without to", "a run that is written as it goes", advice
         )

@@ -51,7 +51,7 @@ def simulate(
     start: ArrayLike | None = None,
     start_error: float = 0.0,
     noise: str | ArrayLike = "auto",
-    link: Mapping[str, float] | None = None,
+    link: Mapping[str, Any] | None = None,
     keep: Keep = KEEP,
     to: str | Path | None = None,
     threads: int = 0,
@@ -100,8 +100,9 @@ def simulate(
         (garrison.platoon).
     seed : int
         Of noise, attacks and links, >= 0. Equal arguments give bit-identical results.
-    link : dict, optional
-        drop and delay (probabilities; a late message is lost to its receiver, whatever delay_rounds says); cuts:
+    link : mapping, optional
+        drop and delay (probabilities); delay_rounds: how many rounds a late message is late, >= 1 (its receiver has
+        ended the round by then, so that for estimates it is lost); cuts:
         a list of (sender, receiver, start, stop), None for all agents or no end; lost: recorded losses, a list of
         (sample, round, sender, receiver).
     keep : iterable of str, or mapping
@@ -149,6 +150,10 @@ def simulate(
     ------
     InvalidInput
         Something does not fit; the message says which, and what was expected.
+    DesignInfeasible
+        No gains exist for this model, network and filter.
+    IoError
+        A file cannot be read or written (`to`).
     """
     steps, trials = arguments.whole("steps", steps, 1), arguments.whole("trials", trials, 1)
     base, changes = split(model)

@@ -83,7 +83,11 @@ def import_openacc(
         )
     reach = (cars - 1) // 2
     if not 1 <= noise.attacked <= reach:
-        raise refusal("--attacked", str(noise.attacked), f"1..{reach}, half of the {cars} cars without the car itself")
+        raise refusal(
+            "--attacked",
+            str(noise.attacked),
+            f"1..{reach}: at most half of the other cars, of which there are {cars - 1}",
+        )
     odometer = _odometers(convoy)
     drift = _drifts(convoy, odometer)
     needed = _needed(drift)

@@ -126,7 +126,8 @@ def import_csv(path: Path, choice: Choice | None = None) -> Bundle:
     notes = [
         *records.notes,
         "the records up to the end of the fit are taken as right; --to chooses another end",
-        "a model that was fitted alarms more often than asked: garrison calibrate finds what to ask for",
+        "a model that was fitted alarms more often than asked: garrison calibrate finds what to ask for, from "
+        f"{1 / choice.false_alarm:.0f} tests on (one per sensor and record after the fit) for the rate asked for",
     ]
     return RecordsBundle(tables, SOURCE, None, None, facts, notes, copies)
 

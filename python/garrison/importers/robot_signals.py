@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison.importers.robot_files import Message
+from garrison.words import refusal
 
 Array = NDArray[np.float64]
 #: of every topic that is used: its values in one message, nan = missing
@@ -38,9 +39,11 @@ class Topic:
 
 
 def read_topics(messages: Iterable[Message], wanted: set[str]) -> list[Topic]:
-    """Readings by topic; wanted: the topics to use, empty = all."""
+    """Readings by topic; wanted: the topics to use, empty = all. Raises InvalidInput where one of them is not there."""
     found: dict[str, Topic] = {}
+    seen: dict[str, None] = {}
     for message in messages:
+        seen[message.topic] = None
         if wanted and message.topic not in wanted:
             continue
         topic = found.setdefault(message.topic, Topic(message.topic, message.kind))
@@ -49,6 +52,9 @@ def read_topics(messages: Iterable[Message], wanted: set[str]) -> list[Topic]:
         for name in {*values, *topic.values}:
             series = topic.values.setdefault(name, [math.nan] * (len(topic.t) - 1))
             series.append(values.get(name, math.nan))
+    if missing := sorted(wanted - set(found)):
+        expected = "topics of the recording with a place or a heading"
+        raise refusal("--topic", ", ".join(missing), f"{expected}: {', '.join(seen) or 'it has none'}")
     for topic in found.values():
         _sort(topic)
     return list(found.values())

@@ -107,12 +107,6 @@ def import_mcap(path: Path, topics: Sequence[str] = (), assumed: Assumptions | N
 
 def _bundle(where: str, messages: Iterable[Message], topics: Sequence[str], assumed: Assumptions) -> Bundle:
     found = read_topics(messages, set(topics))
-    missing = [name for name in topics if name not in {t.name for t in found}]
-    if missing:
-        have = ", ".join(t.name for t in found) or "none of them"
-        raise refusal(
-            "--topic", ", ".join(missing), f"topics of the recording with a place or a heading; it has {have}"
-        )
     used = [t for t in found if any(t.knows(q) for q in ("x", "latitude", "heading", "rate", "vx"))]
     if not used:
         raise refusal(where, "topics without any number", "positions, headings or turn rates")

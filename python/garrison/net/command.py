@@ -46,7 +46,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     up.add_argument("--kills", type=count_number, default=0, help="kill a daemon, and start it again, so many times")
     up.add_argument(
-        "--liar", metavar="NAME", help="this agent's daemon lies to some neighbours, with its keys; see docs"
+        "--liar", metavar="NAME", help="this agent's daemon lies to some neighbours, with its keys; see docs/node.md"
     )
     up.add_argument("--programs", help="folder of garrison-node, garrison-keygen and garrison-relay")
     soak = commands.add_parser(

@@ -123,7 +123,7 @@ def tables_of(where: str, value: Any, folder: Path) -> list[Section]:
     entries = [value] if isinstance(value, dict) else value
     if not isinstance(entries, list):
         raise refusal(f"[[{where}]]", shown(value), f"tables: a line [[{where}]] with keys below, once per entry")
-    return [Section(f"[[{where}]] {k}", entry, folder) for k, entry in enumerate(entries, start=1)]
+    return [Section(f"{where}[{k}]", entry, folder) for k, entry in enumerate(entries)]  # as --set counts
 
 
 def moment(where: str, value: Any, *, last: bool = False) -> dt.date | float:

@@ -16,7 +16,7 @@ Row = dict[str, Any]
 
 #: columns of a trial that are summed up per point
 _SUMMED = ("mean_error", "worst_error", "final_error")
-_TEXTS = ("filter", "attacked", "status", "seconds")
+_TEXTS = ("filter", "attacked", "status", "seconds", "scenario_hash", "version")
 
 
 def read_part(path: Path) -> list[Row]:
@@ -105,7 +105,17 @@ def write_parquet(path: Path, rows: Sequence[Row]) -> bool:
 
 
 def _column(values: list[Any], name: str) -> list[Any]:
-    if name in _TEXTS:
-        return [None if v in ("", None) else str(v) for v in values]
     plain = [None if v in ("", None) else v for v in values]
-    return [float(v) if isinstance(v, str) and name not in ("scenario_hash", "version") else v for v in plain]
+    if name in _TEXTS or not all(_numeric(v) for v in plain):
+        return [None if v is None else str(v) for v in plain]
+    return [float(v) if isinstance(v, str) else v for v in plain]
+
+
+def _numeric(value: Any) -> bool:
+    if not isinstance(value, str):
+        return True
+    try:
+        float(value)
+    except ValueError:
+        return False
+    return True

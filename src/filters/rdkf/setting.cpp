@@ -81,7 +81,7 @@ Setting setting(const Model& model, const Network& network) {
   const Visibility modes = visibility(s.A, model.stacked(), 1.0);
   if (!modes.all_seen())
     refuse("model", "a pair (A, C) that is not detectable (" + modes.text() + ")",
-           "every mode that does not decay is seen by some agent",
+           "that every mode of modulus >= 1 is seen by some agent",
            "equation (5) has no solution otherwise; add a sensor for that mode");
   return s;
 }

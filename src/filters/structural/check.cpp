@@ -35,13 +35,14 @@ void add_structure(Check& c, const Setting& s) {
   c.quantities.push_back({"necessary agents",
                           static_cast<double>(std::count(necessary.begin(), necessary.end(), 1)),
                           "agents whose loss alone ends structural observability"});
-  for (const auto& [name, kind] : {std::pair{"alpha agents", structure::AgentClass::alpha},
-                                   std::pair{"beta agents", structure::AgentClass::beta},
-                                   std::pair{"gamma agents", structure::AgentClass::gamma}}) {
-    const auto types = system.classes(sensors);
-    c.quantities.push_back({name, static_cast<double>(std::count(types.begin(), types.end(), kind)),
-                            "by membership of what they measure"});
-  }
+  const auto types = system.classes(sensors);
+  const auto add = [&](const char* name, structure::AgentClass kind, const char* meaning) {
+    c.quantities.push_back(
+        {name, static_cast<double>(std::count(types.begin(), types.end(), kind)), meaning});
+  };
+  add("alpha agents", structure::AgentClass::alpha, "agents that measure a state of a contraction");
+  add("beta agents", structure::AgentClass::beta, "agents that measure a state of a parent component");
+  add("gamma agents", structure::AgentClass::gamma, "agents that measure a state of neither");
 }
 
 void add_errors(Check& c, const Setting& s, const structural::GainMatrices& K, double false_alarm) {

@@ -59,7 +59,8 @@ void require_detectable(const Model& model) {
   const Visibility modes = visibility(model.A(), model.stacked(), 1.0);
   if (!modes.all_seen())
     refuse("model", "a pair (A, C) that is not detectable (" + modes.text() + ")",
-           "every mode of modulus >= 1 is seen by some agent", "add a sensor on the state that it moves");
+           "that every mode of modulus >= 1 is seen by some agent",
+           "add a sensor on the state that it moves");
 }
 
 /// How fast P grows while sensor i is left out, at first and once the estimate is lost: faster than an error

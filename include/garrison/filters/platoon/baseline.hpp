@@ -52,7 +52,7 @@ struct GARRISON_EXPORT PlatoonBaseline {
           field(&Params::kind, {.name = "kind",
                                 .symbol = "",
                                 .unit = "",
-                                .doc = "which one",
+                                .doc = "which controller: pwm, ptd or pbe",
                                 .required = true,
                                 .choices = {"pwm", "pbe", "ptd"}}),
           field(&Params::attacked, {.name = "attacked",

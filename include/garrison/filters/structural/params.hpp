@@ -76,7 +76,8 @@ inline auto Structural::Params::fields() {
       field(&Params::settle, {.name = "settle",
                               .symbol = "",
                               .unit = "samples",
-                              .doc = "samples without a test after the start; -1: until rho^k < 0.01",
+                              .doc = "samples without a test after the start; -1: until rho^k < 0.01 "
+                                     "(rho: spectral radius of the error dynamics)",
                               .least = -1,
                               .most = 1e6}),
       field(&Params::isolate,
