@@ -81,17 +81,20 @@ def _with_memory(model: _core.Model, attacked: int, failure: float, windows: boo
         return []
     try:
         plant = Plant(model)
-        bank = steady(plant, attacked, failure * _SAMPLES, _SAMPLES)
+        bank = steady(plant, attacked, failure, _SAMPLES)
         window = steady_window(plant, attacked, failure, _WINDOW) if windows else None
     except _core.InvalidInput:  # no covariances, or noise that sources share: no such theorem
         return []
     ways = {
-        "certify": (bank, "half width of {} that a bank of filters over all measurements never exceeds (theorem B2)"),
+        "certify": (
+            bank,
+            "half width of {} that a bank of filters over all measurements keeps in the long run (theorem B2)",
+        ),
         "window": (window, f"the same of a window of the last {_WINDOW} samples, none missing (theorem W3D)"),
     }
     ending = (
-        f" at {failure:g} per sample, with any {attacked} sources lying, always the same ones; inf: they could hide a "
-        "lie that grows for ever"
+        f" at {failure:g} per sample, with any {attacked} sources lying, always the same ones; inf: none is known, as "
+        "where they could hide a lie that grows for ever"
     )
     return [
         {"name": f"{way}_{name}", "value": float(width), "meaning": words.format(name) + ending}

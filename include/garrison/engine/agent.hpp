@@ -40,7 +40,7 @@ class GARRISON_EXPORT Agent {
   virtual std::string_view family() const = 0;
   /// Fingerprint of the design that this is an agent of: messages of another are not for it.
   virtual std::uint64_t design() const = 0;
-  /// Its plant and sensor, for drivers of plants with known inputs: the agent itself is not told of them.
+  /// Its plant and sensor, for drivers of plants with known inputs: the agent itself does not know them.
   virtual const AgentPart& part() const noexcept = 0;
   virtual int id() const = 0;
   virtual int agents() const = 0;  ///< of the whole network

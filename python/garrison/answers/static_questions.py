@@ -132,9 +132,9 @@ class StaticQuestions:
 
     def _additions(self, removal: Removal) -> list[Addition]:
         liars = max(removal.spare, 0) // 2 + 1
-        goal = f"the state can be told, from one sample, with {count(liars, 'liar')}"
+        goal = f"the state can be determined, from one sample, with {count(liars, 'liar')}"
         if removal.most == 0:
-            goal = "the state can be told, from one sample"
+            goal = "the state can be determined, from one sample"
         spare = 0 if removal.most == 0 else 2 * liars
         nothing = Addition(goal, None, float("nan"), False)
         shown = Counter(self.entries[self.entries[:, 2] != 0, 1].astype(int).tolist())

@@ -110,7 +110,7 @@ class Certified(Result):
         if there.any():
             lines.append(f"half widths, median: {_listed(np.median(self.box[there], axis=0))}")
         if self.steady is not None:
-            lines.append(f"half widths for ever, whatever they say: {_listed(self.steady)}")
+            lines.append(f"half widths in the long run, whatever they say: {_listed(self.steady)}")
         lines.append(f"proved to lie: {', '.join(names) or 'nobody'}")
         return "\n".join([*lines, *(f"warning: {words}" for words in self.warnings)])
 

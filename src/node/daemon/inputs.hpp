@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Known inputs of the plant, all of them before the run begins: an agent is not told of them (docs/adr/0016).
+// Known inputs of the plant, all of them before the run begins: an agent does not know them (docs/adr/0016).
 #pragma once
 
 #include <cstdint>
