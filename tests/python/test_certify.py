@@ -218,6 +218,17 @@ def test_inputs_that_hold_an_unstable_plant_are_predicted_with() -> None:
         assert found.box[5:].max() < 1.5 and found.proved[-1] == [] and found.warnings == []
 
 
+@pytest.mark.parametrize("options", [{}, {"method": "window", "window": 6}])
+def test_a_state_beyond_what_numbers_hold_has_no_region_and_no_proof(options: dict) -> None:
+    model = gr.Model([[1.2]], [[[1.0]]] * 4, process_covariance=0.01, measurement_covariance=0.01)
+    for seed in range(4):
+        states, y = record(model, 260, seed)  # up to 1e20
+        found = gr.certify(model, y, attacked=1, **options)
+        assert inside(found, states) and not found.refuted.any() and not any(found.proved)
+        assert found.answered[10:100].all() and not found.answered[-1]
+        assert any("from sample" in words and "16 digits" in words for words in found.warnings)
+
+
 @pytest.mark.parametrize("unit", [1e-9, 1e-8, 1.0, 1e9])
 def test_units_of_states_do_not_matter(unit: float) -> None:
     """A clock in seconds beside metres, and a chain of three with a third state in small units."""

@@ -220,7 +220,8 @@ class Questions:
                 if not np.all(np.isfinite(error)):
                     finished = True
                     break
-                out.append({"liars": s, "error": float(error[-1]), "per_state": [float(v) for v in error[:-1]]})
+                per_state = dict(zip(self.model.state_names, map(float, error[:-1]), strict=True))
+                out.append({"liars": s, "error": float(error[-1]), "per_state": per_state, "failure": DELTA})
             else:
                 finished = True
         if not finished:

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from garrison.answers.additions import Addition
     from garrison.answers.analysis import Analysis
 
+#: states whose widths are listed one by one
+_MOST_STATES = 6
+
 
 def sentences(analysis: Analysis) -> list[str]:
     """The answers, a sentence each, the most important first."""
@@ -22,12 +25,25 @@ def sentences(analysis: Analysis) -> list[str]:
     lines.append(_links(analysis))
     lines += [_unseen(analysis)]
     if analysis.harm:
-        harm = "; ".join(f"{count(h['liars'], 'liar')} {h['error']:.4g}" for h in analysis.harm)
-        lines.append(f"What liars who stay the same can do to a bank of Kalman filters at most, as an error: {harm}.")
+        level = analysis.harm[0]["failure"]
+        harm = "; ".join(
+            f"{count(h['liars'], 'liar')} {h['error']:.4g}{_per_state(h['per_state'])}" for h in analysis.harm
+        )
+        lines.append(
+            "What liars who stay the same can do to a bank of Kalman filters at most, as an error in the long run, at "
+            f"{level:g} a sample: {harm}."
+        )
     lines += [f"So that {addition.goal}: {what_to_add(addition)}" for addition in analysis.additions]
     lines += analysis.advice
     lines += [f"The time was too short for: {words}." for words in analysis.unfinished]
     return lines
+
+
+def _per_state(widths: dict[str, float]) -> str:
+    """The same of every state, where a sentence holds them."""
+    if not 1 < len(widths) <= _MOST_STATES:
+        return ""
+    return f" ({', '.join(f'{name} {width:.4g}' for name, width in widths.items())})"
 
 
 def number(limit: Limit) -> str:

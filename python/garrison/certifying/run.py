@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 #: filters of a bank up to which "auto" takes one
 _MOST_MEMBERS = 3000
+#: standard deviations of a measurement that a state may be away: rounding is then a hundredth of one
+_MOST_DEVIATIONS = 1e13
 _LONGEST_WINDOW = 1000
 METHODS = ("auto", "bank", "window")
 
@@ -105,6 +107,7 @@ def certify(
     else:
         record = by_window(plant, white, moved, s, failure, length, moving, _MOST_MEMBERS, told)
         for_ever = None if moving else steady_window(plant, s, failure, length)
+    lost = _forget_beyond_doubles(record, plant)
     return Certified(
         center=record.center,
         box=record.box,
@@ -117,8 +120,23 @@ def certify(
         rule="B" if chosen == "bank" else rule(plant, s, moving, length)[0],
         window=length,
         steady=for_ever,
-        warnings=_warnings(record, plant, model, failure),
+        warnings=lost + _warnings(record, plant, model, failure),
     )
+
+
+def _forget_beyond_doubles(record: Record, plant: Plant) -> list[str]:
+    """No region and no proof from the sample on at which the state is so far away that rounding counts beside noise."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        far = np.abs(record.center @ plant.rows.T).max(axis=1) > _MOST_DEVIATIONS
+    if not far.any():
+        return []
+    first = int(np.argmax(far))
+    record.center[first:], record.box[first:], record.radius[first:] = np.nan, np.inf, np.inf
+    record.proved[first:] = [[] for _ in record.proved[first:]]
+    return [
+        f"no region and no proof from sample {first} on: the state has gone {_MOST_DEVIATIONS:g} standard deviations "
+        "of the measurements away, where numbers of 16 digits do not hold the noise any more"
+    ]
 
 
 def _warnings(record: Record, plant: Plant, model: _core.Model, failure: float) -> list[str]:
