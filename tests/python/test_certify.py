@@ -251,6 +251,7 @@ def test_units_of_states_do_not_matter(unit: float) -> None:
             found = gr.certify(model, y, attacked=1, **options)
             assert inside(found, states) and not np.isnan(found.radius).any()
             assert found.proved[-1] == [] and found.answered[20:].all()
+            assert found.steady is None or np.isfinite(found.steady).all()
 
 
 def test_known_inputs_are_taken_out() -> None:
