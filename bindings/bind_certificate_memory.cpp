@@ -202,6 +202,13 @@ WindowAssumption assume(int s, double z1, double z2, double zc, double z3, bool 
 }
 
 void bind_window_witnesses(py::module_& m) {
+  m.def("noise_root", &noise_root, py::arg("Q"),
+        numpydoc(R"(Gam of Window.advance for process noise of a covariance: Gam Gam' = Q.
+
+Q : (n, n) array | Symmetric, positive semidefinite.
+< (n, k) array | Without directions in which there is no noise.
+! InvalidInput | No covariance.)")
+            .c_str());
   m.def(
       "window_levels",
       [](double delta, int rows, int states) {

@@ -22,6 +22,19 @@ if TYPE_CHECKING:
 _PER_AGENT = ("trial", "time", "agent")
 #: axis of an array of which only some times were kept
 _THINNED = re.compile(r"(time|sample)_every_(\d+)")
+_AXES = {
+    "truth": (*_PER_AGENT, "state"),  # of one plant: without agents
+    "estimate": (*_PER_AGENT, "state"),
+    "box": (*_PER_AGENT, "state"),
+    "measurements": ("trial", "sample", "output"),
+    "log": ("record", "sample", "output"),
+    "inputs": ("step", "input"),
+    "varying_A": ("step", "state", "state_before"),
+    "varying_B": ("step", "state", "input"),
+    "varying_C": ("step", "row", "state"),
+    "varying_process_covariance": ("step", "state", "state_before"),
+    "varying_measurement_covariance": ("step", "row", "output_before"),
+}
 #: name of a reduction: array, statistic, axes that went
 _REDUCED = re.compile(r"reduced_(.+)_[a-z0-9.]+_over_([a-z_]+)")
 
@@ -39,22 +52,14 @@ def axes(filter: _core.Filter, name: str) -> tuple[str, ...]:
     return dimensions(filter).get(name, _PER_AGENT)
 
 
+def axes_of_any(name: str) -> tuple[str, ...]:
+    """All that an array of a run has with one filter or another."""
+    return _AXES.get(name, _PER_AGENT)
+
+
 def dimensions(filter: _core.Filter) -> dict[str, tuple[str, ...]]:
     """Names of the axes of a run's arrays, where they are not (trial, time, agent)."""
-    own = family_of(filter).own_plants
-    return {
-        "truth": ("trial", "time", "agent", "state") if own else ("trial", "time", "state"),
-        "estimate": (*_PER_AGENT, "state"),
-        "box": (*_PER_AGENT, "state"),
-        "measurements": ("trial", "sample", "output"),
-        "log": ("record", "sample", "output"),
-        "inputs": ("step", "input"),
-        "varying_A": ("step", "state", "state_before"),
-        "varying_B": ("step", "state", "input"),
-        "varying_C": ("step", "row", "state"),
-        "varying_process_covariance": ("step", "state", "state_before"),
-        "varying_measurement_covariance": ("step", "row", "output_before"),
-    }
+    return _AXES if family_of(filter).own_plants else _AXES | {"truth": ("trial", "time", "state")}
 
 
 def _outputs(run: Run) -> list[str]:

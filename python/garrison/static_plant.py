@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -58,7 +57,7 @@ class StaticPlant(Result):
         self.outputs = _names("outputs", self.outputs, rows, "sensor")
 
     @classmethod
-    def of(cls, rows: Any, agent: ArrayLike | None = None, **names: Sequence[str]) -> StaticPlant:
+    def of(cls, rows: Any, agent: ArrayLike | None = None, **names: list[str]) -> StaticPlant:
         """The plant of a matrix of rows.
 
         Parameters
@@ -67,7 +66,7 @@ class StaticPlant(Result):
             H, finite.
         agent : (sensors,) sequence of int, optional
             Whose sensor a row is, >= 0; default: an agent per sensor.
-        **names : sequences of str
+        **names : lists of str
             `states` and `outputs`: their names.
 
         Returns
@@ -81,11 +80,13 @@ class StaticPlant(Result):
         """
         if hasattr(rows, "tocoo"):
             found = rows.tocoo()
-            entries = np.column_stack([found.row, found.col, numbers("rows", found.data)])
-            return cls(entries, tuple(found.shape), agent, **names)  # type: ignore[arg-type]
-        table = arguments.table("rows", rows)
-        at = np.nonzero(table)
-        return cls(np.column_stack([*at, table[at]]), table.shape, agent, **names)  # type: ignore[arg-type]
+            entries, (sensors, states) = [found.row, found.col, numbers("rows", found.data)], found.shape
+        else:
+            table = arguments.table("rows", rows)
+            at = np.nonzero(table)
+            entries, (sensors, states) = [*at, table[at]], table.shape
+        whose = [] if agent is None else arguments.whole_numbers("agent", agent)
+        return cls(np.column_stack(entries), (sensors, states), whose, **names)
 
     @property
     def agents(self) -> int:

@@ -27,7 +27,7 @@ UNSEEN = (
     "bounds or tests that end, measurements that contradict the model, or estimates that diverge"
 )
 #: what `keep` calls report is several arrays
-_REPORT = ("bound", "bound_kind", "published", "statistic", "threshold", "verdict")
+REPORT = ("bound", "bound_kind", "published", "statistic", "threshold", "verdict")
 
 
 def place(to: Any) -> Path:
@@ -68,7 +68,7 @@ class Store:
             self._group = zarr.open_group(folder, mode="w", zarr_format=2)
         self._to = to
         self._folder, self._filter, self._model, self._trials = folder, filter, model, trials
-        self._steps = every | dict.fromkeys(_REPORT, every.get("report", 1))
+        self._steps = every | dict.fromkeys(REPORT, every.get("report", 1))
         self._arrays: dict[str, Growing] = {}
         self._writer = Writer()
 

@@ -2,6 +2,8 @@
 // How far agents are apart.
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "garrison/core/network.hpp"
@@ -31,6 +33,17 @@ inline Hops hops_from(const Network& network, int agent) {
   hops.furthest = hops.to[static_cast<std::size_t>(queue.back())];
   hops.reaches_all = queue.size() == N;
   return hops;
+}
+
+/// Hops between the agents that are furthest apart; none where some are never reached.
+inline std::optional<int> diameter(const Network& network) {
+  int furthest = 0;
+  for (int from = 0; from < network.agents(); ++from) {
+    const Hops hops = hops_from(network, from);
+    if (!hops.reaches_all) return {};
+    furthest = std::max(furthest, hops.furthest);
+  }
+  return furthest;
 }
 
 }  // namespace garrison::detail

@@ -26,18 +26,19 @@ struct CertifiedNetwork::Agents {
     return alike && certifiers.front()->flooded() && !certifiers.front()->has_bank();
   }
   bool all_alike() const;
-  void plan_at_once(const certificate::Plan& plan, const Network& network, int rounds);
+  void plan_at_once(const certificate::Plan& plan, const Network& network, int rounds,
+                    const std::vector<int>& listeners);
   /// Fills `since`: a region comes from the nearest agent that found one after the first round.
   void find_first_regions(int rounds);
 };
 
-void CertifiedNetwork::Agents::plan_at_once(const certificate::Plan& plan, const Network& network,
-                                            int rounds) {
+void CertifiedNetwork::Agents::plan_at_once(const certificate::Plan& plan, const Network& network, int rounds,
+                                            const std::vector<int>& listeners) {
   const AgentCertifier& first = *certifiers.front();
-  if (!first.direct()) flood = detail::Flood(network, first.flooded() ? rounds : rounds - 1);
-  reaches_all = rounds > 0 && (first.direct() || flood.reaches_all());
+  reaches_all = rounds > 0 && (first.direct() || plan.reach <= (first.flooded() ? rounds : rounds - 1));
   if (!reaches_all) return;
-  bytes = detail::EvidenceBytes(plan, network, rounds, flood, said);
+  if (!first.direct()) flood = detail::Flood(network);
+  bytes = detail::EvidenceBytes(plan, listeners, rounds, flood, said);
   since.assign(certifiers.size(), rounds);
 }
 
@@ -73,7 +74,7 @@ CertifiedNetwork::CertifiedNetwork(std::shared_ptr<const certificate::Plan> plan
     all_->said.push_back(std::move(empty));
   }
   all_->silent.resize(all_->said.size());
-  all_->plan_at_once(*plan, network_, rounds_);
+  all_->plan_at_once(*plan, network_, rounds_, listeners_);
 }
 CertifiedNetwork::~CertifiedNetwork() = default;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "garrison/wire/message.hpp"
 
@@ -16,25 +17,23 @@ bool usable(double y) { return std::abs(y) < kHuge; }
 
 }  // namespace
 
-EvidenceBytes::EvidenceBytes(const certificate::Plan& plan, const Network& network, int rounds,
+EvidenceBytes::EvidenceBytes(const certificate::Plan& plan, std::vector<int> listeners, int rounds,
                              const Flood& flood, std::span<const certificate::Evidence> said)
     : plan_(&plan),
       flood_(&flood),
       rounds_(rounds),
-      listeners_(said.size()),
+      listeners_(std::move(listeners)),
       region_(static_cast<std::int64_t>(8 * said.front().ball.size())),
       present_(static_cast<std::size_t>(plan.first.back())),
       has_(said.size()),
       spoken_(static_cast<std::size_t>(rounds)) {
-  for (int i = 0; i < network.agents(); ++i) {
-    for (const int j : network.neighbours(i)) ++listeners_[static_cast<std::size_t>(j)];
-    bare_.push_back(
-        static_cast<std::int64_t>(wire::size(said[static_cast<std::size_t>(i)], network.agents())));
-  }
+  const auto agents = static_cast<int>(said.size());
+  for (const certificate::Evidence& one : said)
+    bare_.push_back(static_cast<std::int64_t>(wire::size(one, agents)));
   if (plan.wanted.spread != certificate::Spread::flooded) return;
-  for (int i = 0; i < network.agents(); ++i) {
+  for (int i = 0; i < agents; ++i) {
     std::int64_t heard = 0;  // how often this agent's measurement is
-    for (int j = 0; j < network.agents(); ++j)
+    for (int j = 0; j < agents; ++j)
       heard += static_cast<std::int64_t>(listeners_[static_cast<std::size_t>(j)]) *
                std::clamp(rounds - flood.hops(i, j), 0, kRepeats);
     travelled_.insert(travelled_.end(), static_cast<std::size_t>(plan.outputs(i)), 8 * heard);
@@ -84,17 +83,17 @@ std::int64_t EvidenceBytes::flooded(const double* y, bool relaying) {
 }
 
 std::int64_t EvidenceBytes::local(const double* y, std::span<const int> since) const {
+  const int first = plan_->first_relay(rounds_);
+  const int end = region_ > 0 ? plan_->relay_end(rounds_) : 0;
   std::int64_t bytes = 0;
   for (std::size_t i = 0; i < listeners_.size(); ++i) {
     std::int64_t own = 0;
     for (int k = plan_->first[i]; k < plan_->first[i + 1]; ++k) own += usable(y[k]) ? 8 : 0;
-    std::int64_t of_each = 0;
-    for (int round = 0; round < rounds_; ++round) {
-      const std::int64_t measured = round == 0 ? own : 0;
-      const std::int64_t region = round >= since[i] && plan_->relays_in(round, rounds_) ? region_ : 0;
-      if (measured + region > 0) of_each += bare_[i] + measured + region;
-    }
-    bytes += listeners_[i] * of_each;
+    const int from = std::max(since[i], first);
+    const int regions = std::max(end - from, 0);
+    const bool measured_alone = own > 0 && !(regions > 0 && from == 0);
+    const std::int64_t messages = regions + (measured_alone ? 1 : 0);
+    bytes += listeners_[i] * (messages * bare_[i] + own + regions * region_);
   }
   return bytes;
 }

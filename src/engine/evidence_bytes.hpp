@@ -9,7 +9,6 @@
 #include "flood.hpp"
 #include "garrison/certificate/online/evidence.hpp"
 #include "garrison/certificate/online/plan.hpp"
-#include "garrison/core/network.hpp"
 
 namespace garrison::detail {
 
@@ -19,8 +18,8 @@ namespace garrison::detail {
 class EvidenceBytes {
  public:
   EvidenceBytes() = default;
-  /// `said`: of each agent, in its shape, for all rounds. Flooded, `flood` is kept.
-  EvidenceBytes(const certificate::Plan& plan, const Network& network, int rounds, const Flood& flood,
+  /// listeners, said: of each agent; what is said in its shape, for all rounds. Flooded, `flood` is kept.
+  EvidenceBytes(const certificate::Plan& plan, std::vector<int> listeners, int rounds, const Flood& flood,
                 std::span<const certificate::Evidence> said);
 
   /// y: all measurements, agent by agent. relaying: all have a region already.

@@ -15,6 +15,7 @@
 #include "node/daemon/settings.hpp"
 #include "node/daemon/state.hpp"
 #include "node/daemon/toml_file.hpp"
+#include "refusals.hpp"
 
 using namespace garrison;
 using namespace garrison::node;
@@ -63,21 +64,6 @@ std::string with_address(std::string text) {
   for (std::size_t at = 0; (at = text.find("\"HERE\"")) != std::string::npos;)
     text.replace(at, 6, "\"127.0.0.1:" + std::to_string(port++) + "\"");
   return text;
-}
-
-template <class Call>
-std::string refused(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool says(const std::string& message, std::initializer_list<const char*> parts) {
-  return std::all_of(parts.begin(), parts.end(),
-                     [&](const char* part) { return message.find(part) != std::string::npos; });
 }
 
 std::string settings_with(const std::string& old, const std::string& next) {

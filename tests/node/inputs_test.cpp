@@ -10,6 +10,7 @@
 #include "folder.hpp"
 #include "garrison/core/error.hpp"
 #include "garrison/core/response.hpp"
+#include "refusals.hpp"
 
 using namespace garrison;
 using namespace garrison::node;
@@ -26,20 +27,10 @@ AgentPart plant() {
   return part;
 }
 
-std::string refused(const std::string& text, const AgentPart& part = plant()) {
+std::string refused_table(const std::string& text, const AgentPart& part = plant()) {
   const Folder folder;
   std::ofstream(folder / "u.csv") << text;
-  try {
-    const Inputs read(folder / "u.csv", part);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool says(const std::string& message, std::initializer_list<const char*> parts) {
-  return std::all_of(parts.begin(), parts.end(),
-                     [&](const char* part) { return message.find(part) != std::string::npos; });
+  return refused([&] { const Inputs read(folder / "u.csv", part); });
 }
 
 }  // namespace
@@ -90,14 +81,14 @@ TEST_CASE("without inputs nothing is changed, and nothing ends") {
 }
 
 TEST_CASE("inputs that cannot be used are refused by line") {
-  CHECK(says(refused("1\nnan\n"), {"u.csv, line 2", "\"nan\"", "1 numbers", "known at all times"}));
-  CHECK(says(refused("1\n1,2\n"), {"u.csv, line 2", "\"1,2\""}));
-  CHECK(says(refused("@3 1\n"), {"u.csv, line 1", "\"@3 1\""}));
-  CHECK(says(refused(""), {"u.csv", "no row"}));
+  CHECK(says(refused_table("1\nnan\n"), {"u.csv, line 2", "\"nan\"", "1 numbers", "known at all times"}));
+  CHECK(says(refused_table("1\n1,2\n"), {"u.csv, line 2", "\"1,2\""}));
+  CHECK(says(refused_table("@3 1\n"), {"u.csv, line 1", "\"@3 1\""}));
+  CHECK(says(refused_table(""), {"u.csv", "no row"}));
   AgentPart wild = plant();
   wild.A(0, 0) = 1e100;
-  CHECK(says(refused("1\n1\n1\n", wild), {"u.csv, line 3", "a response beyond 1e150"}));
+  CHECK(says(refused_table("1\n1\n1\n", wild), {"u.csv, line 3", "a response beyond 1e150"}));
   std::string many;
   for (int k = 0; k < 2'100'000; ++k) many += "1\n";
-  CHECK(says(refused(many), {"2100000 rows for 2 states, which take 34 MB", "at most 34 MB"}));
+  CHECK(says(refused_table(many), {"2100000 rows for 2 states, which take 34 MB", "at most 34 MB"}));
 }

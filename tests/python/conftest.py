@@ -1,3 +1,5 @@
+import subprocess
+import time
 from pathlib import Path
 from typing import Any
 
@@ -47,3 +49,22 @@ def programs() -> str:
     if found is None:
         pytest.skip("no programs of the node in build/: configure with -DGARRISON_BUILD_NODE=ON")
     return str(found)
+
+
+@pytest.fixture
+def folder(plan: Path, programs: str, tmp_path: Path) -> Path:
+    """The files of the first node of the network in `plan`, whose first sample is an hour away."""
+    from garrison.net.folder import write_network
+    from garrison.net.plan import read_plan
+
+    (tmp_path / "net").mkdir()
+    write_network(read_plan(plan), tmp_path / "net", time.time() + 3600, programs)
+    return tmp_path / "net" / "0"
+
+
+def check(folder: Path, programs: str) -> "subprocess.CompletedProcess[str]":
+    """What `garrison-node --check` says of the files of a node."""
+    from garrison.net.programs import program
+
+    command = [program("garrison-node", programs), "--check", str(folder / "node.toml")]
+    return subprocess.run(command, capture_output=True, text=True, timeout=20)

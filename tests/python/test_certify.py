@@ -229,6 +229,18 @@ def test_a_state_beyond_what_numbers_hold_has_no_region_and_no_proof(options: di
         assert any("from sample" in words and "16 digits" in words for words in found.warnings)
 
 
+def test_process_noise_has_a_root_without_directions_in_which_there_is_none() -> None:
+    for unit in (1e-12, 1.0, 1e12):
+        Q = np.diag([1.0, 0.0, unit**2])
+        Q[0, 2] = Q[2, 0] = 0.5 * unit
+        Gam = gr.certificate.noise_root(Q)
+        assert Gam.shape == (3, 2) and np.allclose(Gam @ Gam.T, Q, rtol=1e-12, atol=0)
+    assert gr.certificate.noise_root(np.zeros((2, 2))).shape == (2, 0)
+    for wrong in ([[1.0, 2.0], [0.0, 1.0]], [[-1.0]], np.zeros((0, 0)), [[1.0, 0.0]]):
+        with pytest.raises(gr.InvalidInput, match="Q"):
+            gr.certificate.noise_root(wrong)
+
+
 @pytest.mark.parametrize("unit", [1e-9, 1e-8, 1.0, 1e9])
 def test_units_of_states_do_not_matter(unit: float) -> None:
     """A clock in seconds beside metres, and a chain of three with a third state in small units."""

@@ -20,7 +20,7 @@ def random_network(rng):
 
 
 def test_no_point_of_a_grid_is_better():
-    """200 points on each of 50 networks; bench/design_grid.py takes more."""
+    """200 points on each of 50 networks."""
     rng = np.random.default_rng(1)
     designed = 0
     for _ in range(50):

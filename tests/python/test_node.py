@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, check
 from garrison import _core
 from garrison.cli import main as garrison
 from garrison.net import Client
@@ -48,19 +48,6 @@ def plan(tmp_path: Path) -> Path:
     path = tmp_path / "network.toml"
     path.write_text(PLAN)
     return path
-
-
-@pytest.fixture
-def folder(plan: Path, programs: str, tmp_path: Path) -> Path:
-    """The files of the network, whose first sample is an hour away."""
-    (tmp_path / "net").mkdir()
-    write_network(read_plan(plan), tmp_path / "net", time.time() + 3600, programs)
-    return tmp_path / "net" / "0"
-
-
-def check(folder: Path, programs: str) -> subprocess.CompletedProcess[str]:
-    command = [program("garrison-node", programs), "--check", str(folder / "node.toml")]
-    return subprocess.run(command, capture_output=True, text=True, timeout=20)
 
 
 def test_a_network_under_attack_does_what_one_process_does(

@@ -64,6 +64,20 @@ def test_bits_do_not_depend_on_threads_or_blocks(monkeypatch: pytest.MonkeyPatch
         assert all(other[name].tobytes() == values.tobytes() for name, values in runs[0].items())
 
 
+def test_a_report_that_is_written_beside_them_is_whole(tmp_path: Path) -> None:
+    run = gr.simulate(
+        MODEL,
+        RING,
+        FILTER,
+        to=tmp_path / "run.zarr",
+        keep={"report": "all", "error": gr.reduce("max", over="agent")},
+        **OPTIONS,
+    )
+    alone = gr.simulate(MODEL, RING, FILTER, to=tmp_path / "alone.zarr", keep={"report": "all"}, **OPTIONS)
+    for name in ("bound", "bound_kind", "statistic", "threshold", "verdict"):
+        assert np.array_equal(getattr(run, name), getattr(alone, name), equal_nan=name not in ("bound_kind", "verdict"))
+
+
 def test_they_are_kept_with_the_run(tmp_path: Path) -> None:
     keep = {"error": gr.reduce("max", "q95", over="agent"), "bound": gr.reduce("min", over=("trial", "time"))}
     run = gr.simulate(MODEL, RING, FILTER, keep=keep, **OPTIONS)

@@ -1,15 +1,16 @@
 """`garrison compare`: all families and baselines against all attacks on a scenario's plant."""
 
 import argparse
-import math
 import sys
 from typing import Any
 
+from garrison import _core
 from garrison._commands.output import new_file, write_picture
 from garrison._commands.terminal import (
     OK,
     Commands,
     console_for,
+    in_options,
     number,
     print_json,
     print_table,
@@ -18,7 +19,7 @@ from garrison._commands.terminal import (
 )
 from garrison.comparison import Comparison, compare
 from garrison.comparison.table import COLUMNS
-from garrison.scenario import read_scenario
+from garrison.scenario import Scenario, read_scenario
 from garrison.words import refusal
 
 
@@ -49,8 +50,23 @@ def do(args: argparse.Namespace) -> int:
     target = new_file(args.output, args.force) if args.output else None
     scenario = read_scenario(args.scenario)
     scenario.require_constant("compare")
-    if args.size is not None and not 0 < args.size < math.inf:
-        raise refusal("--size", f"{args.size:g}", "a finite number > 0")
+    try:
+        found = _compared(args, scenario)
+    except _core.InvalidInput as error:
+        raise in_options(error, {"size": "--size"}) from None
+    if target is not None:
+        write_picture(target, found.plot())
+    if args.json:
+        print_json({"title": found.title, "attacked": found.attacked, "rows": found.rows})
+        return OK
+    _print(found, args.full)
+    if args.output:
+        print(f"written to {args.output}")
+    return OK
+
+
+def _compared(args: argparse.Namespace, scenario: Scenario) -> Comparison:
+    """The scenario's filters first, then all others."""
     own = {label: filter for label, filter in scenario.filters if filter is not None}
     attacked = _agents(args.agents, scenario.names) if args.agents else scenario.hit
     if not attacked:
@@ -78,15 +94,7 @@ def do(args: argparse.Namespace) -> int:
         size=args.size,
     )
     found.rows[:0] = mine.rows
-    if target is not None:
-        write_picture(target, found.plot())
-    if args.json:
-        print_json({"title": found.title, "attacked": found.attacked, "rows": found.rows})
-        return OK
-    _print(found, args.full)
-    if args.output:
-        print(f"written to {args.output}")
-    return OK
+    return found
 
 
 _LEGEND = (

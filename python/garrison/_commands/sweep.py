@@ -15,6 +15,7 @@ from garrison._commands.terminal import (
     REFUSED,
     Commands,
     console_for,
+    in_options,
     print_json,
     print_table,
     whole_number,
@@ -89,8 +90,7 @@ def do(args: argparse.Namespace) -> int:
             progress=_tell if sys.stderr.isatty() else None,
         )
     except _core.InvalidInput as error:
-        words = str(error)
-        raise type(error)(f"-o{words[3:]}" if words.startswith("out:") else words) from None
+        raise in_options(error, {"out": "-o"}) from None
     except KeyboardInterrupt:
         again = shlex.join(["garrison", *sys.argv[1:]])
         print(f"\ngarrison: interrupted; what is done is kept, go on with: {again}", file=sys.stderr)

@@ -6,9 +6,11 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeAlias
+
+from garrison import _core
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -118,6 +120,12 @@ def working(words: str) -> Iterator[None]:
         return
     with console.status(f"{words} (Ctrl-C ends it)"):
         yield
+
+
+def in_options(error: _core.Error, options: Mapping[str, str]) -> _core.Error:
+    """The refusal of a function with the command's options in place of its arguments (name -> option)."""
+    name, colon, rest = str(error).partition(":")
+    return type(error)(f"{options[name]}:{rest}") if colon and name in options else error
 
 
 def tell_work(words: str, done: int, total: int) -> None:

@@ -49,6 +49,7 @@ __all__: list[str] = [
     "leverage_window",
     "lists_complete",
     "meters",
+    "noise_root",
     "observer_table",
     "order_bound",
     "order_rule",
@@ -2024,6 +2025,28 @@ def meters(
     ------
     InvalidInput
         Shapes do not fit, or the rows do not determine the state.
+    """
+
+def noise_root(
+    Q: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    Gam of Window.advance for process noise of a covariance: Gam Gam' = Q.
+
+    Parameters
+    ----------
+    Q : (n, n) array
+        Symmetric, positive semidefinite.
+
+    Returns
+    -------
+    (n, k) array
+        Without directions in which there is no noise.
+
+    Raises
+    ------
+    InvalidInput
+        No covariance.
     """
 
 def observer_table(

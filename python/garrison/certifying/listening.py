@@ -8,10 +8,9 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from garrison.certifying.plant import Plant
+from garrison.certifying.plant import Levels, Plant
 
 Array = NDArray[np.float64]
-Levels = tuple[float, float, float]
 
 
 class Listener:

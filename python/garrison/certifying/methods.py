@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from garrison import _core
 from garrison._core import certificate
 from garrison.certifying.listening import Listener
-from garrison.certifying.plant import Plant
+from garrison.certifying.plant import Levels, Plant
 
 Array = NDArray[np.float64]
-Levels = tuple[float, float, float]
 
 #: sets of sources left out up to which a window goes through all of them; beyond, a search goes as far as it can
 MOST_SETS = 500

@@ -12,6 +12,8 @@ from garrison._core import certificate
 from garrison.words import refusal
 
 Array = NDArray[np.float64]
+#: z1, z2, zc of a bank or a window
+Levels = tuple[float, float, float]
 
 
 class Plant:
@@ -24,7 +26,7 @@ class Plant:
             raise refusal("model", had, "one process_covariance for all, and measurement_covariance")
         self.n = model.states
         self.A, self.Q = np.asarray(model.A, dtype=float), np.asarray(Q, dtype=float)
-        self.root = _root(self.Q)
+        self.root = certificate.noise_root(self.Q)
         given = sources_of(model)
         self.names = list(dict.fromkeys(given))
         places = {name: k for k, name in enumerate(self.names)}
@@ -54,7 +56,7 @@ class Plant:
         taken = all_sources if sources is None else [all_sources[k] for k in sources]
         return certificate.Bank(self.A, self.Q, taken, s, limit)
 
-    def steady(self, s: int, levels: tuple[float, float, float], limit: int) -> Array:
+    def steady(self, s: int, levels: Levels, limit: int) -> Array:
         """Half widths that a bank never exceeds (theorem B2)."""
         return certificate.bank_steady_width(self.A, self.Q, self._sources(), s, *levels, limit)
 
@@ -83,15 +85,6 @@ def sources_of(model: _core.Model, agents: Iterable[str] | None = None) -> list[
 def model_agents(model: _core.Model) -> list[str]:
     """What agents are called as sources."""
     return [f"agent {i}" for i in range(model.agents)]
-
-
-def _root(Q: Array) -> Array:
-    """Gam with Gam Gam' = Q, without its zero columns: zero where all variances are scaled to 1, since units differ."""
-    deviation = np.sqrt(np.diag(Q))
-    scale = np.where(deviation > 0, deviation, 1.0)
-    values, vectors = np.linalg.eigh((Q + Q.T) / 2 / np.outer(scale, scale))
-    kept = values > 1e-14 * max(float(values.max()), 0.0)
-    return np.asarray(scale[:, None] * vectors[:, kept] * np.sqrt(values[kept]))
 
 
 def _factors(R: list[Array], source: NDArray[np.int_]) -> list[Array]:

@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from garrison import arguments
+from garrison.labelled import axes_of_any
 from garrison.reductions import share_of
+from garrison.store import REPORT
 from garrison.words import Hinting, hinted, near, refusal, shown
 
 #: what a run keeps when nothing else is asked for, and everything that it can keep
@@ -17,18 +19,10 @@ KEEPABLE = (*KEEP, "signals", "details", "box")
 ALWAYS = ("error", "truth")
 #: what has no times of which some could be left out
 _LISTS = ("details",)
-#: arrays that "report" stands for, of which statistics may be kept
-_REPORT = ("bound", "published", "statistic", "threshold")
-_REDUCIBLE = ("error", "estimate", "truth", "box", "measurements", *_REPORT)
+#: arrays of which statistics may be kept: not kinds and verdicts
+_REDUCIBLE = ("error", "estimate", "truth", "box", "measurements", "bound", "published", "statistic", "threshold")
 _STATISTICS = ("max", "min", "mean", "count")
 _AXES = ("trial", "time", "sample", "agent", "state", "output")
-#: axes of arrays that have others than trial, time and agent
-_AXES_OF = {
-    "estimate": ("trial", "time", "agent", "state"),
-    "box": ("trial", "time", "agent", "state"),
-    "truth": ("trial", "time", "agent", "state"),
-    "measurements": ("trial", "sample", "output"),
-}
 
 
 @dataclass(frozen=True)
@@ -129,7 +123,7 @@ class Kept:
 
     def keeps(self, array: str) -> bool:
         """Whether an array is kept itself."""
-        return ("report" if array in _REPORT else array) in self.whole
+        return ("report" if array in REPORT else array) in self.whole
 
     @property
     def logs(self) -> bool:
@@ -157,7 +151,7 @@ def kept(keep: Any) -> Kept:
     thinned = {name: step for name, step in steps.items() if step is not None and step > 1}
     said: dict[str, Any] = {name: _said(thinned.get(name)) for name in steps}
     said |= {name: {"reduce": list(one.statistics), "over": list(one.over)} for name, one in reduced.items()}
-    needed = ["report" if name in _REPORT else name for name in reduced]
+    needed = ["report" if name in REPORT else name for name in reduced]
     names = list(dict.fromkeys([*steps, *needed]))
     return Kept(
         said, names, thinned, {name: (list(r.statistics), list(r.over)) for name, r in reduced.items()}, list(steps)
@@ -173,7 +167,7 @@ def _reduction(name: Any, value: Any) -> Reduce | None:
     if name not in _REDUCIBLE:
         advice = near(name, _REDUCIBLE) if isinstance(name, str) else ""
         raise refusal("keep", f"{shown(name)} with garrison.reduce", f"one of {', '.join(_REDUCIBLE)}", advice)
-    axes = _AXES_OF.get(name, ("trial", "time", "agent"))
+    axes = axes_of_any(name)
     if wrong := [axis for axis in value.over if axis not in axes]:
         raise refusal(f"keep[{name!r}]: over", ", ".join(wrong), f"some of {', '.join(axes)}")
     return value

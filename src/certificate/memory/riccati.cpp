@@ -35,8 +35,13 @@ std::optional<Doubled> doubled(const Matrix& A, const Matrix& info, const Matrix
   return found;
 }
 
-std::optional<Matrix> in_these_units(const Matrix& A, const Matrix& C, const Matrix& Q, const Vector& R) {
-  const auto found = doubled(A, C.transpose() * R.cwiseInverse().asDiagonal() * C, Q);
+Matrix information(const Matrix& C, const Vector& R) {
+  return C.transpose() * R.cwiseInverse().asDiagonal() * C;
+}
+
+/// P of what was found, if it is the solution.
+std::optional<Matrix> solution(const std::optional<Doubled>& found, const Matrix& A, const Matrix& C,
+                               const Matrix& Q, const Vector& R) {
   if (!found || !found->settled) return {};
   const Matrix& P = found->P;
   const Matrix I = Matrix::Identity(A.rows(), A.rows());
@@ -45,32 +50,32 @@ std::optional<Matrix> in_these_units(const Matrix& A, const Matrix& C, const Mat
   if (!closed.allFinite()) return {};
   if (!(spectral_radius(closed) < 1.0 - 1e-9)) return {};
   const Matrix next = closed * P * A.transpose() + Q;
-  if (!((next - P).cwiseAbs().maxCoeff() <= 1e-6 * P.cwiseAbs().maxCoeff())) return {};  // not the solution
+  if (!((next - P).cwiseAbs().maxCoeff() <= 1e-6 * P.cwiseAbs().maxCoeff())) return {};
   return P;
 }
 
-/// Deviations of the states, roughly, where they differ by so much that their units matter; else none.
-std::optional<Vector> far_apart(const Matrix& A, const Matrix& C, const Matrix& Q, const Vector& R) {
+/// Whether the deviations of the states differ by so much that their units matter.
+bool far_apart(const Vector& deviations) {
   constexpr double kFar = 1e3;
-  const auto rough = doubled(A, C.transpose() * R.cwiseInverse().asDiagonal() * C, Q);
-  if (!rough || !(rough->P.diagonal().minCoeff() > 0.0)) return {};
-  const Vector deviations = rough->P.diagonal().cwiseSqrt();
-  if (!(deviations.maxCoeff() > kFar * deviations.minCoeff())) return {};
-  return deviations;
+  return deviations.minCoeff() > 0.0 && deviations.maxCoeff() > kFar * deviations.minCoeff();
 }
 
 }  // namespace
 
 std::optional<Matrix> steady_covariance(const MatrixRef& A, const MatrixRef& C, const MatrixRef& Q,
                                         const VectorRef& R) {
-  const auto units = far_apart(A, C, Q, R);
-  if (!units) return in_these_units(A, C, Q, R);
-  const auto D = units->asDiagonal();
-  const Vector inverse = units->cwiseInverse();
-  const auto found =
-      in_these_units(inverse.asDiagonal() * A * D, C * D, inverse.asDiagonal() * Q * inverse.asDiagonal(), R);
-  if (!found) return {};
-  return Matrix(D * *found * D);
+  const auto found = doubled(A, information(C, R), Q);
+  const Vector deviations = found ? Vector(found->P.diagonal().cwiseMax(0.0).cwiseSqrt()) : Vector();
+  if (!found || !far_apart(deviations)) return solution(found, A, C, Q, R);
+  // Again with states in these units, in which no number is rounding of another.
+  const auto D = deviations.asDiagonal();
+  const Vector inverse = deviations.cwiseInverse();
+  const Matrix A_D = inverse.asDiagonal() * A * D;
+  const Matrix C_D = C * D;
+  const Matrix Q_D = inverse.asDiagonal() * Q * inverse.asDiagonal();
+  const auto scaled = solution(doubled(A_D, information(C_D, R), Q_D), A_D, C_D, Q_D, R);
+  if (!scaled) return {};
+  return Matrix(D * *scaled * D);
 }
 
 }  // namespace garrison::certificate::detail

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../require.hpp"
+#include "core/spectrum.hpp"
 #include "dense.hpp"
 
 namespace garrison::certificate {
@@ -134,6 +135,21 @@ void Window::advance(const MatrixRef& A, const MatrixRef& Gam, const VectorRef& 
   o_room_ = A.lazyProduct(o_) + u;
   o_.swap(o_room_);
   ++step_;
+}
+
+Matrix noise_root(const MatrixRef& Q) {
+  constexpr double kNone = 1e-14;  // of the largest, in those units
+  if (Q.rows() < 1) refuse("Q", detail::shape(Q), "at least 1 x 1");
+  detail::require_covariance("Q", Q, Q.rows());
+  const Matrix root = garrison::detail::covariance_root(Q);
+  const Vector scale = Q.diagonal().cwiseMax(0.0).cwiseSqrt();
+  Vector size = Vector::Zero(root.cols());
+  for (Eigen::Index i = 0; i < root.rows(); ++i)
+    if (scale(i) > 0.0) size += (root.row(i).transpose() / scale(i)).cwiseAbs2();
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < size.size(); ++k)
+    if (size(k) > kNone * size.maxCoeff()) kept.push_back(k);
+  return root(Eigen::all, kept);
 }
 
 }  // namespace garrison::certificate

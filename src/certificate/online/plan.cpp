@@ -172,13 +172,7 @@ void plan_banks(Plan& plan, const Model& model, const Network& network) {
 int reach_of(const Network& network) {
   constexpr int kMostAgents = 1000;
   if (network.agents() > kMostAgents) return kUnknownReach;
-  int reach = 0;
-  for (int i = 0; i < network.agents(); ++i) {
-    const garrison::detail::Hops hops = garrison::detail::hops_from(network, i);
-    if (!hops.reaches_all) return kUnknownReach;
-    reach = std::max(reach, hops.furthest);
-  }
-  return reach;
+  return garrison::detail::diameter(network).value_or(kUnknownReach);
 }
 
 bool consistent_bank(const Plan& plan) {

@@ -111,14 +111,6 @@ std::function<Nominal()> gaussian(const certificate::Kernels& kernels,
   };
 }
 
-/// Hops between the agents that are furthest apart; of a connected network.
-int diameter(const Network& network) {
-  int furthest = 0;
-  for (int from = 0; from < network.agents(); ++from)
-    furthest = std::max(furthest, garrison::detail::hops_from(network, from).furthest);
-  return furthest;
-}
-
 }  // namespace
 
 DataFree DataFree::of(int agent) const {
@@ -199,8 +191,8 @@ DataFree data_free(const Model& model, const Network& network, const DataFreeOpt
   found.worst = found.d.rowwise().maxCoeff();
   if (o.failure > 0.0) return found;  // theorems I and L need bounded noise here
   if (o.detector && o.rounds > 0)
-    found.proved = proved_sets(model.A(), C, J, o.attacked, diameter(network), o.rounds, noise.process_bound,
-                               noise.measurement_bound);
+    found.proved = proved_sets(model.A(), C, J, o.attacked, garrison::detail::diameter(network).value(),
+                               o.rounds, noise.process_bound, noise.measurement_bound);
   if (o.recovery) {
     found.losses = loss_tables(system, found, spread, o.beta, noise.process_bound, noise.measurement_bound);
     found.losses.excess = excess_of(system, kernels, o.attacked);

@@ -2,7 +2,6 @@
 // The certificate of a run: what is asked for, and what design leaves of it for the agents.
 #pragma once
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -108,10 +107,12 @@ struct GARRISON_EXPORT Plan {
   /// Part of `failure` that W and R together may use.
   double own_failure() const;
   bool deterministic() const { return wanted.failure == 0.0; }
-  /// Whether messages of a round carry the region that is relayed. Not those of the first, if there are
-  /// enough: the regions of the sample follow from what they bring.
+  /// The rounds whose messages carry the region that is relayed are first_relay .. relay_end - 1. Not the
+  /// first of all, if there are enough: the regions of the sample follow from what it brings.
+  int first_relay(int rounds) const { return reach < rounds ? 1 : 0; }
+  int relay_end(int rounds) const { return reach < rounds - kRepeats ? reach + kRepeats : rounds; }
   bool relays_in(int round, int rounds) const {
-    return round >= (reach < rounds ? 1 : 0) && round < std::min(reach, rounds) + kRepeats;
+    return round >= first_relay(rounds) && round < relay_end(rounds);
   }
   int ages() const { return static_cast<int>(added.size()) - 1; }
   int states() const { return static_cast<int>(A.rows()); }
