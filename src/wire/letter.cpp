@@ -109,7 +109,7 @@ class AnyFields {
       case FieldKind::sparse: {
         const auto* numbers = std::get_if<std::vector<double>>(&value);
         if (numbers == nullptr || numbers->size() != slot.numbers.size())
-          wrong(std::to_string(slot.numbers.size()) + " numbers");
+          wrong(amount(slot.numbers.size(), "number"));
         else
           slot.numbers = *numbers;
         break;
@@ -225,7 +225,7 @@ Letter Letter::from_bytes(std::span<const std::byte> bytes) {
     refuse("message", got, "what to_bytes() of a message returned");
   };
   if (bytes.size() < kFrame || load<std::uint32_t>(bytes.data()) != kMagic)
-    refuse_bytes(std::to_string(bytes.size()) + " bytes that do not begin like a message");
+    refuse_bytes(amount(bytes.size(), "byte") + " that do not begin like a message");
   const auto content = bytes.subspan(kFrame);
   if (load<std::uint64_t>(bytes.data() + 4) != checksum(content)) refuse_bytes("damaged bytes");
   Letter letter;

@@ -146,9 +146,8 @@ void require_banks(const Plan& plan, const Network& network) {
     const double members = detail::choices(sources, plan.wanted.attacked);
     if (!(members <= kMostBankMembers))
       refuse("memory",
-             "true where agent " + std::to_string(i) + " hears " + std::to_string(sources) +
-                 " sources with " + std::to_string(plan.wanted.attacked) + " attacked: " + text(members) +
-                 " filters",
+             "true where agent " + std::to_string(i) + " hears " + amount(sources, "source") + " with " +
+                 std::to_string(plan.wanted.attacked) + " attacked: " + text(members) + " filters",
              "at most " + std::to_string(kMostBankMembers),
              plan.wanted.spread == Spread::flooded ? "take \"local\" or \"direct\", or a smaller `attacked`"
                                                    : "take a smaller `attacked`");
@@ -200,7 +199,7 @@ Plan make_plan(const Wanted& wanted, const Model& model, const Network& network)
   require_wanted(wanted, model);
   const double numbers = static_cast<double>(model.agents()) * model.total_outputs();
   if (wanted.spread == Spread::flooded && numbers > 1e8)
-    refuse("certificate", "flooded with " + std::to_string(model.agents()) + " agents",
+    refuse("certificate", "flooded with " + amount(model.agents(), "agent"),
            "a smaller network: every agent keeps all measurements", "take \"local\"");
   Plan plan;
   plan.wanted = wanted;
