@@ -393,6 +393,8 @@ struct GARRISON_EXPORT Structural {
 
 }  // namespace garrison
 
+#include "garrison/filters/structural/bound.hpp"
 #include "garrison/filters/structural/judge.hpp"
 #include "garrison/filters/structural/params.hpp"
 #include "garrison/filters/structural/step.hpp"
+#include "garrison/filters/structural/trust.hpp"
