@@ -112,8 +112,7 @@ void Structural::use_all(const Local& l, const Gains& g, State<n>& s,
   if (std::isnan(s.y)) {
     missing[gone++] = 0;
   } else {
-    const double* column = g.columns.data() + heard->first;
-    for (int k = 0; k < nn; ++k) x[k] += column[k] * s.innovation;
+    add_scaled<n>(s.innovation, g.columns.data() + heard->first, x, nn);
   }
   for (std::size_t at = 0; at < inbox.size(); ++at) {
     const int e = s.senders[at];
@@ -124,9 +123,8 @@ void Structural::use_all(const Local& l, const Gains& g, State<n>& s,
       missing[gone++] = e;
       continue;
     }
-    const double* column = g.columns.data() + j.first;
     const double innovation = letter.numbers[nn] - dot(g, j.id, s.prior, nn);
-    for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
+    add_scaled<n>(innovation, g.columns.data() + j.first, x, nn);
   }
   s.gone = gone;
   if constexpr (n != Dynamic)

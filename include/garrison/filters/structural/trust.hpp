@@ -22,8 +22,7 @@ bool Structural::use_trusted(const Local& l, const Gains& g, State<n>& s, const 
   Doubts doubts{carried};
   const auto use = [&](int e, double innovation) {
     doubts.heeded = true;
-    const double* column = g.columns.data() + heard[e].first;
-    for (int k = 0; k < nn; ++k) x[k] += column[k] * innovation;
+    add_scaled<n>(innovation, g.columns.data() + heard[e].first, x, nn);
     take_back(l, g, s, e, carried);
   };
   const auto miss = [&](int e) { s.missing[static_cast<std::size_t>(s.gone++)] = e; };
