@@ -93,9 +93,7 @@ bool Structural::update(const Local& l, const Gains& g, State<n>& s, const Inbox
     out = use_trusted(l, g, s, inbox, used, carried);
   else
     use_all(l, g, s, inbox);
-  if (!carried) return !out;
-  constexpr int like = spread_dimension(n);
-  run_widest_of<UpdateSpread<like>, like>(&l, &g, static_cast<Memory*>(&s));
+  if (carried) run_spread<UpdateSpread, n>(l, g, s);
   return !out;
 }
 
