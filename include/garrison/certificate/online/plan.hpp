@@ -133,8 +133,8 @@ struct GARRISON_EXPORT Plan {
   int place(int agent) const;
   int outputs(int agent) const;
   /// Whether measurements are not sent that follow from the estimate in an agent's first message. Flooded,
-  /// they travel on as numbers.
-  bool derives() const { return wanted.spread != Spread::flooded; }
+  /// they travel on as numbers; direct, an agent that lies in its estimates must not lie with them.
+  bool derives() const { return wanted.spread == Spread::local; }
   bool derives(int agent) const { return derives() && outputs(agent) > 0; }
   /// What everybody uses for the measurement of this row, its own agent included: the same bits everywhere.
   double derived(std::size_t row, const double* x) const;
