@@ -25,7 +25,8 @@ constexpr double kBesideBank = 0.5;
 /// Epochs of a bank: more samples than 2^62 do not come.
 constexpr int kEpochs = 62;
 // Bounds of noise, with room for what rounding does to measurements of states a million times as large: where
-// inputs are known, what is left of these measurements is small, and does not show it.
+// inputs are known, what is left of these measurements is small, and does not show it. kFollows is part of
+// it.
 constexpr double kRounded = 1.0 + 1e-8;
 
 void require_wanted(const Wanted& wanted, const Model& model) {
@@ -193,6 +194,27 @@ int Plan::place(int agent) const {
 int Plan::outputs(int agent) const {
   const int at = place(agent);
   return at < 0 ? 0 : first[static_cast<std::size_t>(at) + 1] - first[static_cast<std::size_t>(at)];
+}
+
+double Plan::derived(std::size_t row, const double* x) const {
+  const double* const c = rows.data() + row * static_cast<std::size_t>(states());
+  double y = 0.0;
+  for (int k = 0; k < states(); ++k) y += c[k] * x[k];
+  return y;
+}
+Told Plan::tell(int agent, const double* y, const double* x, double* out) const {
+  const int rows_here = outputs(agent);
+  const auto begin = static_cast<std::size_t>(first[static_cast<std::size_t>(place(agent))]);
+  bool follows = derives(agent) && x != nullptr;
+  for (int k = 0; k < rows_here && follows; ++k) {
+    const std::size_t row = begin + static_cast<std::size_t>(k);
+    const auto r = static_cast<Eigen::Index>(row);
+    out[k] = derived(row, x);
+    follows = std::abs(out[k] - y[k]) <= kFollows * (deterministic() ? width(r) : std::sqrt(variance(r)));
+  }
+  if (follows) return Told::derived;
+  std::copy_n(y, rows_here, out);
+  return derives(agent) ? Told::as_numbers : Told::never_derived;
 }
 
 Plan make_plan(const Wanted& wanted, const Model& model, const Network& network) {
