@@ -74,7 +74,7 @@ inline auto PartialSharing::Params::fields() {
              .symbol = "K_i, C_i",
              .unit = "",
              .doc = "\"frozen\" once (11) has converged, \"varying\" for ever (same values but for "
-                    "rounding), or \"steady\": the limits from the start",
+                    "rounding; in a plant that changes they follow it), or \"steady\": the limits from the start",
              .choices = {"frozen", "varying", "steady"}}));
 }
 
