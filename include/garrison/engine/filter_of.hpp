@@ -142,9 +142,9 @@ class PreparedOf final : public Prepared {
   }
 
  private:
-  static void require_no_reason(const std::string& what, const std::string& reason) {
+  void require_no_reason(const std::string& what, const std::string& reason) const {
     if (!reason.empty())
-      refuse("model", what, "a constant plant for " + std::string(F::name),
+      refuse("model", what, "a constant plant for " + filter_->name(),
              reason + "; see docs/how-to/changing-plants.md");
   }
   AgentPart part_of(int id) const {
