@@ -2,6 +2,7 @@
 // Single agents.
 #include "agents.hpp"
 #include "bytes.hpp"
+#include "garrison/core/series.hpp"
 #include "garrison/wire/letter.hpp"
 
 using namespace garrison;
@@ -54,6 +55,40 @@ PyAgent agent_kept(const std::vector<std::byte>& all) {
              "so much was missed: use reset(x0, t), or listen and join");
     default:
       refuse(call, "a refusal (" + std::string(word(why)) + ")", "a call that fits");
+  }
+}
+
+/// Another plant, with the reason in words where it is refused.
+void vary(PyAgent& a, const std::optional<Matrix>& A, const std::optional<Matrix>& C,
+          const std::optional<Matrix>& Q, const std::optional<Matrix>& R) {
+  const auto shape = [](Eigen::Index rows, Eigen::Index cols) {
+    return std::to_string(rows) + " x " + std::to_string(cols);
+  };
+  const auto require = [&](const char* name, const std::optional<Matrix>& given, int rows, int cols) {
+    if (!given) return;
+    if (given->rows() != rows || given->cols() != cols)
+      refuse(name, shape(given->rows(), given->cols()), shape(rows, cols));
+  };
+  require("A", A, a->states(), a->states());
+  require("C", C, a->outputs(), a->states());
+  require("process_covariance", Q, a->states(), a->states());
+  require("measurement_covariance", R, a->outputs(), a->outputs());
+  const Matrix W = R ? whitener(*R) : Matrix();
+  if (R && W.size() != R->size())
+    refuse("measurement_covariance", "a matrix that is not positive definite",
+           "a symmetric positive definite one");
+  const auto given = [](const std::optional<Matrix>& one) { return one ? &*one : nullptr; };
+  const Change plant{.A = given(A), .C = given(C), .Q = given(Q), .W = R ? &W : nullptr};
+  switch (const Refusal why = a->vary(plant); why) {
+    case Refusal::none:
+      return;
+    case Refusal::foreign:
+      refuse("vary",
+             "an agent of " + std::string(a->family()) + " that is designed for one plant, or certified",
+             "one of a filter that takes a VaryingModel, without a certificate",
+             "see docs/how-to/changing-plants.md");
+    default:
+      refuse_call(a, "vary", why, a->sample());
   }
 }
 
@@ -191,6 +226,23 @@ and takes an estimate from what its neighbours send.
 x0 : (n,) array | Estimate of the state, in its units; finite, at most 1e150.
 t : int, optional | The sample that x0 is the estimate of. Default: the beginning of a run.
 ! InvalidInput | A wrong size, a number that is not finite, or a sample before the beginning of a run.)")
+              .c_str())
+      .def(
+          "vary",
+          [](PyAgent& a, std::optional<Matrix> A, std::optional<Matrix> C, std::optional<Matrix> Q,
+             std::optional<Matrix> R) { vary(a, A, C, Q, R); },
+          py::kw_only(), py::arg("A") = py::none(), py::arg("C") = py::none(),
+          py::arg("process_covariance") = py::none(), py::arg("measurement_covariance") = py::none(),
+          numpydoc(
+              R"(The plant of the next samples, until told again; for the filters that take a VaryingModel, with the bits of its
+simulation. What is left out is the design's. `reset` goes back to the design's; a snapshot does not hold it.
+
+A : (n, n) array, optional | Leads to the next sample.
+C : (m_i, n) array, optional | Of the own sensor.
+process_covariance : (n, n) array, optional | Of the noise on the way to the next sample.
+measurement_covariance : (m_i, m_i) array, optional | Of the own sensor; positive definite.
+! InvalidInput | Sizes that do not fit, numbers that are not finite, a filter that is designed for one plant, an
+  agent with a certificate, or a call within a sample.)")
               .c_str())
       .def(
           "sense",

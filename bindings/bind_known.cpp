@@ -119,10 +119,15 @@ model : Model | With B.)")
       .def_property_readonly("state", &Response::state, "s, (n,).")
       .def_property_readonly("sample", &Response::sample, "The present sample, from 0.")
       .def(
-          "advance", [](Response& r, const Vector& inputs) { r.advance(inputs); }, py::arg("inputs"),
+          "advance",
+          [](Response& r, const Vector& inputs, const std::optional<Matrix>& A,
+             const std::optional<Matrix>& B) { r.advance(A.value_or(r.A()), B.value_or(r.B()), inputs); },
+          py::arg("inputs"), py::kw_only(), py::arg("A") = py::none(), py::arg("B") = py::none(),
           numpydoc(R"(Moves to the next sample.
 
 inputs : (p,) array | u of this sample, one number per column of B.
+A : (n, n) array, optional | Leads to the next sample where the plant changes; default the model's.
+B : (n, p) array, optional | Likewise.
 ! InvalidInput | A wrong size, a number that is not finite, or a response that overflows.)")
               .c_str())
       .def(

@@ -256,7 +256,8 @@ class OwnPrepared final : public Prepared {
   }
   void check_start(const Matrix&) const override {}
   void check_log(std::span<const double>) const override {}
-  void require_varying(const std::string&) const override {}
+  void require_varying(const Series&) const override {}
+  void require_functions() const override {}
   std::unique_ptr<garrison::Agent> agent(int) const override { refuse_alone("an agent on its own"); }
   std::unique_ptr<TrialsRunner> trials() const override { return nullptr; }
   std::unique_ptr<World> world(const WorldOptions&) const override { return nullptr; }

@@ -50,6 +50,9 @@ MEANINGS = {
         "sources": "who can falsify each measurement; those of one receiver have one source",
         "units": 'units by the names of states, outputs and inputs: `{ x = "m" }`, or one for all',
         "exposed": "per agent, how many of its first outputs an attacker can reach",
+        "interval": "sampling time: `A` and `B` are those of dx/dt = A x + B u, discretised exactly",
+        "times": "T + 1 times, increasing, likewise: the start's, then one per sample, in the unit of time of `A`",
+        "process_intensity": "with these two: spectral density of the noise, n x n numbers, or one for all states",
         "A_over_time": "A of every step, in place of `A`: T x n x n numbers, or a file with the matrices below "
         "each other; see [plants that change](../how-to/changing-plants.md)",
         "B_over_time": "likewise",

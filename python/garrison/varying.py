@@ -26,12 +26,13 @@ _PARTS = ("A", "B", "C", "process_covariance", "measurement_covariance")
 class VaryingModel(metaclass=Hinting):
     """A plant that changes in time: x(t+1) = A(t) x(t) + B(t) u(t) + w(t), y(t) = C(t) x(t) + v(t).
 
-    Taken by `simulate`, `replay`, `central_kalman` and `local_kalman`. Filters: `ScalarGain`, `Saturation` without
-    detector, adaptive and table, and filters of your own (`agent.A`, `agent.C` are those of the sample); the others are
-    designed for one A and C and refuse it. No theorem of theirs covers it, so their bounds are absent
-    (`BoundKind.VARYING`). Certificates hold: each sample has its rows and variances; where A or process_covariance
-    changes, regions of earlier samples count with `memory` only. Where only C changes, between finitely many rows
-    (sightings), give a constant Model all rows and measure nan where there is no sighting: everything holds then.
+    Taken by `simulate`, `replay`, `compare`, `central_kalman` and `local_kalman`. Filters: `ScalarGain`, `Saturation`
+    without detector, adaptive and table, `PartialSharing(gains="varying")`, whose gains follow it, and filters of your
+    own (`agent.A`, `agent.C` are those of the sample); the others are designed for one A and C and refuse it. No
+    theorem of theirs covers it, so their bounds are absent (`BoundKind.VARYING`). Certificates hold: each sample has
+    its rows and variances; where A or process_covariance changes, regions of earlier samples count with `memory` only.
+    Where only C changes, between finitely many rows (sightings), give a constant Model all rows and measure nan where
+    there is no sighting: everything holds then.
     Immutable; compares by value, copies and pickles.
 
     Parameters
@@ -46,7 +47,7 @@ class VaryingModel(metaclass=Hinting):
         Entry r is that of sample r + 1, one array per agent or all rows on top of each other. A function is called with
         t = 1..steps and returns the rows of all agents, (outputs, n) or a list with those of each.
     process_covariance : (T, n, n) array or function, optional
-        Of w(t); simulated, and used by the Kalman filters and certificates.
+        Of w(t); simulated, and used by the Kalman filters, `PartialSharing` and certificates.
     measurement_covariance : list of (T, m_i, m_i) arrays, (T, outputs) array or function, optional
         Of v(t), used likewise; entry r is that of sample r + 1. One array per agent; or the variances of all outputs,
         which are independent then; or (T, outputs, most m_i), those of all agents below each other with zeros right of
@@ -260,8 +261,12 @@ def parted(model: Any) -> tuple[Any, dict[str, Array]]:
     return (model.model, model.parts) if isinstance(model, VaryingModel) else (model, {})
 
 
-def undriven(model: _core.Model) -> _core.Model:
-    """The model without its known inputs: errors and bounds of all filters are the same (docs/adr/0016)."""
+def undriven(model: Any) -> Any:
+    """The plant without its known inputs: errors and bounds of all filters are the same (docs/adr/0016)."""
+    if isinstance(model, VaryingModel):
+        base, parts = undriven(model.model), dict[str, Any](model.parts)
+        parts.pop("B", None)
+        return VaryingModel(base, **parts) if parts else base
     if not model.inputs:
         return model
     kept = {k: v for k, v in model.__getstate__().items() if k not in ("B", "inputs")}

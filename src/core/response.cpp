@@ -4,7 +4,7 @@
 namespace garrison {
 
 Vector driven(const Matrix& A, const Vector& x, const Matrix& B, const VectorRef& u) {
-  if (A.cols() != x.size() || B.rows() != A.rows() || B.cols() != u.size())
+  if (A.rows() != x.size() || A.cols() != x.size() || B.rows() != A.rows() || B.cols() != u.size())
     refuse("B",
            std::to_string(B.rows()) + " x " + std::to_string(B.cols()) + " for " + amount(x.size(), "state") +
                " and " + amount(u.size(), "input"),

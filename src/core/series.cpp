@@ -53,6 +53,12 @@ int most_outputs(const Model& model) {
 
 }  // namespace
 
+Matrix whitener(const Matrix& R) {
+  const Eigen::LLT<Matrix> factor(R);
+  if (factor.info() != Eigen::Success || !(factor.matrixLLT().diagonal().array() > 0.0).all()) return {};
+  return factor.matrixL().solve(Matrix::Identity(R.rows(), R.cols()));
+}
+
 void require_series(const Series& series, const Model& model, int steps) {
   const auto n = model.states();
   require_part("A", series.A, n, n, steps);

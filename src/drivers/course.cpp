@@ -37,7 +37,7 @@ void require_nonlinear(const Prepared& prepared, const RunOptions& options) {
     if (r < 0 || r >= prepared.model().total_outputs())
       refuse("linear", "output " + std::to_string(r),
              "numbers of outputs, 0.." + std::to_string(prepared.model().total_outputs() - 1));
-  prepared.require_varying("a plant by functions");
+  prepared.require_functions();
   const auto plan = prepared.certificate();
   if (plan == nullptr) return;
   if (options.nonlinear->linear.empty())
@@ -69,8 +69,7 @@ void require_course(const Prepared& prepared, const RunOptions& options, int ste
   if (options.series == nullptr) return;
   require_series(*options.series, model, steps);
   if (prepared.certificate() != nullptr) require_certifiable(*prepared.certificate(), model, *options.series);
-  const bool moves = !options.series->A.empty() || !options.series->C.empty();
-  prepared.require_varying(moves ? "A or C that change in time" : "covariances that change in time");
+  prepared.require_varying(*options.series);
 }
 
 Course::Course(const Model& model, const RunOptions& options) : model_(model), options_(options) {
@@ -104,17 +103,24 @@ void Course::enter(int t, Runner& runner) {
   Change change{.A = now(series.A), .C = now(series.C), .Q = now(series.process_covariance)};
   change.rows = change.C;
   if (!series.measurement_covariance.empty()) {
-    measure_variance(t);
+    weigh(t);
     change.variance = &variance_;
+    change.W = &whitener_;
   }
   runner.vary(change);
 }
 
-void Course::measure_variance(int t) {
-  variance_.resize(model_.total_outputs());
-  for (int i = 0; i < model_.agents(); ++i)
-    variance_.segment(model_.offset(i), model_.outputs(i)) =
-        measurement_covariance_at(*options_.series, model_, i, t).diagonal();
+void Course::weigh(int t) {
+  const Matrix& all = options_.series->measurement_covariance[static_cast<std::size_t>(t - 1)];
+  variance_.resize(all.rows());
+  whitener_.setZero(all.rows(), all.cols());
+  for (int i = 0; i < model_.agents(); ++i) {
+    const Matrix R = measurement_covariance_at(*options_.series, model_, i, t);
+    variance_.segment(model_.offset(i), R.rows()) = R.diagonal();
+    // Families whose gains follow R have refused one without an inverse.
+    if (const Matrix W = whitener(R); W.size() > 0)
+      whitener_.block(model_.offset(i), 0, R.rows(), R.rows()) = W;
+  }
 }
 
 void Course::linearise(Runner& runner) {

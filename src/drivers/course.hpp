@@ -42,7 +42,8 @@ class Course {
   /// is f(xhat_i), and its innovation y_i - h_i(f(xhat_i)).
   void linearise(Runner& runner);
 
-  void measure_variance(int t);
+  /// Takes the covariances of the measurements of sample t.
+  void weigh(int t);
 
   const Model& model_;
   const RunOptions& options_;
@@ -55,6 +56,7 @@ class Course {
   Matrix identity_;
   Matrix linearised_;     // dh/dx at the predictions
   Vector variance_;       // of all outputs, where it changes
+  Matrix whitener_;       // likewise
   Matrix predictions_;    // n x N
   double longest_ = 0.0;  // row of h so far
   int t_ = 0;

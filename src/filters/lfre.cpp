@@ -68,11 +68,8 @@ NoiseOf noise_of(const Model& model, int i) {
 /// L^-1 with R = L L', so that H of least norm for the rows L^-1 C weighs outputs by their noise; I where R
 /// is singular.
 Matrix whitening(const Matrix& R) {
-  const Eigen::LLT<Matrix> llt(R);
-  const Matrix I = Matrix::Identity(R.rows(), R.rows());
-  if (llt.info() != Eigen::Success) return I;
-  const Matrix found = llt.matrixL().solve(I);
-  return found.allFinite() ? found : I;
+  const Matrix found = whitener(R);
+  return found.size() > 0 && found.allFinite() ? found : Matrix(Matrix::Identity(R.rows(), R.rows()));
 }
 
 bool distinct(std::vector<double> poles) {

@@ -145,3 +145,98 @@ def test_the_command(tmp_path, capsys):
     assert main(["compare", scenario, *options, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["attacked"] == [1, 6]
     assert main(["compare", scenario, "--agents", "nobody"]) == 2
+
+
+def changing(parts=("A", "C", "process_covariance", "measurement_covariance"), steps=30):
+    """A plant of seven agents over time."""
+    model, network, attacked = plant()
+    rng = np.random.default_rng(4)
+    angles = rng.normal(scale=0.05, size=steps)
+    turns = np.array([[[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]] for a in angles])
+    every = {
+        "A": 0.98 * turns,
+        "C": np.einsum("tij,mj->tmi", turns, np.vstack(model.C)),
+        "process_covariance": 1e-3 * rng.uniform(0.5, 2.0, size=(steps, 1, 1)) * np.eye(2),
+        "measurement_covariance": 1e-2 * rng.uniform(0.5, 2.0, size=(steps, 7)),
+    }
+    return gr.VaryingModel(model, **{name: every[name] for name in parts}), network, attacked
+
+
+def test_a_plant_that_changes_has_rows_for_all_and_reasons_for_those_that_need_a_constant_one():
+    model, network, attacked = changing()
+    attacks = {"bias": gr.attacks.Bias(attacked, value=3.0, start=10)}
+    found = gr.compare(model, network, attacked, attacks=attacks, steps=30, start=10, trials=2)
+    status = {row["filter"]: row["status"] for row in found.summary()}
+    refuse = {"lfre", "structural", "rdkf", "dkf"}
+    assert {label for label, words in status.items() if words != "ok"} == refuse
+    for label in refuse:
+        assert f"expected a constant plant for {label}" in status[label]
+    assert set(baselines.BASELINES) | {*KALMAN, "saturation", "scalar_gain", "partial_sharing"} <= set(status)
+    mine = {"frozen": gr.filters.PartialSharing(gain=0.1)}
+    refused = gr.compare(model, network, attacked, filters=mine, attacks=attacks, steps=30, start=10, trials=2)
+    assert 'gains = "varying" takes it' in refused.rows[0]["status"]
+    with pytest.raises(gr.InvalidInput, match="steps: got 31, expected at most 30"):
+        gr.compare(model, network, attacked, steps=31)
+
+
+@pytest.mark.parametrize("parts", [("A",), ("C",), ("process_covariance",), ("measurement_covariance", "C")])
+def test_a_baseline_takes_the_matrices_of_every_sample(parts):
+    model, network, _ = changing(parts)
+    y = measured(model, network, steps=30).measurements[0]
+    setting = baselines.plant_of(model, network, 0)
+    central = gr.central_kalman(model, y)
+    assert np.allclose(baselines.subset_search(setting, y)[:, 0], central, atol=1e-7)
+    alone = gr.VaryingModel(model.model, **model.parts), gr.Network([], agents=7)
+    found = baselines.covariance_intersection(baselines.plant_of(*alone, 0), y)
+    assert np.allclose(found, gr.local_kalman(*alone, y), atol=1e-7)
+
+
+def test_a_plant_that_does_not_change_has_the_numbers_of_the_constant_one():
+    model, network, attacked = plant()
+    same = gr.VaryingModel(model, A=np.repeat(model.A[None], 30, axis=0))
+    filters = {"saturation": gr.filters.Saturation(threshold=0.5, rounds=3)}
+    options = {"filters": filters, "attacks": {}, "steps": 30, "start": 10, "trials": 2}
+    one, two = (gr.compare(m, network, attacked, **options) for m in (model, same))
+    for a, b in zip(one.rows, two.rows, strict=True):
+        assert {k: v for k, v in a.items() if k != "microseconds"} == {
+            k: v for k, v in b.items() if k != "microseconds"
+        }
+
+
+def test_the_command_takes_a_scenario_over_time(tmp_path, capsys):
+    from garrison.cli import main
+
+    scenario = tmp_path / "turning.toml"
+    turns = [[[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]] * 2 for a in np.linspace(0, 1, 20)]
+    scenario.write_text(
+        f"""
+[model]
+A = [[1.0, 0.0], [0.0, 1.0]]
+C = [[1, 0], [0, 1], [1, 0], [0, 1]]
+C_over_time = {np.array(turns).tolist()}
+process_covariance = 1e-4
+measurement_covariance = 1e-2
+
+[network]
+kind = "complete"
+
+[filter]
+name = "scalar_gain"
+
+[run]
+steps = 20
+
+[[attack]]
+kind = "bias"
+agents = [1]
+start = 8
+value = 3.0
+"""
+    )
+    assert main(["compare", str(scenario), "--steps", "20", "--start", "8", "--trials", "1", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    status = {row["filter"]: row["status"] for row in rows if row["attack"] == "none"}
+    assert status["partial_sharing"] == status["scalar_gain (scenario)"] == "ok"
+    assert "expected a constant plant for rdkf" in status["rdkf"]
+    assert main(["compare", str(scenario), "--steps", "21"]) == 2
+    assert "expected at most 20" in capsys.readouterr().err

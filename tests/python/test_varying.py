@@ -250,7 +250,7 @@ steps = 9
     assert "the plant changes in time" not in told.out + told.err and "certificate_expected" in told.out
 
 
-@pytest.mark.parametrize("command", ["analyze", "compare", "calibrate", "design", "structure"])
+@pytest.mark.parametrize("command", ["analyze", "calibrate", "design", "structure"])
 def test_commands_about_a_constant_plant_refuse_others(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -113,7 +113,12 @@ inline void next_measurement(const Local& local, const double* x, double* out) n
 ///   measurement wherever it was used in full: certificates then need not send it;
 ///   `part(gains, id, neighbours)`: what one agent needs of the gains, the rest left empty;
 ///   `sound(state)`: whether a state that was read from a snapshot may be gone on from;
-///   `runs(gains)`: whether this build has all that they ask for (a solver, say).
+///   `runs(gains)`: whether this build has all that they ask for (a solver, say);
+///   `needs_constant(gains)`: why a plant that changes in time cannot be taken, in words; empty = it can;
+///   `vary(local, gains, change, first, state)`, for gains that follow the plant: what the state owes to
+///   matrices is done anew, once before the sample they are of. A and C are in `local`; of the others a null
+///   is the design's, and the agent's own W begins in row `first`. It may allocate before the first sample;
+///   `require_series(series, model)`: refuses covariances that gains cannot follow.
 /// - What is not inline of all this is in src/filters/<family>/runtime, which nodes link without design,
 ///   analysis and exceptions.
 /// - Optional: `first_sample` = 0 (default 1) for a family that has a sample at the start; `only_states`, the

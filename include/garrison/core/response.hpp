@@ -16,6 +16,9 @@ class GARRISON_EXPORT Response {
   /// s at the present sample, n numbers.
   const Vector& state() const { return s_; }
   std::int64_t sample() const { return t_; }
+  /// Of the constant plant.
+  const Matrix& A() const { return A_; }
+  const Matrix& B() const { return B_; }
   /// Moves to the next sample. `u`: p finite numbers. @throws InvalidInput otherwise, or where s overflows
   void advance(const VectorRef& u);
   /// The same with other matrices, where the plant changes in time.

@@ -41,6 +41,9 @@ inline Matrix measurement_covariance_at(const Series& series, const Model& model
   return series.measurement_covariance[static_cast<std::size_t>(t - 1)].block(model.offset(agent), 0, m, m);
 }
 
+/// W with W R W' = I, lower triangular; empty where R is not positive definite.
+GARRISON_EXPORT Matrix whitener(const Matrix& R);
+
 /// Refuses matrices of other shapes than the model's, fewer than `steps`, or not finite. @throws InvalidInput
 GARRISON_EXPORT void require_series(const Series& series, const Model& model, int steps);
 

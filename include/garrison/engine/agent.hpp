@@ -17,6 +17,7 @@
 namespace garrison {
 
 struct AgentPart;
+struct Change;
 
 /// The same agent as inside the engine, with the same bits: `sense` once per sample, then per round `deliver`
 /// what came and `fuse`. Nothing is allocated after construction but by `reset` and what returns vectors. It
@@ -106,6 +107,12 @@ class GARRISON_EXPORT Agent {
 
   /// What the body of a neighbour's message is made of, for people and for `Letter`.
   virtual std::vector<wire::FieldInfo> fields(int sender, std::int64_t t) = 0;
+
+  /// Between samples: the plant of the next ones, until told again; matrices of this agent alone, null = the
+  /// design's. It is no part of a snapshot, and `reset` goes back to the design's. Nothing is bounded by a
+  /// family's theorem then. Refused, with nothing changed: order, size, number, foreign (a family that is
+  /// designed for one plant, or an agent with a certificate). It may allocate.
+  virtual Refusal vary(const Change& plant) = 0;
 };
 
 /// What an agent needs besides its part of the gains: who it is, its plant, its sensor and whom it hears.

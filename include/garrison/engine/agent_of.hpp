@@ -11,6 +11,8 @@
 #include "garrison/engine/agent.hpp"
 #include "garrison/engine/agent_evidence.hpp"
 #include "garrison/engine/agent_mail.hpp"
+#include "garrison/engine/agent_plant.hpp"
+#include "garrison/engine/follows.hpp"
 #include "garrison/engine/snapshot_head.hpp"
 #include "garrison/wire/archive.hpp"
 #include "garrison/wire/message.hpp"
@@ -57,6 +59,12 @@ class AgentOf final : public Agent {
   std::int64_t sample() const override { return t_; }
   int round() const override { return round_; }
   std::int64_t start() const override { return first_sample<F>() - 1; }
+
+  Refusal vary(const Change& plant) override {
+    if (round_ < rounds_ || listening_) return Refusal::order;
+    if (evidence_ || !why_constant<F>(*gains_).empty()) return Refusal::foreign;
+    return plant_.take(plant, part_, local_);
+  }
 
   Refusal reset(const Vector& x0, std::int64_t t) override {
     if (x0.size() != local_.states) return Refusal::size;
@@ -136,6 +144,11 @@ class AgentOf final : public Agent {
 
   Report report() const noexcept override {
     Report found = F::template report<n>(local_, *gains_, state_);
+    if (plant_.varying()) {
+      found.bound = kNaN;
+      found.kind = CertificateKind::varying;
+      return found;
+    }
     const Vec<n>& x = F::template estimate<n>(state_);
     const Bound bound = certificate::least(found.bound, found.kind, evidence_.get(),
                                            {x.data(), static_cast<std::size_t>(x.size())});
@@ -226,6 +239,7 @@ class AgentOf final : public Agent {
 
   void set_state(const Vector& x0, std::int64_t t) {
     const Vec<n> x = x0;
+    plant_.constant(part_, local_);
     F::template init<n>(local_, *gains_, x, state_, outgoing_);
     fresh_ = t != start();
     if (fresh_) uncover();
@@ -250,6 +264,8 @@ class AgentOf final : public Agent {
   void begin(std::int64_t t, const double* y) noexcept {
     t_ = t;
     round_ = 0;
+    if constexpr (follows<F, n>())
+      if (plant_.varying()) F::template vary<n>(local_, *gains_, plant_.change(), 0, state_);
     F::template sense<n>(local_, *gains_, state_, y, t, outgoing_);
     if (evidence_) evidence_->begin(t, y, sensed<F, n>(outgoing_));
     lost_ = fresh_ || !usable<n>(F::template estimate<n>(state_));
@@ -307,6 +323,7 @@ class AgentOf final : public Agent {
   std::shared_ptr<const Gains> gains_;
   AgentPart part_;
   Local local_;
+  AgentPlant plant_;
   int rounds_;
   AgentMail mail_;
   AgentEvidence evidence_;

@@ -13,6 +13,7 @@
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/core/series.hpp"
 #include "garrison/core/trials.hpp"
 #include "garrison/core/world.hpp"
 #include "garrison/engine/agent.hpp"
@@ -38,9 +39,9 @@ class GARRISON_EXPORT Prepared {
   virtual void check_log(std::span<const double> measurements) const = 0;
   /// @throws InvalidInput when there is no such agent
   virtual std::unique_ptr<Agent> agent(int id) const = 0;
-  /// Refuses a plant whose A or C changes in time, or that is nonlinear (`what` says which), where the family
-  /// is designed for a constant one. @throws InvalidInput
-  virtual void require_varying(const std::string& what) const = 0;
+  /// Refuses a plant that changes in time where the family is designed for a constant one, and covariances
+  /// that its gains cannot follow. @throws InvalidInput
+  virtual void require_varying(const Series& series) const = 0;
   /// Several trials side by side, with the same bits as `runner`; null where the family has no such path.
   virtual std::unique_ptr<TrialsRunner> trials() const = 0;
   /// The plants that the agents drive, for one trial; null for families that watch one common plant.
@@ -58,6 +59,9 @@ class GARRISON_EXPORT Prepared {
   virtual std::vector<std::byte> part_bytes(int id) const = 0;
   /// First eight bytes of the digest of the whole design (engine/design_file.hpp).
   virtual std::uint64_t fingerprint() const = 0;
+
+  /// Refuses a nonlinear plant where the family cannot take predictions from outside. @throws InvalidInput
+  virtual void require_functions() const = 0;
 };
 
 /// The same design with a certificate. @throws InvalidInput when the model does not say what it needs, or the

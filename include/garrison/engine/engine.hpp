@@ -12,6 +12,7 @@
 #include "garrison/core/network.hpp"
 #include "garrison/engine/batch/batch.hpp"
 #include "garrison/engine/certified_network.hpp"
+#include "garrison/engine/follows.hpp"
 #include "garrison/engine/mailroom.hpp"
 #include "garrison/engine/places.hpp"
 #include "garrison/engine/plan/consensus.hpp"
@@ -71,6 +72,12 @@ class Engine final : public Runner {
   void vary(const Change& change) override {
     if (change.A != nullptr || change.C != nullptr) places_.vary(change.A, change.C);
     change_ = change;
+    if constexpr (follows<F, n>()) {
+      batch_.part();
+      for (std::size_t k = 0; k < states_.size(); ++k)
+        F::template vary<n>(local(k), *gains_, change, places_.first_output(k), states_[k]);
+      batch_.moved();
+    }
   }
   void estimates(Matrix& out) const override {
     batch_.settle();

@@ -13,6 +13,7 @@
 #include "garrison/engine/any_filter.hpp"
 #include "garrison/engine/design_file.hpp"
 #include "garrison/engine/engine.hpp"
+#include "garrison/engine/follows.hpp"
 #include "garrison/engine/part.hpp"
 #include "garrison/wire/outline.hpp"
 
@@ -101,12 +102,17 @@ class PreparedOf final : public Prepared {
       F::check_log(*gains_, model_, measurements);
   }
   std::unique_ptr<Agent> agent(int id) const override { return agent_of<F>(part(id)); }
-  void require_varying(const std::string& what) const override {
-    std::string reason = "its gains are designed for one A and C";
-    if constexpr (requires { F::needs_constant(*gains_); }) reason = F::needs_constant(*gains_);
-    if (!reason.empty())
-      refuse("model", what, "a constant plant for " + std::string(F::name),
-             reason + "; see docs/how-to/changing-plants.md");
+  void require_varying(const Series& series) const override {
+    const bool moves = !series.A.empty() || !series.C.empty();
+    require_no_reason(moves ? "A or C that change in time" : "covariances that change in time",
+                      why_constant<F>(*gains_));
+    if constexpr (requires { F::require_series(series, model_); }) F::require_series(series, model_);
+  }
+  void require_functions() const override {
+    std::string reason = why_constant<F>(*gains_);
+    if constexpr (!requires(typename F::template State<1>& s) { F::template averaged<1>(s); })
+      if (reason.empty()) reason = "its covariances move by A, which functions have not";
+    require_no_reason("a plant by functions", reason);
   }
   std::unique_ptr<TrialsRunner> trials() const override {
     if (certificate_ != nullptr) return nullptr;
@@ -136,6 +142,11 @@ class PreparedOf final : public Prepared {
   }
 
  private:
+  void require_no_reason(const std::string& what, const std::string& reason) const {
+    if (!reason.empty())
+      refuse("model", what, "a constant plant for " + filter_->name(),
+             reason + "; see docs/how-to/changing-plants.md");
+  }
   AgentPart part_of(int id) const {
     if (id < 0 || id >= model_.agents())
       refuse("id", std::to_string(id), "an agent in 0.." + std::to_string(model_.agents() - 1));

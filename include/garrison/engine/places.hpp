@@ -27,7 +27,8 @@ class GARRISON_EXPORT Places {
     const Place& p = places_[k];
     return {p.id, model_.agents(), model_.states(), p.outputs, p.degree, A_.data(), rows_.data() + p.first};
   }
-  /// Measurements of agent k among those of all agents.
+  /// Where measurements of agent k begin among those of all agents.
+  int first_output(std::size_t k) const { return first_output_[k]; }
   const double* measured(std::size_t k, const double* y) const { return y + first_output_[k]; }
   /// Whether no measurement is as large as `limit`; what is missing is not.
   bool measures_below(double limit, const double* y) const noexcept;

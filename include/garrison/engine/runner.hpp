@@ -51,8 +51,8 @@ class GARRISON_EXPORT Runner {
   /// Time 0: one initial estimate per agent, n x N. `link` (null = perfect) must outlive the run.
   /// @throws InvalidInput when an attack of the link changes what messages of this family do not hold
   virtual void reset(const Matrix& x0, Link* link) = 0;
-  /// Tells the network, before a sample, what differs from the model: A or C for families that can
-  /// (Prepared::require_varying), the rest for their certificates. `reset` goes back to the model's.
+  /// Tells the network, once before a sample, what differs from the model: A, C and covariances for families
+  /// that can (Prepared::require_varying), the rest for their certificates. `reset` goes back to the model's.
   virtual void vary(const Change& change) = 0;
   /// Estimates of all agents, n x N in the order of public ids.
   virtual void estimates(Matrix& out) const = 0;

@@ -49,7 +49,8 @@ def do(args: argparse.Namespace) -> int:
     """Run the command."""
     target = new_file(args.output, args.force) if args.output else None
     scenario = read_scenario(args.scenario)
-    scenario.require_constant("compare")
+    if scenario.present is not None:
+        raise refusal("[network]", "present", "links that stay, for garrison compare")
     try:
         found = _compared(args, scenario)
     except _core.InvalidInput as error:
@@ -72,7 +73,7 @@ def _compared(args: argparse.Namespace, scenario: Scenario) -> Comparison:
     if not attacked:
         raise refusal("compare", "a scenario without attacks", "agents that lie", "name them with --agents")
     found = compare(
-        scenario.model,
+        scenario.plant,
         scenario.network,
         attacked,
         steps=args.steps,
@@ -83,7 +84,7 @@ def _compared(args: argparse.Namespace, scenario: Scenario) -> Comparison:
         progress=tell_work if sys.stderr.isatty() else None,
     )
     mine = compare(
-        scenario.model,
+        scenario.plant,
         scenario.network,
         attacked,
         filters={f"{label} (scenario)": filter for label, filter in own.items()},

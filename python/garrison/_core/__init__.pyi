@@ -1097,6 +1097,35 @@ class Agent:
         Something was missed that only the caller knows of, such as more than `attacked` measurements of
         the whole network in one sample: no bound and no test rests on the past any more.
         """
+    def vary(
+        self,
+        *,
+        A: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+        C: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+        process_covariance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+        measurement_covariance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+    ) -> None:
+        """
+        The plant of the next samples, until told again; for the filters that take a VaryingModel, with the bits of its
+        simulation. What is left out is the design's. `reset` goes back to the design's; a snapshot does not hold it.
+
+        Parameters
+        ----------
+        A : (n, n) array, optional
+            Leads to the next sample.
+        C : (m_i, n) array, optional
+            Of the own sensor.
+        process_covariance : (n, n) array, optional
+            Of the noise on the way to the next sample.
+        measurement_covariance : (m_i, m_i) array, optional
+            Of the own sensor; positive definite.
+
+        Raises
+        ------
+        InvalidInput
+            Sizes that do not fit, numbers that are not finite, a filter that is designed for one plant, an
+            agent with a certificate, or a call within a sample.
+        """
     @property
     def accused(self) -> list[int]:
         """
@@ -1530,7 +1559,13 @@ class Response:
     """
     def __init__(self, model: Model) -> None: ...
     def __reduce__(self) -> tuple: ...
-    def advance(self, inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> None:
+    def advance(
+        self,
+        inputs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        *,
+        A: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+        B: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"] | None = None,
+    ) -> None:
         """
         Moves to the next sample.
 
@@ -1538,6 +1573,10 @@ class Response:
         ----------
         inputs : (p,) array
             u of this sample, one number per column of B.
+        A : (n, n) array, optional
+            Leads to the next sample where the plant changes; default the model's.
+        B : (n, p) array, optional
+            Likewise.
 
         Raises
         ------

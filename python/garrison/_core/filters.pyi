@@ -228,7 +228,7 @@ class PartialSharing(garrison._core.Filter):
     start_is_prediction : bool, optional
         the initial estimate and P_0 belong to the first measurement (xhat(0) of the paper), not to the sample before it
     gains : str, optional
-        "frozen" once (11) has converged, "varying" for ever (same values but for rounding), or "steady": the limits from the start; one of: frozen, varying, steady
+        "frozen" once (11) has converged, "varying" for ever (same values but for rounding; in a plant that changes they follow it), or "steady": the limits from the start; one of: frozen, varying, steady
 
     Raises
     ------

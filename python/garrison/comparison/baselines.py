@@ -11,29 +11,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from garrison import _core
+from garrison.varying import VaryingModel, parted
 from garrison.words import refusal
 
 Array = NDArray[np.float64]
 
+#: variance of the process noise beside what the model says: covariances are inverted
+_TINY = 1e-12
 #: sets of sensors that the subset search goes through at most, per sample
 _MOST_SETS = 500
 
 
 @dataclass(frozen=True)
-class Plant:
-    """Matrices of a model, with covariances even where only bounds are known (a bound taken as two deviations)."""
+class Moment:
+    """Matrices of one sample: A and Q lead to it, C and R are what the agents see."""
 
     A: Array
     C: list[Array]
     Q: Array
     R: list[Array]
-    heard: list[list[int]]
-    liars: int
-
-    @property
-    def agents(self) -> int:
-        """N"""
-        return len(self.C)
 
     def split(self, y: Array) -> list[Array]:
         """The measurements of a sample, agent by agent."""
@@ -41,8 +37,53 @@ class Plant:
         return np.split(y, ends)
 
 
-def plant_of(model: _core.Model, network: _core.Network, liars: int) -> Plant:
+@dataclass(frozen=True)
+class Plant:
+    """A plant and who hears whom. constant: of the model; moments: of every sample where something changes."""
+
+    constant: Moment
+    moments: list[Moment]
+    heard: list[list[int]]
+    liars: int
+
+    @property
+    def agents(self) -> int:
+        """N"""
+        return len(self.heard)
+
+    @property
+    def states(self) -> int:
+        """n"""
+        return len(self.constant.A)
+
+    def at(self, t: int) -> Moment:
+        """Of sample t >= 1."""
+        return self.moments[t - 1] if self.moments else self.constant
+
+
+def plant_of(model: _core.Model | VaryingModel, network: _core.Network, liars: int) -> Plant:
     """Raises InvalidInput where nothing is known of the noise."""
+    base, parts = parted(model)
+    constant = _moment(base)
+    steps = len(next(iter(parts.values()))) if parts else 0
+    moments = [_changed(constant, {name: part[t] for name, part in parts.items()}) for t in range(steps)]
+    return Plant(constant, moments, [list(network.neighbours(i)) for i in range(base.agents)], liars)
+
+
+def _changed(moment: Moment, now: dict[str, Array]) -> Moment:
+    """The matrices of a sample, where `now` has some of them as `VaryingModel.parts` has."""
+    Q, C, R = moment.Q, moment.C, moment.R
+    if "process_covariance" in now:
+        Q = now["process_covariance"] + _TINY * np.eye(len(Q))
+    if "C" in now:
+        C = moment.split(now["C"])
+    if "measurement_covariance" in now:
+        R = [block[:, : len(block)] for block in moment.split(now["measurement_covariance"])]
+    return Moment(now.get("A", moment.A), C, Q, R)
+
+
+def _moment(model: _core.Model) -> Moment:
+    """Covariances even where only bounds are known (a bound taken as two deviations)."""
     n = model.states
     Q, R = model.process_covariance, model.measurement_covariance
     if isinstance(Q, list):
@@ -57,9 +98,7 @@ def plant_of(model: _core.Model, network: _core.Network, liars: int) -> Plant:
         if not bounds.size:
             raise refusal("baseline", "a model without measurement noise", "bounds or covariances")
         R = [(b / 2) ** 2 * np.eye(len(c)) for b, c in zip(np.broadcast_to(bounds, len(C)), C, strict=True)]
-    tiny = 1e-12 * np.eye(n)
-    heard = [list(network.neighbours(i)) for i in range(model.agents)]
-    return Plant(np.asarray(model.A), C, np.asarray(Q) + tiny, [np.asarray(r) for r in R], heard, liars)
+    return Moment(np.asarray(model.A), C, np.asarray(Q) + _TINY * np.eye(n), [np.asarray(r) for r in R])
 
 
 #: estimates and inverse covariances of an agent and of those it hears -> its new ones
@@ -68,19 +107,20 @@ Fusion = Callable[[Array, Array, int], tuple[Array, Array]]
 
 def _distributed(plant: Plant, y: Array, fuse: Fusion) -> Array:
     """Every agent corrects its prediction by its own outputs, hears its neighbours' results, and fuses them."""
-    N, n = plant.agents, len(plant.A)
+    N, n = plant.agents, plant.states
     x, information = np.zeros((N, n)), np.repeat(np.eye(n)[None], N, axis=0)
     out = np.zeros((len(y) + 1, N, n))
     for t, sample in enumerate(y, start=1):
+        now = plant.at(t)
         own_x, own_information = np.zeros((N, n)), np.zeros((N, n, n))
-        for i, z in enumerate(plant.split(sample)):
-            P = plant.A @ np.linalg.inv(information[i]) @ plant.A.T + plant.Q
+        for i, z in enumerate(now.split(sample)):
+            P = now.A @ np.linalg.inv(information[i]) @ now.A.T + now.Q
             before = np.linalg.inv(P)
             here = np.isfinite(z)
-            H = plant.C[i][here]
-            gain = H.T @ np.linalg.inv(plant.R[i][np.ix_(here, here)]) if here.any() else np.zeros((n, 0))
+            H = now.C[i][here]
+            gain = H.T @ np.linalg.inv(now.R[i][np.ix_(here, here)]) if here.any() else np.zeros((n, 0))
             own_information[i] = before + gain @ H
-            own_x[i] = np.linalg.solve(own_information[i], before @ plant.A @ x[i] + gain @ z[here])
+            own_x[i] = np.linalg.solve(own_information[i], before @ now.A @ x[i] + gain @ z[here])
         for i in range(N):
             group = [i, *plant.heard[i]]
             x[i], information[i] = fuse(own_x[group], own_information[group], plant.liars)
@@ -134,18 +174,19 @@ def w_msr(plant: Plant, y: Array) -> Array:
 
 def _central(plant: Plant, y: Array, solve: Callable[[Array, Array], Array]) -> Array:
     """A centre that sees all measurements: solve(rows, values) with the prediction as rows of their own, last."""
-    n = len(plant.A)
-    rows = np.vstack(plant.C)
-    scale = np.concatenate([np.sqrt(np.diag(r)) for r in plant.R])
-    scale = np.where(scale > 0, scale, 1e-9)
+    n = plant.states
     x, P = np.zeros(n), np.eye(n)
     out = np.zeros((len(y) + 1, plant.agents, n))
     for t, z in enumerate(y, start=1):
-        P = plant.A @ P @ plant.A.T + plant.Q
+        now = plant.at(t)
+        rows = np.vstack(now.C)
+        scale = np.concatenate([np.sqrt(np.diag(r)) for r in now.R])
+        scale = np.where(scale > 0, scale, 1e-9)
+        P = now.A @ P @ now.A.T + now.Q
         root = np.linalg.inv(np.linalg.cholesky(P))
         here = np.isfinite(z)
         H = np.vstack([rows[here] / scale[here, None], root])
-        x = solve(H, np.concatenate([z[here] / scale[here], root @ plant.A @ x]))
+        x = solve(H, np.concatenate([z[here] / scale[here], root @ now.A @ x]))
         P = np.linalg.inv(H.T @ H)
         out[t] = x
     return out
@@ -160,7 +201,7 @@ def l1_decoder(plant: Plant, y: Array) -> Array:
 
     By iteratively reweighted least squares; the prediction's rows keep their squares.
     """
-    n = len(plant.A)
+    n = plant.states
 
     def solve(H: Array, z: Array) -> Array:
         x = _least_squares(H, z)
@@ -175,8 +216,8 @@ def l1_decoder(plant: Plant, y: Array) -> Array:
 
 def subset_search(plant: Plant, y: Array) -> Array:
     """Least squares without the s measurements whose loss lowers the residual most, by all sets of them."""
-    n = len(plant.A)
-    outputs = sum(len(c) for c in plant.C)
+    n = plant.states
+    outputs = sum(len(c) for c in plant.constant.C)
     sets = list(combinations(range(outputs), plant.liars))
     if len(sets) > _MOST_SETS:
         raise refusal("subset search", f"{len(sets)} sets of measurements", f"at most {_MOST_SETS}", "fewer liars")

@@ -8,33 +8,41 @@ from garrison import _core
 from garrison.drivers import simulate
 from garrison.families import family_called
 from garrison.filters import make_filter
+from garrison.varying import VaryingModel, parted
 
 #: attacks that need something only the user can give: a field of a family's message, the width of a message
 _SPECIAL = ("falsify", "perturb")
 
 
-def filters_for(model: _core.Model, network: _core.Network, liars: int, size: float) -> dict[str, _core.Filter]:
+def filters_for(
+    model: _core.Model | VaryingModel, network: _core.Network, liars: int, size: float
+) -> dict[str, _core.Filter]:
     """Label -> filter, of every family that watches one plant and says what it runs with where it needs parameters."""
     threshold = _threshold(model, network, size)
     found = {}
     for info in _core.filter_infos():
         family = family_called(info["name"])
-        params = family.contest(liars, threshold)
+        params = family.contest(liars, threshold) | (family.changing if isinstance(model, VaryingModel) else {})
         needed = {p["name"] for p in info["params"] if p["required"]}
         if not family.own_plants and needed <= params.keys():
             found[info["name"]] = make_filter(info["name"], params)
     return found
 
 
-def _threshold(model: _core.Model, network: _core.Network, size: float) -> float:
+def _threshold(model: _core.Model | VaryingModel, network: _core.Network, size: float) -> float:
     """What the innovations of a clean run stay below, with an unprotected filter."""
+    base, parts = parted(model)
     try:
         filter = make_filter("scalar_gain", {"rounds": 6})
-        clean = simulate(model, network, filter, steps=50, conditions=False, keep=("estimate",))
+        clean = simulate(
+            model, network, filter, steps=min([50, *map(len, parts.values())]), conditions=False, keep=("estimate",)
+        )
     except _core.Error:
         return size
     assert clean.error is not None
-    length = max(float(np.linalg.norm(c, 2)) for c in model.C if len(c))
+    ends = np.cumsum([len(c) for c in base.C])[:-1]
+    seen = [c for C in parts.get("C", [np.vstack(base.C)]) for c in np.split(C, ends) if len(c)]
+    length = max(float(np.linalg.norm(c, 2)) for c in seen)
     typical = float(np.nanquantile(clean.error[:, 1:], 0.99))
     return min(max(2.0 * length * typical, 1e-9), size) if np.isfinite(typical) else size
 
@@ -62,7 +70,7 @@ def attacks_for(agents: list[int], states: int, start: int, size: float) -> dict
     return out
 
 
-def typical_size(model: _core.Model, steps: int) -> float:
+def typical_size(model: _core.Model) -> float:
     """Ten times the spread of clean measurements' noise, or 1 where that is not known."""
     bounds = np.asarray(model.measurement_bound).ravel()
     if bounds.size and np.isfinite(bounds).all() and bounds.max() > 0:

@@ -17,6 +17,7 @@ from garrison.families import accuses
 from garrison.kalman import central_kalman, local_kalman
 from garrison.prepared import prepare
 from garrison.record import Run
+from garrison.varying import VaryingModel, parted
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ KALMAN: dict[str, dict[str, float]] = {
 class Job:
     """What all runs of a comparison share; its methods are the runs."""
 
-    model: _core.Model
+    model: _core.Model | VaryingModel
     network: _core.Network
     liars: list[int]
     steps: int
@@ -44,23 +45,26 @@ class Job:
     seed: int
     x0: ArrayLike | None
 
+    @property
+    def base(self) -> _core.Model:
+        """The constant part of the plant."""
+        return self.model.model if isinstance(self.model, VaryingModel) else self.model
+
     def family(self, filter: _core.Filter, attack: _core.Attack | None) -> tuple[Row, Run | None]:
         """Numbers of a filter of the library, and its run."""
         keep = ("report", "measurements")
         options: dict[str, Any] = {"steps": self.steps, "trials": self.trials, "seed": self.seed, "x0": self.x0}
-        parts = self.model, self.network, filter
         try:
-            design = prepare(*parts)
+            design = prepare(self.base, self.network, filter)._design
+            options |= {"attack": attack or [], "keep": keep, "conditions": False, "threads": 1, "design": design}
             began = time.perf_counter()
-            run = simulate(
-                *parts, **options, attack=attack or [], keep=keep, conditions=False, threads=1, design=design._design
-            )
+            run = simulate(self.model, self.network, filter, **options)
         except _core.Error as error:
             return empty(" ".join(str(error).split())), None
         seconds = time.perf_counter() - began
         row = empty("ok") | self._errors(run.error) | self._alarms(run, attack) | _bounds(run)
         row["bytes_per_sample"] = run.bytes_per_step
-        row["microseconds"] = 1e6 * seconds / (self.trials * self.steps * self.model.agents)
+        row["microseconds"] = 1e6 * seconds / (self.trials * self.steps * self.base.agents)
         return row, run
 
     def baseline(self, label: str, attack: _core.Attack | None, log: Run | None) -> Row:
@@ -79,19 +83,20 @@ class Job:
         seconds = time.perf_counter() - began
         distance = np.linalg.norm(np.array(found) - log.truth[:few, :, None], axis=3)
         row = empty("ok") | self._errors(distance)
-        row["microseconds"] = 1e6 * seconds / (few * self.steps * self.model.agents)
+        row["microseconds"] = 1e6 * seconds / (few * self.steps * self.base.agents)
         if label in DISTRIBUTED:
-            n = self.model.states
+            n = self.base.states
             row["bytes_per_sample"] = 8 * (n + n * (n + 1) // 2) * sum(len(heard) for heard in plant.heard)
         return row
 
     def _estimate(self, label: str, plant: Plant, y: Array) -> Array:
         if label not in KALMAN:
             return BASELINES[label](plant, y)
-        R = self.model.measurement_covariance
-        model = self.model
-        if R is None or model.process_covariance is None:
-            model = _core.Model(plant.A, plant.C, process_covariance=plant.Q, measurement_covariance=plant.R)
+        base, parts = self.base, dict[str, Any](parted(self.model)[1])
+        if base.measurement_covariance is None or base.process_covariance is None:
+            known = plant.constant
+            base = _core.Model(known.A, known.C, process_covariance=known.Q, measurement_covariance=known.R)
+        model = VaryingModel(base, **parts) if parts else base
         if label.endswith("(per agent)"):
             return local_kalman(model, self.network, y, **KALMAN[label])
         return np.repeat(central_kalman(model, y, **KALMAN[label])[:, None], plant.agents, axis=1)

@@ -13,7 +13,7 @@ from garrison.comparison.contestants import attacks_for, filters_for, typical_si
 from garrison.comparison.job import KALMAN, Job
 from garrison.comparison.table import NONE, Comparison, Row
 from garrison.record import Run
-from garrison.varying import undriven
+from garrison.varying import VaryingModel, parted, undriven
 from garrison.words import hinted, refusal, require_plant
 
 Progress = Callable[[str, int, int], None]
@@ -21,7 +21,7 @@ Progress = Callable[[str, int, int], None]
 
 @hinted
 def compare(
-    model: _core.Model,
+    model: _core.Model | VaryingModel,
     network: _core.Network,
     attacked: Iterable[int],
     *,
@@ -41,15 +41,15 @@ def compare(
 
     Parameters
     ----------
-    model : Model
-        The plant and its sensors.
+    model : Model or VaryingModel
+        The plant and its sensors. Filters that need a constant plant are rows that say so.
     network : Network
         Who hears whom.
     attacked : iterable of int
         Agents that lie.
     filters : dict, optional
-        Label -> filter, default every family that fits the plant, with plain parameters. What a filter refuses is
-        a row with the reason.
+        Label -> filter, default every family that fits the plant, with plain parameters (where the plant changes, with
+        gains that follow it). What a filter refuses is a row with the reason.
     attacks : dict, optional
         Label -> attack, default every one of garrison.attacks that can be set up alone.
     baselines : bool
@@ -60,7 +60,7 @@ def compare(
     size : float, optional
         Of the lies, > 0, in the unit of the measurement; default ten times the noise.
     steps : int
-        Samples of a trial, >= 1.
+        Samples of a trial, >= 1; at most those that a VaryingModel is given for.
     start : int
         First attacked sample.
     trials : int
@@ -84,21 +84,25 @@ def compare(
     InvalidInput
         Something does not fit; the message says which, and what was expected.
     """
-    require_plant("compare", model, network)
+    base, parts = parted(model)
+    require_plant("compare", base, network)
     model = undriven(model)  # errors do not depend on known inputs
-    given = arguments.whole_numbers("attacked", attacked)
-    liars = sorted({arguments.whole("attacked", a, 0, model.agents - 1) for a in given})
+    lying = arguments.whole_numbers("attacked", attacked)
+    liars = sorted({arguments.whole("attacked", a, 0, base.agents - 1) for a in lying})
     title, progress = arguments.text("title", title), arguments.callback("progress", progress, "(filter, done, total)")
     own = None if filters is None else arguments.labelled("filters", filters, _core.Filter, "filters")
     theirs = None if attacks is None else arguments.labelled("attacks", attacks, _core.Attack, "attacks")
     if not liars:
         raise refusal("attacked", "nobody", "one agent at least")
     steps = arguments.whole("steps", steps, 2)
+    given = [len(part) for part in parts.values()]
+    if given and steps > given[0]:
+        raise refusal("steps", str(steps), f"at most {given[0]}, for which the plant is given")
     start = arguments.whole("start", start, 1, steps - 1)
     trials = arguments.whole("trials", trials, 1)
-    size = typical_size(model, steps) if size is None else _size(size)
+    size = typical_size(base) if size is None else _size(size)
     chosen = filters_for(model, network, len(liars), size) if own is None else own
-    against = attacks_for(liars, model.states, start, size) if theirs is None else theirs
+    against = attacks_for(liars, base.states, start, size) if theirs is None else theirs
     job = Job(model, network, liars, steps, start, trials, arguments.whole("seed", seed, 0, 2**63 - 1), x0)
     conditions: list[tuple[str, _core.Attack | None]] = [(NONE, None), *against.items()]
     extra = [*BASELINES, *KALMAN] if arguments.flag("baselines", baselines) else []

@@ -30,7 +30,9 @@ _FAMILIES = {
     "saturation": _SATURATION,
     "scalar_gain": Family(accuses=_never, contest=lambda liars, threshold: {"rounds": 6}, linear=lambda params: ""),
     "lfre": Family(accuses=_never, contest=lambda liars, threshold: {"faulty": liars}),
-    "partial_sharing": Family(accuses=_never, contest=lambda liars, threshold: {"gain": 0.1}),
+    "partial_sharing": Family(
+        accuses=_never, contest=lambda liars, threshold: {"gain": 0.1}, changing={"gains": "varying"}
+    ),
     "structural": Family(accuses=lambda params: True, contest=lambda liars, threshold: {"isolate": True}),
     "platoon": PLATOON,
     "platoon_baseline": PLATOON_BASELINE,

@@ -11,7 +11,7 @@ from garrison.scenario.section import Section, renamed
 from garrison.tables import read_matrix, read_table
 from garrison.tables.cells import number
 from garrison.tables.text import read_rows
-from garrison.varying import VaryingModel
+from garrison.varying import VaryingModel, parted
 from garrison.varying_network import VaryingNetwork
 from garrison.words import refusal
 
@@ -21,8 +21,14 @@ _R = "measurement_covariance_over_time"
 OVER_TIME = ["A_over_time", "B_over_time", "C_over_time", "process_covariance_over_time", _R]
 
 
-def read_varying(section: Section, model: _core.Model) -> VaryingModel | None:
+def changing_keys(section: Section) -> list[str]:
+    """Keys of [model] that make the plant change in time."""
+    return [key for key in (*OVER_TIME, "times") if key in section]
+
+
+def read_varying(section: Section, plant: _core.Model | VaryingModel) -> VaryingModel | None:
     """The plant over time, where [model] says so: arrays (T, rows, n), or files with the matrices below each other."""
+    model, moving = parted(plant)
     n, p, m = model.states, model.inputs, model.outputs
     shapes = {"A": (n, n), "B": (n, p), "C": (m, n), "process_covariance": (n, n)}
     parts: dict[str, Any] = {}
@@ -32,6 +38,9 @@ def read_varying(section: Section, model: _core.Model) -> VaryingModel | None:
             parts[part] = _below_each_other(section.place(key), section.numbers(key), shapes[part])
     if _R in section:
         parts["measurement_covariance"] = _noises(section, m, max(len(c) for c in model.C))
+    for part in moving.keys() & parts.keys():
+        raise refusal(section.place(f"{part}_over_time"), "times beside it", "one of them: it follows from the times")
+    parts = moving | parts
     if not parts:
         return None
     try:

@@ -8,10 +8,12 @@ from garrison import _core
 from garrison.fitting import Fit
 from garrison.identifying import fit
 from garrison.numeric import numbers
+from garrison.scenario.continuous import CONTINUOUS, sampled
 from garrison.scenario.model_file import read_model_file
 from garrison.scenario.section import Section, moment, number, renamed
 from garrison.sizes import require_memory
 from garrison.tables import Records, read_records
+from garrison.varying import VaryingModel, parted
 from garrison.words import refusal, shown
 
 _FIT_KEYS = [
@@ -34,6 +36,7 @@ _FIT_KEYS = [
 _MATRIX_KEYS = [
     "A",
     "C",
+    *CONTINUOUS,
     "process_bound",
     "measurement_bound",
     "process_covariance",
@@ -57,8 +60,10 @@ _FILE_KEYS = ["file"]
 KEYS = [_MATRIX_KEYS, _FIT_KEYS, _VEHICLE_KEYS, _FILE_KEYS]
 
 
-def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | None]:
-    """The model, the fit behind it where there is one, and the names of the stations where they are known."""
+def read_model(section: Section) -> tuple[_core.Model | VaryingModel, Fit | None, list[str] | None]:
+    """The model (over time where it is sampled at irregular times), the fit behind it where there is one, and the names
+    of the stations where they are known.
+    """
     if "fit" in section:
         section.only(_FIT_KEYS)
         fitted = _fitted(section)
@@ -72,8 +77,8 @@ def read_model(section: Section) -> tuple[_core.Model, Fit | None, list[str] | N
         model, names = read_model_file(section.file("file"))
         return model, None, names
     section.only([*_MATRIX_KEYS, "fit", "vehicles", "file"])
-    model = _matrices(section)
-    return model, None, _agent_names(section, model.agents, "agent")
+    plant = _matrices(section)
+    return plant, None, _agent_names(section, parted(plant)[0].agents, "agent")
 
 
 def between(section: Section, records: Records) -> Records:
@@ -124,17 +129,16 @@ def _agent_names(section: Section, agents: int, noun: str) -> list[str] | None:
     return list(given)
 
 
-def _matrices(section: Section) -> _core.Model:
+def _matrices(section: Section) -> _core.Model | VaryingModel:
     for key in ("A", "C"):
         section.require(key, 'A and C, fit = "records.csv", or vehicles and period')
     A = np.atleast_2d(section.numbers("A"))
     if A.ndim != 2 or A.shape[0] != A.shape[1]:
         raise refusal(section.place("A"), f"{' x '.join(map(str, A.shape))} numbers", "a square matrix")
     C = _rows(section, len(A))
+    rest = _noise(section, len(A), [len(c) for c in C]) | _driven(section, len(A)) | _labels(section)
     try:
-        return _core.Model(
-            A, C, **_noise(section, len(A), [len(c) for c in C]), **_driven(section, len(A)), **_labels(section)
-        )
+        return sampled(section, A, C, rest)
     except _core.Error as error:
         raise renamed(error, section.where) from None
 

@@ -21,7 +21,7 @@ from garrison.run_options import ONE_SPREAD, SPREADS, pair_of_levels
 from garrison.scenario.attacks import read_attack
 from garrison.scenario.data import Recording, read_data
 from garrison.scenario.filters import CENTRAL_KALMAN, read_filters, read_local, read_screens
-from garrison.scenario.known import read_inputs, read_present, read_varying
+from garrison.scenario.known import changing_keys, read_inputs, read_present, read_varying
 from garrison.scenario.model import read_model
 from garrison.scenario.network import read_network
 from garrison.scenario.overrides import overridden
@@ -29,7 +29,7 @@ from garrison.scenario.section import Section, tables_of, whole
 from garrison.tables import Records
 from garrison.tables.clock import Moment
 from garrison.tables.text import decoded
-from garrison.varying import VaryingModel
+from garrison.varying import VaryingModel, parted
 from garrison.varying_network import VaryingNetwork
 from garrison.words import count, near, only, refusal, shown
 
@@ -69,6 +69,7 @@ class Scenario:
     notes: list[str] = field(default_factory=list)  # doubts about the files
     inputs: Array | None = None  # (steps, p), of a model with B
     varying: VaryingModel | None = None  # the model over time, where it changes
+    changing: list[str] = field(default_factory=list)  # by these keys of [model]
     present: VaryingNetwork | None = None  # the network over time, where links come and go
 
     @property
@@ -89,9 +90,8 @@ class Scenario:
     def require_constant(self, command: str) -> None:
         """Refuse a plant that changes in time, for a command that is about [model] alone. Raises InvalidInput."""
         if self.varying is not None:
-            parts = ", ".join(f"{part}_over_time" for part in self.varying.parts)
             advice = "garrison run takes it; leave these keys out to ask about the constant part"
-            raise refusal("[model]", parts, f"a constant plant for garrison {command}", advice)
+            raise refusal("[model]", ", ".join(self.changing), f"a constant plant for garrison {command}", advice)
 
     @property
     def steps(self) -> int:
@@ -147,8 +147,9 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
             raise refusal(f"[{name}]", f"{count(len(value), 'table')} [[{name}]]", f"one table: a line [{name}]")
         return Section(f"[{name}]", value, folder)
 
-    model, fitted, names = read_model(section("model"))
-    varying = read_varying(section("model"), model)
+    plant, fitted, names = read_model(section("model"))
+    varying = read_varying(section("model"), plant)
+    model = parted(plant)[0]
     ground = read_network(section("network"), names, model.agents)
     known = ground.names or names
     names = known or [str(i) for i in range(model.agents)]
@@ -164,6 +165,7 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
         network=network,
         inputs=inputs,
         varying=varying,
+        changing=changing_keys(section("model")),
         present=read_present(section("network"), network),
         filters=filters,
         screens=read_screens(document, folder, [label for label, _ in filters]),

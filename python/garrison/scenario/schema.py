@@ -11,7 +11,19 @@ Schema = dict[str, Any]
 
 #: kinds of values; keys that are not here take several kinds, which the reader tells apart
 _WHOLE = {"steps", "trials", "threads", "seed", "delay_rounds", "factors", "harmonics", "vehicles", "range", "rows"}
-_NUMBERS = {"drop", "delay", "failure", "gate", "huber", "radius", "radius_km", "start_error", "factor", "period"}
+_NUMBERS = {
+    "drop",
+    "delay",
+    "failure",
+    "gate",
+    "huber",
+    "radius",
+    "radius_km",
+    "start_error",
+    "factor",
+    "period",
+    "interval",
+}
 _WORDS = {"fit", "file", "stations", "spread", "law", "label"}
 _FLAGS = {"root", "directed", "memory", "standardise"}
 

@@ -42,12 +42,23 @@ PartialSharing::Gains PartialSharing::design(const Params& params, const Model& 
   g.Q = s.Q;
   g.given = params.start_is_prediction;
   g.freeze = params.gains != "varying";
-  const Matrix first = s.A * s.P0 * s.A.transpose() + s.Q;
-  g.P0 = g.given ? s.P0 : Matrix((first + first.transpose()) / 2.0);
+  g.P0 = g.given ? s.P0 : partial_sharing::predicted(s.A, s.P0, s.Q);
+  if (!g.freeze && !g.given) g.before = s.P0;
   for (int i = 0; i < s.agents(); ++i)
     g.W.push_back(flat(partial_sharing::whitener(s.R[static_cast<std::size_t>(i)], i).transpose()));
   if (params.gains == "steady") g.steady = steady(s);
   return g;
+}
+
+void PartialSharing::require_series(const Series& series, const Model& model) {
+  const std::size_t samples = series.measurement_covariance.size();
+  for (std::size_t t = 0; t < samples; ++t)
+    for (int i = 0; i < model.agents(); ++i)
+      if (model.outputs(i) > 0 &&
+          whitener(measurement_covariance_at(series, model, i, static_cast<int>(t) + 1)).size() == 0)
+        refuse("measurement_covariance[" + std::to_string(t) + "] of agent " + std::to_string(i) + " (R)",
+               "a matrix that is not positive definite", "a symmetric positive definite one",
+               "a measurement without noise is not covered: give it a small variance");
 }
 
 }  // namespace garrison

@@ -78,12 +78,12 @@ double Setting::shared_fraction() const {
 
 Matrix whitener(const Matrix& R, int agent) {
   if (R.rows() == 0) return R;
-  const Eigen::LLT<Matrix> factor(R);
-  const std::string which = "measurement_covariance[" + std::to_string(agent) + "] (R)";
-  if (factor.info() != Eigen::Success || factor.matrixLLT().diagonal().minCoeff() <= 0.0)
-    refuse(which, "a matrix that is not positive definite", "a symmetric positive definite one",
+  Matrix W = garrison::whitener(R);
+  if (W.size() == 0)
+    refuse("measurement_covariance[" + std::to_string(agent) + "] (R)",
+           "a matrix that is not positive definite", "a symmetric positive definite one",
            "a measurement without noise is not covered: give it a small variance");
-  return factor.matrixL().solve(Matrix::Identity(R.rows(), R.cols()));
+  return W;
 }
 
 Setting make_setting(const PartialSharing::Params& p, const Model& model, const Network& network) {

@@ -8,7 +8,7 @@ namespace {
 
 /// What `part` of the family does for one agent, for those of a rank.
 PartialSharing::Gains cut(const PartialSharing::Gains& all, const Cast& cast) {
-  PartialSharing::Gains g{all.gamma, {}, {}, {}, all.Q, all.P0, all.given, all.freeze};
+  PartialSharing::Gains g{all.gamma, {}, {}, {}, all.Q, all.P0, all.before, all.given, all.freeze};
   Matrix start = Matrix::Zero(static_cast<Eigen::Index>(cast.ids.size()), all.selection.states());
   g.W.resize(cast.ids.size());
   g.steady.resize(all.steady.empty() ? 0 : cast.ids.size());

@@ -60,6 +60,9 @@ struct AgentByAgent {
   bool fuse(const typename F::Gains&, const Locals&, const Inboxes&, Workers&) {
     return false;
   }
+  /// Before gains of every agent follow another plant, and after.
+  void part() {}
+  void moved() {}
   /// Brings the agents' states up to date.
   void settle() {}
   /// The same, before the states move on without us.
@@ -115,6 +118,8 @@ class Batch<F, n> : public AgentByAgent<F, n> {
     all_.fuse(gains, local, inbox, workers);
     return true;
   }
+  void part() { all_.part(); }
+  void moved() { all_.look(); }
 
  private:
   SideBySide<F, n> all_;

@@ -58,6 +58,13 @@ class Groups {
     }
     share_gains();
   }
+  /// Every group reads its own sensors and gains, which were those that it shared.
+  void part() {
+    for (Group& group : groups_) {
+      group.read_own_sensors();
+      group.read_own_gains();
+    }
+  }
   void share_gains() {
     for (std::size_t i = 0; i < groups_.size(); ++i) groups_[i].read_gains_of(*twins_[i]);
   }

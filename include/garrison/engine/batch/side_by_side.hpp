@@ -64,6 +64,12 @@ class SideBySide {
   void start(const typename F::Gains& g, const Locals& local) {
     lanes_.start(g, states_.size(), local);
     groups_.share_sensors();
+    look();
+  }
+  /// Sensors and gains of agents may differ from now on.
+  void part() { groups_.part(); }
+  /// After predictions were made outside of a step.
+  void look() {
     double squares = 0.0;
     for (const double x : x_[side_]) squares += x * x;
     plain_ = Outcome::plain(squares);

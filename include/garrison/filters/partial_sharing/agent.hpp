@@ -32,6 +32,7 @@ void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, Stat
   }
   group.set_frozen(s.lane, steady);
   group.started = false;
+  group.follows = !g.freeze;
   if (g.given)
     std::copy_n(x0.data(), nn, group.prediction(s.lane));
   else

@@ -9,9 +9,10 @@
 //   update   z_i(t) = xhat_i + Kf (y_i - H_i xhat_i) + gamma (I - Kf H_i) P_i sum_j S_j (xbar_j - xhat_i)
 // so that A z_i(t) is xhat_i(k+1) of (10): K_i = A Kf (9) and C_i = gamma (A - K_i H_i) P_i. The estimate of
 // time t is z_i(t), which has seen y_i(t); the paper's xhat_i(k+1) is the prediction from it. Gains follow
-// (11), which sees no data: they are frozen once they have converged, and a missing measurement leaves them
-// alone. A z_i(t) is computed with z_i(t), so that `sense` only has to send it. Numbers are kept in groups of
-// agents side by side (group.hpp); an agent on its own is a group of one.
+// (11), which sees no data: they are frozen once they have converged, or follow the matrices of every sample
+// (vary.hpp), and a missing measurement leaves them alone. A z_i(t) is computed with z_i(t), so that `sense`
+// only has to send it. Numbers are kept in groups of agents side by side (group.hpp); an agent on its own is
+// a group of one.
 //
 // Where we leave the print: C_i has no inverse of P_i, so singular covariances and agents without
 // sensors are ordinary; entries j did not share, or that are missing or beyond kHuge, count as agreeing.
@@ -25,11 +26,13 @@
 #include <tuple>
 #include <vector>
 
+#include "garrison/core/change.hpp"
 #include "garrison/core/conditions.hpp"
 #include "garrison/core/filter.hpp"
 #include "garrison/core/model.hpp"
 #include "garrison/core/network.hpp"
 #include "garrison/core/params.hpp"
+#include "garrison/core/series.hpp"
 #include "garrison/filters/partial_sharing/group.hpp"
 #include "garrison/filters/partial_sharing/selection.hpp"
 #include "garrison/filters/partial_sharing/update.hpp"
@@ -75,7 +78,8 @@ struct GARRISON_EXPORT PartialSharing {
     std::vector<std::vector<double>> W;  ///< of each agent, row by row: W R_i W' = I, lower triangular
     std::vector<Steady> steady;          ///< empty: the recursion runs
     Matrix Q;
-    Matrix P0;
+    Matrix P0;      ///< of the first sample
+    Matrix before;  ///< P_0 one sample earlier, for a plant that changes; none where it is P0, or gains rest
     bool given = false;  ///< the start is xhat(0) with P0, not an estimate one sample earlier
     bool freeze = true;
 
@@ -87,6 +91,7 @@ struct GARRISON_EXPORT PartialSharing {
       v("steady", steady);
       v("Q", Q);
       v("P0", P0);
+      v("before", before);
       v("given", given);
       v("freeze", freeze);
     }
@@ -94,7 +99,7 @@ struct GARRISON_EXPORT PartialSharing {
   /// What agent `id` needs of the gains; the entries that others share are few and stay.
   static Gains part(const Gains& all, int id, std::span<const int>) {
     const auto i = static_cast<std::size_t>(id);
-    Gains g{all.gamma, all.selection, {}, {}, all.Q, all.P0, all.given, all.freeze};
+    Gains g{all.gamma, all.selection, {}, {}, all.Q, all.P0, all.before, all.given, all.freeze};
     g.W.resize(all.W.size());
     g.W[i] = all.W[i];
     g.steady.resize(all.steady.size());
@@ -119,6 +124,10 @@ struct GARRISON_EXPORT PartialSharing {
       all("P", g.P, packed(g.m));
       all("G", g.G, packed(g.m));
       all("K", g.K, g.q * g.m);
+      if (g.follows) {
+        all("C", g.C, g.q * g.m);
+        all("W", g.W, packed(g.q));
+      }
       v("prediction", std::span<double>(g.prediction(lane), static_cast<std::size_t>(g.m)));
       bool frozen = g.is_frozen(lane);
       v("frozen", frozen);
@@ -157,12 +166,20 @@ struct GARRISON_EXPORT PartialSharing {
     if (!g.selection.fits(l.agents, l.states) || g.W.size() != agents || g.W[id].size() != q * q ||
         !square(g.Q))
       return false;
+    if (!g.freeze && !g.given && !square(g.before)) return false;
     if (g.steady.empty()) return square(g.P0);
     if (g.steady.size() != agents) return false;
     const Steady& own = g.steady[id];
     return own.P.size() == n * n && own.G.size() == n * n && own.K.size() == q * n;
   }
   static int rounds(const Gains&) { return 1; }
+  /// Why a plant that changes in time cannot be taken; empty: it can.
+  static std::string needs_constant(const Gains& g) {
+    return g.freeze ? "gains that freeze, or are steady, are those of one plant; gains = \"varying\" takes it"
+                    : "";
+  }
+  /// @throws InvalidInput where some R_i has no inverse
+  static void require_series(const Series& series, const Model& model);
 
   /// A state that has been given its lane of a group stays there.
   template <int n>
@@ -189,6 +206,10 @@ struct GARRISON_EXPORT PartialSharing {
     }
   }
 
+  /// (11) and the prediction once more from the last sample, with the A and Q of this one; then its C and W.
+  template <int n>
+  static void vary(const Local& l, const Gains& g, const Change& change, Eigen::Index first,
+                   State<n>& s) noexcept;
   template <int n>
   static void fuse(const Local& l, const Gains& g, State<n>& s, const Inbox<Message<n>>& inbox, int,
                    Message<n>& m) noexcept;
@@ -217,6 +238,8 @@ struct GARRISON_EXPORT PartialSharing {
     look(g.P, packed(g.m));
     look(g.G, packed(g.m));
     look(g.K, g.q * g.m);
+    look(g.C, g.q * g.m);
+    look(g.W, packed(g.q));
     for (int k = 0; k < g.m; ++k) all = all && std::abs(g.prediction(s.lane)[k]) < kHuge;
     return all;
   }
@@ -234,7 +257,8 @@ struct GARRISON_EXPORT PartialSharing {
   }
   static constexpr std::size_t signal_count = 3;
   static std::vector<std::string> signal_names() { return {"trace", "frozen", "shared"}; }
-  /// tr P_i of (11) for the next sample, whether the gains are frozen, and the number of entries sent.
+  /// tr P_i of (11) for the next sample, by the A of this one and the model's Q, whether the gains are
+  /// frozen, and the number of entries sent.
   template <int n>
   static void signals(const Local& l, const Gains& g, const State<n>& s, double* out) noexcept {
     const int nn = dimension<n>(l);
@@ -261,3 +285,4 @@ struct GARRISON_EXPORT PartialSharing {
 
 #include "garrison/filters/partial_sharing/agent.hpp"
 #include "garrison/filters/partial_sharing/params.hpp"
+#include "garrison/filters/partial_sharing/vary.hpp"

@@ -32,6 +32,16 @@ void explicit_gains(Recursion<n, 1>& recursion, double gamma, int m, int q, doub
   }
 }
 
+/// Row r of W H_i of one agent.
+template <int n>
+void whitened_row(Group<n>& group, int lane, int r, double* row) noexcept {
+  for (int k = 0; k < group.m; ++k) {
+    row[k] = 0.0;
+    for (int c = 0; c <= r; ++c)
+      row[k] += group.at(group.W, packed(r, c), lane) * group.at(group.C, c * group.m + k, lane);
+  }
+}
+
 /// K and G from P for one agent, which stands still from now on.
 template <int n>
 void freeze(double gamma, Group<n>& group, int lane) noexcept {
@@ -48,11 +58,7 @@ void freeze(double gamma, Group<n>& group, int lane) noexcept {
   Kernel recursion(One::of(own), One::of(own + Kernel::scratch(m)), m, q);
   recursion.factor(One::of(group.P + lane), kStride);
   for (int r = 0; r < q; ++r) {
-    for (int k = 0; k < m; ++k) {
-      row[k] = 0.0;
-      for (int c = 0; c <= r; ++c)
-        row[k] += group.at(group.W, packed(r, c), lane) * group.at(group.C, c * m + k, lane);
-    }
+    whitened_row(group, lane, r, row);
     recursion.use_row(r, One::of(row));
   }
   explicit_gains<n>(recursion, gamma, m, q, room, group.K + lane, group.G + lane, kStride);

@@ -66,6 +66,10 @@ struct Group {
     return static_cast<std::size_t>(sizes[piece] * kLanes);
   }
 
+  void read_own_sensors() {
+    C = own_sensors_;
+    W = C + static_cast<std::ptrdiff_t>(q * m) * kLanes;
+  }
   /// Makes C and W those of another group, which are the same numbers.
   void read_sensors_of(const Group& other) {
     C = other.C;
@@ -99,7 +103,7 @@ struct Group {
   double* z;    ///< estimate
   double* C;    ///< H_i
   double* W;    ///< inverse of the Cholesky factor of R_i
-  double* G;    ///< once frozen: gamma times the filtered covariance
+  double* G;    ///< once frozen: gamma times the filtered covariance; where gains never freeze: P(k)
   double* K;    ///< once frozen: gain of the innovations, row by row of measurements
   double* P;    ///< P(k+1)
   double* scratch;
@@ -109,14 +113,15 @@ struct Group {
   bool even = false;                               ///< every lane is an agent with q outputs
   unsigned frozen = 0;                             ///< a bit per lane
   bool started = false;
+  bool follows = false;  ///< gains never freeze, and may follow a plant that changes
 
  private:
   void place(const Room& room) {
     const auto lanes = [](int count) { return static_cast<std::ptrdiff_t>(count) * kLanes; };
     y = room[kSample];
     z = y + lanes(q);
-    C = room[kSensors];
-    W = C + lanes(q * m);
+    own_sensors_ = room[kSensors];
+    read_own_sensors();
     own_gains_ = room[kGains];
     read_own_gains();
     P = room[kCovariances];
@@ -124,6 +129,7 @@ struct Group {
   }
 
   Aligned<double> own_;  // of a group of one
+  double* own_sensors_ = nullptr;
   double* own_gains_ = nullptr;
 };
 

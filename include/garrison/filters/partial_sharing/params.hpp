@@ -69,13 +69,15 @@ inline auto PartialSharing::Params::fields() {
                                            .doc = "the initial estimate and P_0 belong to the first "
                                                   "measurement (xhat(0) of the paper), not to the "
                                                   "sample before it"}),
-      field(&Params::gains,
-            {.name = "gains",
-             .symbol = "K_i, C_i",
-             .unit = "",
-             .doc = "\"frozen\" once (11) has converged, \"varying\" for ever (same values but for "
-                    "rounding), or \"steady\": the limits from the start",
-             .choices = {"frozen", "varying", "steady"}}));
+      field(
+          &Params::gains,
+          {.name = "gains",
+           .symbol = "K_i, C_i",
+           .unit = "",
+           .doc =
+               "\"frozen\" once (11) has converged, \"varying\" for ever (same values but for "
+               "rounding; in a plant that changes they follow it), or \"steady\": the limits from the start",
+           .choices = {"frozen", "varying", "steady"}}));
 }
 
 }  // namespace garrison

@@ -92,6 +92,8 @@ class Update<n>::Lanes {
     if (frozen != everybody) {
       Kernel recursion(own, rows, m, q);
       V* const P = array(group_.P);
+      if (!common_.freeze)
+        for (int k = 0; k < packed(m); ++k) array(group_.G)[k * kStride] = P[k * kStride];
       recursion.factor(P, kStride);
       for (int r = 0; r < q; ++r) {
         whitened(r, row);
