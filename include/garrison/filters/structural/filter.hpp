@@ -278,6 +278,7 @@ struct GARRISON_EXPORT Structural {
     bool estimates = true;
     bool measurements = true;
   };
+  /// The two kernels of the bound of the error.
   template <int n>
   struct PredictSpread {
     template <int B>
@@ -292,7 +293,7 @@ struct GARRISON_EXPORT Structural {
       update_spread<B, n>(*l, *g, *s);
     }
   };
-  /// One of them, in registers as wide as the machine's; dimensions whose rows do not fill registers share
+  /// One of the two, in registers as wide as the machine's; dimensions whose rows do not fill registers share
   /// one piece of code.
   template <template <int> class Kernel, int n>
   static void run_spread(const Local& l, const Gains& g, Memory& s) noexcept {
