@@ -51,7 +51,7 @@ PyAgent agent_kept(const std::vector<std::byte>& all) {
              "an agent does not go back; use reset(x0, t) to start anew");
     case Refusal::early:
       refuse(call, "t = " + std::to_string(t),
-             "at most " + std::to_string(Agent::kMostGap + 1) + " samples after " + at,
+             "at most " + amount(Agent::kMostGap + 1, "sample") + " after " + at,
              "so much was missed: use reset(x0, t), or listen and join");
     default:
       refuse(call, "a refusal (" + std::string(word(why)) + ")", "a call that fits");
@@ -208,8 +208,7 @@ snapshot : bytes, optional | Of `save`; the agent goes on from there. Default: a
               case Refusal::none:
                 break;
               case Refusal::size:
-                refuse("x0", std::to_string(x0.size()) + " numbers",
-                       std::to_string(a->states()) + ", one per state");
+                refuse("x0", amount(x0.size(), "number"), std::to_string(a->states()) + ", one per state");
               case Refusal::number:
                 refuse("x0", "a number that is not finite, or beyond 1e150", "finite numbers");
               default:
@@ -249,7 +248,7 @@ measurement_covariance : (m_i, m_i) array, optional | Of the own sensor; positiv
           "sense",
           [](PyAgent& a, std::int64_t t, const std::vector<double>& y) -> std::optional<Letter> {
             if (y.size() != static_cast<std::size_t>(a->outputs()))
-              refuse("y", std::to_string(y.size()) + " numbers",
+              refuse("y", amount(y.size(), "number"),
                      std::to_string(a->outputs()) + ", one per row of C[" + std::to_string(a->id()) + "]");
             std::vector<std::byte> body(a->most_bytes());
             const auto sent = a->sense(t, y, body);

@@ -21,7 +21,7 @@ lower of lambda0, upper of varpi and tau0.
 lower, upper : float | The value lies between them.
 exact : bool | The search finished.
 removed : sequence of int | Worst set found, sorted.
-nodes : int | Sets, or parts of sets, that were looked at.
+nodes : int | Sets, parts of sets, or cones of directions, that were looked at.
 method : str | How it was found, in words.)")
           .c_str());
   using B = SubsetBound;
@@ -32,7 +32,8 @@ method : str | How it was found, in words.)")
       .def_readonly("upper", &SubsetBound::upper, "And at most this; equal to lower: exact.")
       .def_readonly("exact", &SubsetBound::exact, "The search finished.")
       .def_readonly("removed", &SubsetBound::removed, "Worst set found, sorted.")
-      .def_readonly("nodes", &SubsetBound::nodes, "Sets, or parts of sets, that were looked at.")
+      .def_readonly("nodes", &SubsetBound::nodes,
+                    "Sets, parts of sets, or cones of directions, that were looked at.")
       .def_readonly("method", &SubsetBound::method, "How it was found, in words.");
   const SubsetLimits limits;
   m.def(
@@ -48,7 +49,8 @@ method : str | How it was found, in words.)")
 
 C : (N, n) array | One row per sensor.
 s : int | Rows that are left out, 0..N.
-max_nodes : int | The search ends after so many sets, >= 1, with an interval.
+max_nodes : int | The search ends after so many sets, >= 1, with an interval (with up to three states: after as
+  much work as so many looks at all rows).
 max_seconds : float | Or after so many seconds, >= 0.
 < SubsetBound | Its `lower` is safe in every theorem.
 ! InvalidInput | A number out of range, or not finite.)")

@@ -23,7 +23,7 @@ SparseMeters of_entries(const std::pair<int, int>& shape, const Ids& rows, const
   if (rows.size() != columns.size() || static_cast<Eigen::Index>(rows.size()) != values.size())
     refuse("rows, columns, values",
            std::to_string(rows.size()) + ", " + std::to_string(columns.size()) + " and " +
-               std::to_string(values.size()) + " numbers",
+               amount(values.size(), "number"),
            "as many of each");
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -139,7 +139,7 @@ data : bytes | All of it.
            [](const Letter& l) {
              return "Message of " + l.family + " from agent " + std::to_string(l.envelope.sender) +
                     ", sample " + std::to_string(l.envelope.sample) + ", round " +
-                    std::to_string(l.envelope.round) + ", " + std::to_string(l.body.size()) + " bytes";
+                    std::to_string(l.envelope.round) + ", " + amount(l.body.size(), "byte");
            })
       .def(py::pickle([](const Letter& l) { return to_python(l.to_bytes()); },
                       [](const py::bytes& b) { return Letter::from_bytes(from_python(b, "message")); }));

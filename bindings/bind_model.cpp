@@ -33,7 +33,7 @@ std::vector<Matrix> rows_per_agent(const py::object& given, Eigen::Index n) {
     const std::string which = at("C", C.size());
     const auto array = convert::array(which, one, rows + " numbers");
     if (array.ndim() > 2 || (array.ndim() == 0 && n != 1))
-      refuse(which, std::to_string(array.ndim()) + " dimensions", rows);
+      refuse(which, amount(array.ndim(), "dimension"), rows);
     if (array.size() == 0)
       C.emplace_back(0, n);
     else if (array.ndim() == 2)
@@ -79,7 +79,7 @@ void require_blocks(const char* which, const py::object& given, const std::vecto
   const auto joint = py::reinterpret_borrow<py::array>(given);
   if (joint.ndim() != 2 || joint.shape(0) != total || joint.shape(1) != total) return;
   refuse(which, std::to_string(total) + " x " + std::to_string(total) + " numbers",
-         std::to_string(C.size()) + " matrices, one per agent",
+         amount(C.size(), "matrix", "matrices") + ", one per agent",
          "noises of different agents are independent: give the block of each agent, or numbers of the "
          "diagonal");
 }
@@ -342,8 +342,8 @@ inputs : p names, optional | One per column of B.
           "One (m_i, m_i) array per agent, or None = not known.")
       .def("__repr__", [](const Model& x) { return as_code("garrison.Model", arguments(x)); })
       .def("__str__", [](const Model& x) {
-        return "Model with " + std::to_string(x.states()) + " states, " + std::to_string(x.agents()) +
-               " agents, " + std::to_string(x.total_outputs()) + " outputs";
+        return "Model with " + amount(x.states(), "state") + ", " + amount(x.agents(), "agent") + ", " +
+               amount(x.total_outputs(), "output");
       });
   keep(model, arguments, model_from);
   compare<Model>(

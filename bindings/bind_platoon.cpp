@@ -325,7 +325,7 @@ free : bool | It is known to be free: 1.
         require_range("range", range, 1.0);
         for (const int id : free) require_range("free", id, 0.0, vehicles - 1.0);
         if (alpha.size() != static_cast<std::size_t>(vehicles))
-          refuse("alpha", std::to_string(alpha.size()) + " numbers", "one per vehicle");
+          refuse("alpha", amount(alpha.size(), "number"), "one per vehicle");
         BestSource best(by_bound);
         for (int j = 0; j < vehicles; ++j) {
           const bool candidate = (std::abs(j - vehicle) <= range && in_V1(j, vehicles, range)) ||

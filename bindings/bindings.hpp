@@ -68,7 +68,7 @@ typename F::Params params_of(const FilterHandle& f) {
 /// Refuses a network that has another number of agents than the model.
 inline void require_same_size(const garrison::Model& model, const garrison::Network& network) {
   if (model.agents() != network.agents())
-    garrison::refuse("network", std::to_string(network.agents()) + " agents",
+    garrison::refuse("network", garrison::amount(network.agents(), "agent"),
                      std::to_string(model.agents()) + ", because C has one matrix per agent");
 }
 

@@ -102,7 +102,7 @@ Edge edge_of(const std::string& which, py::handle item, const Numbering& number)
   const py::list ends(py::reinterpret_borrow<py::object>(item));
   if (ends.size() == 3)
     refuse(which, "3 values", expected, "a network has no weights; leave the third value out");
-  if (ends.size() != 2) refuse(which, std::to_string(ends.size()) + " values", expected);
+  if (ends.size() != 2) refuse(which, amount(ends.size(), "value"), expected);
   return {number(which + "[0]", ends[0]), number(which + "[1]", ends[1])};
 }
 
@@ -162,7 +162,7 @@ Network from_adjacency(const py::object& source, bool directed, Names names) {
   if (py::hasattr(given, "tocoo")) {
     const py::object coo = given.attr("tocoo")();
     const py::tuple sides = coo.attr("shape");
-    if (sides.size() != 2) refuse(which, std::to_string(sides.size()) + " dimensions", "two");
+    if (sides.size() != 2) refuse(which, amount(sides.size(), "dimension"), "two");
     shape = {sides[0].cast<std::int64_t>(), sides[1].cast<std::int64_t>()};
     const auto rows = coo.attr("row").cast<std::vector<std::int64_t>>();
     const auto columns = coo.attr("col").cast<std::vector<std::int64_t>>();

@@ -63,7 +63,7 @@ class OwnTrial final : public MeasurementAttack {
         where, [&] { return (*function_)(s.t, i, array_of(y, size), generator(random_, s.t, i, salt_)); });
     const auto numbers = convert::array("attack (" + where + ")", told);
     if (static_cast<std::size_t>(numbers.size()) != size)
-      refuse("attack (" + where + ")", std::to_string(numbers.size()) + " numbers", std::to_string(size),
+      refuse("attack (" + where + ")", amount(numbers.size(), "number"), std::to_string(size),
              "return one number per output of the agent that can be attacked");
     std::copy_n(numbers.data(), size, y);
   }
@@ -124,7 +124,7 @@ void put(const std::string& which, const FieldRef& field, py::handle value) {
     case FieldKind::sparse: {
       const auto numbers = convert::array(which, value);
       if (numbers.size() != field.size)
-        refuse(which, std::to_string(numbers.size()) + " numbers", std::to_string(field.size));
+        refuse(which, amount(numbers.size(), "number"), std::to_string(field.size));
       std::copy_n(numbers.data(), field.size, static_cast<double*>(field.data));
       return;
     }

@@ -40,7 +40,7 @@ void call(Session& s, const char* function, int id, const Call& body) noexcept {
 void read(const std::string& which, py::handle given, double* out, std::size_t size) {
   const auto array = convert::array(which, given);
   if (static_cast<std::size_t>(array.size()) != size)
-    refuse(which, std::to_string(array.size()) + " numbers", std::to_string(size));
+    refuse(which, garrison::amount(array.size(), "number"), std::to_string(size));
   std::copy_n(array.data(), size, out);
 }
 

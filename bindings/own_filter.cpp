@@ -20,7 +20,7 @@ constexpr std::size_t kLongestSignal = 200;
 /// where it can.
 std::string unfit(const std::string& name) {
   if (name.empty()) return "is empty";
-  if (name.size() > kLongestSignal) return "has more than " + std::to_string(kLongestSignal) + " bytes";
+  if (name.size() > kLongestSignal) return "has more than " + amount(kLongestSignal, "byte");
   if (name.find_first_of("/\\") != std::string::npos || name == "." || name == "..")
     return "is a path of folders";
   if (name.front() == ' ' || name.back() == ' ') return "begins or ends with a space";

@@ -77,7 +77,7 @@ py::object read_tuple(const ArgumentType& type, const std::string& which, py::ha
   const bool scalar = py::hasattr(given, "ndim") && given.attr("ndim").cast<int>() == 0;
   const py::list parts = can && !scalar ? convert::listed(which, given, type.expected()) : py::list();
   if (parts.size() != type.of.size())
-    refuse(which, can ? std::to_string(parts.size()) + " values" : convert::shown(given), type.expected());
+    refuse(which, can ? garrison::amount(parts.size(), "value") : convert::shown(given), type.expected());
   py::tuple all(type.of.size());
   for (std::size_t k = 0; k < parts.size(); ++k)
     all[k] = read(type.of[k], which + "[" + std::to_string(k) + "]", parts[k]);

@@ -60,7 +60,7 @@ Regression regressed(const MatrixRef& z, const MatrixRef& u, int order, const st
   const Matrix X = regressors(z, u, order, rows);
   const Matrix Y = targets(z, rows);
   if (X.rows() < 10 * X.cols())
-    refuse("records", std::to_string(X.rows()) + " samples with a complete past",
+    refuse("records", amount(X.rows(), "sample") + " with a complete past",
            "at least " + std::to_string(10 * X.cols()) + " for order " + std::to_string(order),
            "use more records, a smaller order or fewer stations");
   const Vector unit = column_lengths(X);
@@ -93,8 +93,7 @@ std::vector<double> held_out(const MatrixRef& z, const MatrixRef& u, const Autor
   const std::vector<Index> before(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(kept));
   const std::vector<Index> after(all.begin() + static_cast<std::ptrdiff_t>(kept), all.end());
   if (after.empty())
-    refuse("records",
-           std::to_string(all.size()) + " samples with a complete past of " + std::to_string(o.most),
+    refuse("records", amount(all.size(), "sample") + " with a complete past of " + std::to_string(o.most),
            "enough to hold some out", "use more records or a smaller largest order");
   std::vector<double> found;
   for (int order = 1; order <= o.most; ++order)
@@ -113,7 +112,7 @@ void require(const MatrixRef& z, const MatrixRef& u, const AutoregressionOptions
   if (!(o.held_out > 0.0 && o.held_out <= 0.9))
     refuse("fit.held_out", text(o.held_out), "a share in (0, 0.9]");
   if (u.rows() != z.rows())
-    refuse("fit.inputs", std::to_string(u.rows()) + " rows", std::to_string(z.rows()) + ", one per record");
+    refuse("fit.inputs", amount(u.rows(), "row"), std::to_string(z.rows()) + ", one per record");
 }
 
 }  // namespace

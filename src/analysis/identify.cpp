@@ -33,8 +33,8 @@ void require_options(const MatrixRef& raw, const FitOptions& o) {
   if (!(o.period > 0.0)) refuse("fit.period", text(o.period), "a number of samples > 0");
   if (o.harmonics > 0 && !(o.period > 2.0 * o.harmonics))
     refuse("fit.period", text(o.period),
-           "more than " + std::to_string(2 * o.harmonics) +
-               " samples, two for each of the fit.harmonics = " + std::to_string(o.harmonics),
+           "more than " + amount(2 * o.harmonics, "sample") +
+               ", two for each of the fit.harmonics = " + std::to_string(o.harmonics),
            "a cycle that is sampled more rarely looks like a longer one");
   if (!(o.factor > 0.0) || !std::isfinite(o.factor))
     refuse("fit.factor", text(o.factor), "a finite number > 0");

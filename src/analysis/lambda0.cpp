@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 
 #include "branch_and_bound.hpp"
+#include "directions.hpp"
 #include "garrison/analysis/subsets.hpp"
 #include "garrison/core/dispatch.hpp"
 
@@ -12,54 +11,8 @@ namespace garrison {
 namespace {
 
 constexpr double kOrthogonal = 1e-12;
-constexpr Eigen::Index kMostPlanarRows = 200;  // beyond, O(N^3 log N) loses against branch and bound
-
-/// Two-dimensional rows: the s rows most aligned with a direction change only where two rows are equally
-/// aligned, u perpendicular to c_i - c_j or c_i + c_j. One set per interval between these angles contains the
-/// optimum.
-SubsetBound planar_sweep(const MatrixRef& C, int s) {
-  const auto N = C.rows();
-  std::vector<double> angles{0.0};
-  const auto add = [&](double x, double y) {
-    if (x == 0.0 && y == 0.0) return;
-    double angle = std::atan2(x, -y);  // perpendicular to (x, y)
-    while (angle < 0.0) angle += std::numbers::pi;
-    angles.push_back(std::fmod(angle, std::numbers::pi));
-  };
-  for (Eigen::Index i = 0; i < N; ++i)
-    for (Eigen::Index j = i + 1; j < N; ++j) {
-      add(C(i, 0) - C(j, 0), C(i, 1) - C(j, 1));
-      add(C(i, 0) + C(j, 0), C(i, 1) + C(j, 1));
-    }
-  std::sort(angles.begin(), angles.end());
-  angles.push_back(angles.front() + std::numbers::pi);
-  SubsetBound best;
-  best.upper = kInfinity;
-  best.method = "planar sweep";
-  std::vector<int> order(static_cast<std::size_t>(N));
-  for (std::size_t k = 0; k + 1 < angles.size(); ++k) {
-    if (angles[k + 1] - angles[k] < 1e-15) continue;
-    const double middle = 0.5 * (angles[k] + angles[k + 1]);
-    const Eigen::Vector2d u(std::cos(middle), std::sin(middle));
-    std::iota(order.begin(), order.end(), 0);
-    std::nth_element(order.begin(), order.begin() + s, order.end(),
-                     [&](int a, int b) { return std::abs(C.row(a).dot(u)) > std::abs(C.row(b).dot(u)); });
-    Eigen::Matrix2d S = Eigen::Matrix2d::Zero();
-    for (auto i = static_cast<std::size_t>(s); i < order.size(); ++i)
-      S += C.row(order[i]).transpose() * C.row(order[i]);
-    const double value = detail::eigenvalues<2>(S)(0);
-    ++best.nodes;
-    if (value >= best.upper) continue;
-    best.upper = value;
-    best.removed.assign(order.begin(), order.begin() + s);
-  }
-  std::sort(best.removed.begin(), best.removed.end());
-  const double rounding = detail::kRounding * C.squaredNorm();
-  best.upper = std::max(best.upper, 0.0);
-  best.lower = std::max(best.upper - rounding, 0.0);
-  best.exact = true;
-  return best;
-}
+constexpr Eigen::Index kFewRows =
+    20;  // of three states: sets, which rows of very different lengths do not slow
 
 }  // namespace
 
@@ -126,7 +79,8 @@ SubsetBound lambda0(const MatrixRef& C, int s, const SubsetLimits& limits) {
     trivial.method = "orthogonal rows";
     return trivial;
   }
-  if (C.cols() == 2 && C.rows() <= kMostPlanarRows) return planar_sweep(C, s);
+  if (C.cols() < 3 || (C.cols() == 3 && C.rows() > kFewRows))
+    return detail::lambda0_by_directions(C, s, limits);
   return dispatch(static_cast<int>(C.cols()),
                   [&]<int n>() { return detail::BranchAndBound<n>(C, s, limits).run(); });
 }

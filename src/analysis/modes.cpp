@@ -19,7 +19,7 @@ void require_pair(const MatrixRef& A, const MatrixRef& C) {
     refuse("A", std::to_string(n) + " x " + std::to_string(A.cols()),
            "a square matrix with at least one row");
   if (C.rows() > 0 && C.cols() != n)
-    refuse("C", std::to_string(C.cols()) + " columns", std::to_string(n) + ", as many as A");
+    refuse("C", amount(C.cols(), "column"), std::to_string(n) + ", as many as A");
   if (!A.allFinite() || !C.allFinite()) refuse("A or C", "a number that is not finite", "finite numbers");
 }
 

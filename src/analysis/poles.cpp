@@ -63,9 +63,9 @@ void require_shapes(const MatrixRef& A, const MatrixRef& C, const std::vector<do
     refuse("place_poles.A", std::to_string(A.rows()) + " x " + std::to_string(A.cols()), "a square matrix");
   if (C.rows() == 0 || C.cols() != A.cols())
     refuse("place_poles.C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()),
-           "rows of " + std::to_string(A.cols()) + " numbers");
+           "rows of " + amount(A.cols(), "number"));
   if (static_cast<Eigen::Index>(poles.size()) != A.rows())
-    refuse("poles", std::to_string(poles.size()) + " numbers", std::to_string(A.rows()) + ", one per state");
+    refuse("poles", amount(poles.size(), "number"), std::to_string(A.rows()) + ", one per state");
 }
 
 void require_multiplicity(const std::vector<double>& poles, Eigen::Index rank) {

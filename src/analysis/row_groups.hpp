@@ -25,7 +25,8 @@ inline void require_subset_input(const char* who, const MatrixRef& C, int s) {
   if (C.rows() < 1 || C.cols() < 1)
     refuse(std::string(who) + ".C", std::to_string(C.rows()) + " x " + std::to_string(C.cols()),
            "at least 1 x 1");
-  if (!C.allFinite()) refuse(std::string(who) + ".C", "a number that is not finite", "finite rows");
+  if (!C.allFinite() || C.cwiseAbs().maxCoeff() > kHuge)
+    refuse(std::string(who) + ".C", "a number that is not finite, or beyond 1e150", "finite rows");
   if (s < 0 || s > C.rows())
     refuse(std::string(who) + ".s", std::to_string(s), "a number in 0.." + std::to_string(C.rows()),
            "s counts removed rows");

@@ -114,10 +114,10 @@ class FalseTrajectory final : public Stateful<Story> {
       : Stateful(schedule, story, model, random, salt), next_(model.states()) {
     const auto n = model.states();
     if (story.offset.size() != n)
-      refuse("false_trajectory.offset", std::to_string(story.offset.size()) + " numbers",
+      refuse("false_trajectory.offset", amount(story.offset.size(), "number"),
              std::to_string(n) + ", one per state");
     if (story.push.size() != 0 && story.push.size() != n)
-      refuse("false_trajectory.push", std::to_string(story.push.size()) + " numbers",
+      refuse("false_trajectory.push", amount(story.push.size(), "number"),
              "none or " + std::to_string(n) + ", one per state");
   }
   void apply(const Sample& s) override {

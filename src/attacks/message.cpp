@@ -126,7 +126,7 @@ Matrix root_of(const Matrix& covariance) {
 void require_blocks(const char* which, const Schedule& schedule, Eigen::Index columns) {
   const auto liars = static_cast<Eigen::Index>(schedule.everyone().size());
   if (liars == 0 || columns == 0 || columns % liars != 0)
-    refuse(which, std::to_string(columns) + " columns", "a multiple of " + std::to_string(liars) + " columns",
+    refuse(which, amount(columns, "column"), "a multiple of " + amount(liars, "column"),
            "one block of as many as there are states for each of the attacked agents");
 }
 

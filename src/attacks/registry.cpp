@@ -255,14 +255,14 @@ std::shared_ptr<const MessageAttack> build(Schedule s, const CoordinatedParams& 
   const auto size =
       static_cast<Eigen::Index>(std::llround(std::sqrt(static_cast<double>(p.covariance.size()))));
   if (size == 0 || static_cast<std::size_t>(size * size) != p.covariance.size())
-    refuse("coordinated.covariance", std::to_string(p.covariance.size()) + " numbers",
+    refuse("coordinated.covariance", amount(p.covariance.size(), "number"),
            "a square matrix, row by row: (agents x states)^2 numbers");
   return coordinated(std::move(s), Matrix(Eigen::Map<const Rows>(p.covariance.data(), size, size)));
 }
 std::shared_ptr<const MessageAttack> build(Schedule s, const PerturbParams& p) {
   const auto width = static_cast<std::size_t>(p.width);
   if (width == 0 || p.deltas.size() % width != 0)
-    refuse("perturb.deltas", std::to_string(p.deltas.size()) + " numbers",
+    refuse("perturb.deltas", amount(p.deltas.size(), "number"),
            "a multiple of width = " + std::to_string(p.width));
   const auto samples = static_cast<Eigen::Index>(p.deltas.size() / width);
   return perturb(std::move(s), Matrix(Eigen::Map<const Rows>(p.deltas.data(), samples, p.width)));

@@ -13,7 +13,7 @@ Region averaged(const VectorRef& weights, const MatrixRef& estimates, const Vect
     refuse("estimates", detail::shape(estimates), "at least one estimate of one number");
   detail::require_shape("weights", weights, q, 1);
   detail::require_shape("estimates", estimates, estimates.rows(), q);
-  if (bounds.size() != q) refuse("bounds", std::to_string(bounds.size()), std::to_string(q) + " numbers");
+  if (bounds.size() != q) refuse("bounds", std::to_string(bounds.size()), amount(q, "number"));
   if (!(std::abs(weights.sum() - 1.0) <= 1e-9 * (1.0 + weights.cwiseAbs().sum())))
     refuse("weights", "sum " + text(weights.sum()), "sum 1");
   for (const double b : bounds)

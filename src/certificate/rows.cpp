@@ -78,7 +78,7 @@ GivenRows given_rows(const VectorRef& y, const MatrixRef& C, const VectorRef& R,
   if (m > 0 && !(R.minCoeff() > 0.0)) refuse("R", text(R.minCoeff()), "variances > 0");
   if (widths.size() > 0) detail::require_bounds("widths", widths, m);
   if (!sources.empty() && static_cast<Eigen::Index>(sources.size()) != m)
-    refuse("sources", std::to_string(sources.size()), std::to_string(m) + " numbers", "one per row");
+    refuse("sources", std::to_string(sources.size()), amount(m, "number"), "one per row");
   int most = static_cast<int>(m);
   for (const int source : sources) {
     if (source < 0 || source >= kMostSources)

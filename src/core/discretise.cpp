@@ -52,7 +52,7 @@ Matrix held_input(const Matrix& F, const Matrix& G, double period) {
   const auto n = F.rows();
   require(F, Matrix::Zero(n, n), period);
   if (G.size() == 0) return Matrix::Zero(n, 0);
-  if (G.rows() != n) refuse("B", shape(G), std::to_string(n) + " rows, because A is " + shape(F));
+  if (G.rows() != n) refuse("B", shape(G), amount(n, "row") + ", because A is " + shape(F));
   if (!G.allFinite()) refuse("B", "a number that is not finite", "finite numbers");
   Matrix block = Matrix::Zero(n + G.cols(), n + G.cols());
   block.topLeftCorner(n, n) = F * period;

@@ -49,7 +49,7 @@ void refuse(const std::string& which, const std::string& got, const std::string&
 void require_names(const std::string& which, const std::vector<std::string>& names, std::size_t count,
                    const std::string& owners) {
   if (!names.empty() && names.size() != count)
-    refuse(which, std::to_string(names.size()) + " names", std::to_string(count) + ", one per " + owners);
+    refuse(which, amount(names.size(), "name"), std::to_string(count) + ", one per " + owners);
   std::set<std::string> seen;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty()) refuse(which + "[" + std::to_string(i) + "]", "an empty name", "a name");

@@ -47,7 +47,7 @@ void require_labels(const Labels& labels, const Model& model) {
   require_names("states", labels.states, static_cast<std::size_t>(model.states()), "state");
   require_names("outputs", labels.outputs, outputs, "measurement of the whole network");
   if (!labels.sources.empty() && labels.sources.size() != outputs)
-    refuse("sources", std::to_string(labels.sources.size()) + " names",
+    refuse("sources", amount(labels.sources.size(), "name"),
            std::to_string(outputs) + ", one per measurement of the whole network");
   require_names("inputs", labels.inputs, static_cast<std::size_t>(model.inputs()), "column of B");
   std::vector<std::string> known = model.state_names();
@@ -81,28 +81,26 @@ Model::Model(Matrix A, std::vector<Matrix> C, Noise noise, std::vector<int> expo
   require_finite("A", A_);
   if (B_.size() == 0) B_.resize(n, 0);
   if (B_.rows() != n)
-    refuse("B", shape(B_), std::to_string(n) + " rows, because A is " + shape(A_), "one column per input");
+    refuse("B", shape(B_), amount(n, "row") + ", because A is " + shape(A_), "one column per input");
   require_finite("B", B_);
   if (C_.empty()) refuse("C", "no agent", "one matrix of observation rows per agent");
   offsets_.assign(1, 0);
   for (std::size_t i = 0; i < C_.size(); ++i) {
     if (C_[i].rows() == 0) C_[i].resize(0, n);
     const std::string which = "C[" + std::to_string(i) + "]";
-    if (C_[i].cols() != n)
-      refuse(which, shape(C_[i]), std::to_string(n) + " columns, because A is " + shape(A_));
+    if (C_[i].cols() != n) refuse(which, shape(C_[i]), amount(n, "column") + ", because A is " + shape(A_));
     require_finite(which, C_[i]);
     offsets_.push_back(offsets_.back() + static_cast<int>(C_[i].rows()));
   }
   if (!exposed_.empty() && exposed_.size() != C_.size())
-    refuse("exposed", std::to_string(exposed_.size()) + " numbers",
-           "one per agent (" + std::to_string(agents()) + ")");
+    refuse("exposed", amount(exposed_.size(), "number"), "one per agent (" + std::to_string(agents()) + ")");
   for (std::size_t i = 0; i < exposed_.size(); ++i)
     if (exposed_[i] < 0 || exposed_[i] > C_[i].rows())
       refuse("exposed[" + std::to_string(i) + "]", std::to_string(exposed_[i]),
              "0.." + std::to_string(C_[i].rows()) + ", the rows of C[" + std::to_string(i) + "]");
   if (!std::isnan(noise_.process_bound)) require_bound("process_bound", noise_.process_bound);
   if (noise_.measurement_bound.size() != 0 && noise_.measurement_bound.size() != agents())
-    refuse("measurement_bound", std::to_string(noise_.measurement_bound.size()) + " numbers",
+    refuse("measurement_bound", amount(noise_.measurement_bound.size(), "number"),
            "one per agent (" + std::to_string(agents()) + ")");
   for (Eigen::Index i = 0; i < noise_.measurement_bound.size(); ++i)
     require_bound("measurement_bound[" + std::to_string(i) + "]", noise_.measurement_bound(i));
@@ -110,13 +108,13 @@ Model::Model(Matrix A, std::vector<Matrix> C, Noise noise, std::vector<int> expo
     require_covariance("process_covariance", noise_.process_covariance, n);
   const auto& Sw = noise_.agent_process_covariance;
   if (!Sw.empty() && Sw.size() != C_.size())
-    refuse("process_covariance", std::to_string(Sw.size()) + " matrices",
+    refuse("process_covariance", amount(Sw.size(), "matrix", "matrices"),
            "one for all, or one per agent (" + std::to_string(agents()) + ")");
   for (std::size_t i = 0; i < Sw.size(); ++i)
     require_covariance("process_covariance[" + std::to_string(i) + "]", Sw[i], n);
   const auto& Sv = noise_.measurement_covariance;
   if (!Sv.empty() && Sv.size() != C_.size())
-    refuse("measurement_covariance", std::to_string(Sv.size()) + " matrices",
+    refuse("measurement_covariance", amount(Sv.size(), "matrix", "matrices"),
            "one per agent (" + std::to_string(agents()) + ")");
   for (std::size_t i = 0; i < Sv.size(); ++i)
     require_covariance("measurement_covariance[" + std::to_string(i) + "]", Sv[i], C_[i].rows());

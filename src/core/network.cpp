@@ -45,7 +45,7 @@ void build_lists(int agents, std::vector<Edge> pairs, std::vector<int>& offsets,
 /// Room for a dense N x N matrix.
 void require_square(const Network& network) {
   const double N = network.agents();
-  require_memory("network", std::to_string(network.agents()) + " agents", 8.0 * N * N);
+  require_memory("network", amount(network.agents(), "agent"), 8.0 * N * N);
 }
 
 }  // namespace

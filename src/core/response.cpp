@@ -6,8 +6,8 @@ namespace garrison {
 Vector driven(const Matrix& A, const Vector& x, const Matrix& B, const VectorRef& u) {
   if (A.rows() != x.size() || A.cols() != x.size() || B.rows() != A.rows() || B.cols() != u.size())
     refuse("B",
-           std::to_string(B.rows()) + " x " + std::to_string(B.cols()) + " for " + std::to_string(x.size()) +
-               " states and " + std::to_string(u.size()) + " inputs",
+           std::to_string(B.rows()) + " x " + std::to_string(B.cols()) + " for " + amount(x.size(), "state") +
+               " and " + amount(u.size(), "input"),
            "a row per state and a column per input, and A " + std::to_string(x.size()) + " x " +
                std::to_string(x.size()));
   Matrix both(A.rows(), A.cols() + B.cols());
@@ -23,8 +23,7 @@ void Response::advance(const VectorRef& u) { advance(A_, B_, u); }
 
 void Response::advance(const Matrix& A, const Matrix& B, const VectorRef& u) {
   if (u.size() != B.cols())
-    refuse("inputs", std::to_string(u.size()) + " numbers",
-           std::to_string(B.cols()) + ", one per column of B");
+    refuse("inputs", amount(u.size(), "number"), std::to_string(B.cols()) + ", one per column of B");
   if (!u.allFinite())
     refuse("inputs", "a number that is not finite at time " + std::to_string(t_), "known inputs at all times",
            "what is not known is process noise");

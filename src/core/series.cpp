@@ -16,7 +16,7 @@ void require_part(const char* name, const std::vector<Matrix>& part, Eigen::Inde
                   int steps) {
   if (part.empty()) return;
   if (part.size() < static_cast<std::size_t>(steps))
-    refuse(name, std::to_string(part.size()) + " matrices over time",
+    refuse(name, amount(part.size(), "matrix", "matrices") + " over time",
            "at least " + std::to_string(steps) + ", one per step");
   for (std::size_t t = 0; t < part.size(); ++t) {
     const std::string which = std::string(name) + "[" + std::to_string(t) + "]";
@@ -40,7 +40,7 @@ void require_blocks(const Model& model, const Matrix& R, const std::string& when
     const int m = model.outputs(i);
     const auto own = R.middleRows(model.offset(i), m);
     if (!own.rightCols(R.cols() - m).isZero(0.0))
-      refuse(which, "numbers right of its " + std::to_string(m) + " columns", "zeros there");
+      refuse(which, "numbers right of its " + amount(m, "column"), "zeros there");
     require_covariance(which, own.leftCols(m));
   }
 }

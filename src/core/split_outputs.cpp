@@ -28,7 +28,7 @@ std::vector<std::string> part_names(const Model& model, const Network& network, 
 
 SplitSystem split_outputs(const Model& model, const Network& network) {
   if (model.agents() != network.agents())
-    refuse("network", std::to_string(network.agents()) + " agents", std::to_string(model.agents()));
+    refuse("network", amount(network.agents(), "agent"), std::to_string(model.agents()));
   std::vector<int> first;  // new id of each old agent's first part
   std::vector<int> owner;
   for (int i = 0; i < model.agents(); ++i) {

@@ -342,19 +342,17 @@ class Search {
 void require(const Model& model, const MatrixRef& measurements, int trials,
              const ContradictionOptions& options) {
   if (trials < 1 || measurements.rows() % trials != 0)
-    refuse("trials", std::to_string(trials),
-           "a divisor of the " + std::to_string(measurements.rows()) + " rows");
+    refuse("trials", std::to_string(trials), "a divisor of the " + amount(measurements.rows(), "row"));
   if (measurements.cols() != model.total_outputs())
-    refuse("measurements", std::to_string(measurements.cols()) + " columns",
+    refuse("measurements", amount(measurements.cols(), "column"),
            std::to_string(model.total_outputs()) + ", one per output of the model");
   if (options.attacked < 0) refuse("attacked", std::to_string(options.attacked), "a whole number >= 0");
   if (!options.owner.empty() && static_cast<int>(options.owner.size()) != model.total_outputs())
-    refuse("owner", std::to_string(options.owner.size()) + " numbers",
+    refuse("owner", amount(options.owner.size(), "number"),
            std::to_string(model.total_outputs()) + ", one per output of the model");
   if (options.inputs.size() != 0 &&
       (options.inputs.cols() != model.inputs() || options.inputs.rows() + 1 < measurements.rows() / trials))
-    refuse("inputs",
-           std::to_string(options.inputs.rows()) + " rows of " + std::to_string(options.inputs.cols()),
+    refuse("inputs", amount(options.inputs.rows(), "row") + " of " + std::to_string(options.inputs.cols()),
            "one row from each sample to the next, a number per input");
 }
 

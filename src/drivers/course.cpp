@@ -20,9 +20,7 @@ void require_certifiable(const certificate::Plan& plan, const Model& model, cons
   for (std::size_t t = 0; t < series.C.size(); ++t) {
     const auto rows = (series.C[t].array() != 0.0).rowwise().any().count();
     if (rows > plan.all_rows)
-      refuse("certificate",
-             "C of sample " + std::to_string(t + 1) + " with " + std::to_string(rows) +
-                 " rows that are not zero",
+      refuse("certificate", "C of sample " + std::to_string(t + 1) + " with " + amount(rows, "nonzero row"),
              "at most " + std::to_string(plan.all_rows) + ", as in the C of the model",
              "give the model rows that are not zero where a sensor ever sees something");
   }

@@ -14,7 +14,7 @@ Record simulate(const Prepared& prepared, const PlantOptions& plant, const RunOp
   const bool own = prepared.filter().own_states();
   const int width = own ? model.agents() * model.states() : model.states();
   if (plant.x0.size() != 0 && plant.x0.size() != width)
-    refuse("x0", std::to_string(plant.x0.size()) + (plant.x0.size() == 1 ? " number" : " numbers"),
+    refuse("x0", amount(plant.x0.size(), "number"),
            std::to_string(width) + (own ? ", one per agent and state" : ", one per state"));
   if (!plant.x0.allFinite()) refuse("x0", "a number that is not finite", "a finite initial state");
   if (!(plant.start_error >= 0.0) || !std::isfinite(plant.start_error))
@@ -22,7 +22,7 @@ Record simulate(const Prepared& prepared, const PlantOptions& plant, const RunOp
   if (own) {
     const Matrix* recorded = plant.disturbances.size() == 0 ? nullptr : &plant.disturbances;
     if (recorded != nullptr && recorded->rows() != plant.steps + 1)
-      refuse("noise", std::to_string(recorded->rows()) + " rows of recorded disturbances",
+      refuse("noise", amount(recorded->rows(), "row") + " of recorded disturbances",
              std::to_string(plant.steps + 1) + ", one per time 0..steps");
     const Matrix start = detail::starts(model, options.start);
     return detail::run_trials(prepared, plant.steps, true, options, [&](std::uint32_t trial) {
@@ -47,7 +47,7 @@ Record simulate(const Model& model, const Network& network, const AnyFilter& fil
 
 Record replay(const Prepared& prepared, const Log& log, const RunOptions& options) {
   const Model& model = prepared.model();
-  if (log.steps < 1) refuse("measurements", std::to_string(log.steps) + " samples", "at least 1");
+  if (log.steps < 1) refuse("measurements", amount(log.steps, "sample"), "at least 1");
   detail::require_course(prepared, options, log.steps);
   if (log.runs != 1 && log.runs != options.trials)
     refuse("trials", std::to_string(options.trials), std::to_string(log.runs) + ", one per run of the log",

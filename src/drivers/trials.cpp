@@ -156,7 +156,7 @@ void require_run(const Prepared& prepared, const RunOptions& options) {
   for (const auto& attack : options.message_attacks)
     if (!attack->fits(model.states()))
       refuse("attack", "numbers for another plant",
-             "one per attacked agent and state (" + std::to_string(model.states()) + " states)",
+             "one per attacked agent and state (" + amount(model.states(), "state") + ")",
              "see the attack's covariance or deltas");
   const Link rehearsal(prepared.network(), options.link, options.message_attacks, options.seed, 0);
   prepared.check_start(starts(model, options.start));

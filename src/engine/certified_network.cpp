@@ -9,6 +9,7 @@
 namespace garrison {
 
 using certificate::AgentCertifier;
+using certificate::Told;
 
 struct CertifiedNetwork::Agents {
   std::vector<std::unique_ptr<AgentCertifier>> certifiers;
@@ -61,7 +62,8 @@ bool CertifiedNetwork::Agents::all_alike() const {
 
 CertifiedNetwork::CertifiedNetwork(std::shared_ptr<const certificate::Plan> plan, const Network& network,
                                    int rounds)
-    : network_(network),
+    : plan_(plan),
+      network_(network),
       rounds_(rounds),
       listeners_(static_cast<std::size_t>(network.agents())),
       all_(std::make_unique<Agents>()) {
@@ -74,6 +76,8 @@ CertifiedNetwork::CertifiedNetwork(std::shared_ptr<const certificate::Plan> plan
     all_->said.push_back(std::move(empty));
   }
   all_->silent.resize(all_->said.size());
+  told_.resize(all_->said.size());
+  if (plan_->derives()) derived_.resize(static_cast<std::size_t>(plan_->first.back()));
   all_->plan_at_once(*plan, network_, rounds_, listeners_);
 }
 CertifiedNetwork::~CertifiedNetwork() = default;
@@ -82,6 +86,7 @@ void CertifiedNetwork::reset(std::int64_t t) {
   for (const auto& one : all_->certifiers) one->reset(t);
   all_->alike = false;
   y_ = nullptr;
+  std::fill(told_.begin(), told_.end(), Told::never_derived);
   round_ = rounds_;
   bytes_ = samples_ = 0;
 }
@@ -99,9 +104,16 @@ void CertifiedNetwork::begin(std::int64_t t, const double* y, const Change& chan
   }
   varied_ = other;
   t_ = t;
-  y_ = y;
+  y_ = measured_ = y;
   round_ = 0;
   ++samples_;
+}
+
+void CertifiedNetwork::derive(int agent, const double* x) {
+  const auto i = static_cast<std::size_t>(agent);
+  const double* const y = measured_ + first_[i];
+  told_[i] = plan_->tell(agent, y, varied_ ? nullptr : x, derived_.data() + first_[i]);
+  y_ = derived_.data();
 }
 
 /// Begins the sample, one agent at a time.
@@ -111,7 +123,7 @@ void CertifiedNetwork::start() {
   if (all_->one_for_all())
     for (std::size_t i = 1; i < all.size(); ++i) all[i]->copy(*all.front());
   all_->alike = false;
-  for (std::size_t i = 0; i < first_.size(); ++i) all[i]->begin(t_, y_ + first_[i]);
+  for (std::size_t i = 0; i < first_.size(); ++i) all[i]->begin(t_, y_ + first_[i], told_[i]);
   y_ = nullptr;
 }
 
@@ -129,7 +141,7 @@ void CertifiedNetwork::say() {
   start();
   for (std::size_t i = 0; i < listeners_.size(); ++i) {
     all_->certifiers[i]->say(round_, all_->said[i]);
-    all_->silent[i] = all_->said[i].silent() ? 1 : 0;
+    all_->silent[i] = all_->certifiers[i]->spares(round_, all_->said[i]) ? 1 : 0;
     if (all_->silent[i] != 0) continue;
     bytes_ += static_cast<std::int64_t>(listeners_[i]) *
               static_cast<std::int64_t>(wire::size(all_->said[i], agents()));
@@ -143,26 +155,41 @@ certificate::Evidence& CertifiedNetwork::copy(std::size_t place, int sender) {
 template <class Heard>
 void CertifiedNetwork::hear_all(Workers& workers, const Heard& heard) {
   workers.split(agents(), [&](std::int64_t begin, std::int64_t end, int) {
-    for (std::int64_t k = begin; k < end; ++k)
-      heard(k, [&](int agent, int sender, const certificate::Evidence& said) {
-        all_->certifiers[static_cast<std::size_t>(agent)]->hear(round_, sender, said);
-      });
+    for (std::int64_t k = begin; k < end; ++k) heard(k);
   });
   end_round(workers);
 }
 
-void CertifiedNetwork::hear(Workers& workers, const Routes& routes) {
-  hear_all(workers, [&](std::int64_t k, const auto& hear) {
+/// Whether the measurements of this agent follow from its message of this round.
+bool CertifiedNetwork::derives_now(int sender) const {
+  const auto j = static_cast<std::size_t>(sender);
+  return round_ == 0 && told_[j] == Told::derived && all_->silent[j] != 0;
+}
+
+void CertifiedNetwork::hear_honest(AgentCertifier& listener, int sender) const {
+  const auto j = static_cast<std::size_t>(sender);
+  if (derives_now(sender))
+    listener.hear_numbers(sender, derived_.data() + first_[j]);
+  else if (all_->silent[j] == 0)
+    listener.hear(round_, sender, all_->said[j]);
+}
+
+void CertifiedNetwork::hear(Workers& workers, const Routes& routes, const Sensed& sensed) {
+  hear_all(workers, [&](std::int64_t k) {
     const auto place = static_cast<std::size_t>(k);
     const Heard heard = routes.heard(place);
     for (std::size_t j = 0; j < heard.slots.size(); ++j) {
       const int sender = heard.senders[j];
       const std::size_t slot = heard.begin + heard.slots[j];
-      const bool honest = slot < routes.first_lie();
-      const certificate::Evidence& said =
-          honest ? all_->said[static_cast<std::size_t>(sender)] : lies_[slot - routes.first_lie()];
-      if (honest ? all_->silent[static_cast<std::size_t>(sender)] == 0 : !said.silent())
-        hear(routes.id(place), sender, said);
+      const certificate::Evidence* const lie =
+          slot < routes.first_lie() ? nullptr : &lies_[slot - routes.first_lie()];
+      AgentCertifier& listener = *all_->certifiers[static_cast<std::size_t>(routes.id(place))];
+      if (lie == nullptr)
+        hear_honest(listener, sender);
+      else if (!lie->silent())
+        listener.hear(round_, sender, *lie);
+      else if (derives_now(sender))
+        listener.hear_estimate(sender, sensed(slot));
     }
   });
 }
@@ -173,10 +200,9 @@ void CertifiedNetwork::finish(Workers& workers) {
   const bool lossless = round_ == 0;
   while (round_ < rounds_) {
     say();
-    hear_all(workers, [&](std::int64_t i, const auto& hear) {
+    hear_all(workers, [&](std::int64_t i) {
       for (const int j : network_.neighbours(static_cast<int>(i)))
-        if (all_->silent[static_cast<std::size_t>(j)] == 0)
-          hear(static_cast<int>(i), j, all_->said[static_cast<std::size_t>(j)]);
+        hear_honest(*all_->certifiers[static_cast<std::size_t>(i)], j);
     });
   }
   all_->alike = lossless && all_->reaches_all && all_->all_alike();
@@ -209,7 +235,7 @@ void CertifiedNetwork::at_once(Workers& workers) {
       std::fill(all_->since.begin(), all_->since.end(), 0);
     else if (!first.direct())
       all_->find_first_regions(rounds_);
-    bytes_ += all_->bytes.local(y_, all_->since);
+    bytes_ += all_->bytes.local(y_, told_, all_->since);
   }
   const std::int64_t sharing = first.direct() || first.flooded() ? 0 : others;
   for (std::size_t i = 1; i <= static_cast<std::size_t>(sharing); ++i) first.hear_relayed(*all[i]);

@@ -169,7 +169,7 @@ wire::Reader opened(std::span<const std::byte> file, DesignHead& head) {
     case Refusal::none:
       return reader;
     case Refusal::size:
-      refuse_file(std::to_string(file.size()) + " bytes that do not begin like one");
+      refuse_file(amount(file.size(), "byte") + " that do not begin like one");
     case Refusal::damaged:
       refuse_file("a damaged one: its hash does not match", "copy it again");
     default:

@@ -10,6 +10,7 @@
 namespace garrison::detail {
 
 using certificate::kRepeats;
+using certificate::Told;
 
 namespace {
 
@@ -82,7 +83,8 @@ std::int64_t EvidenceBytes::flooded(const double* y, bool relaying) {
   return bytes;
 }
 
-std::int64_t EvidenceBytes::local(const double* y, std::span<const int> since) const {
+std::int64_t EvidenceBytes::local(const double* y, std::span<const Told> told,
+                                  std::span<const int> since) const {
   const int first = plan_->first_relay(rounds_);
   const int end = region_ > 0 ? plan_->relay_end(rounds_) : 0;
   std::int64_t bytes = 0;
@@ -91,8 +93,10 @@ std::int64_t EvidenceBytes::local(const double* y, std::span<const int> since) c
     for (int k = plan_->first[i]; k < plan_->first[i + 1]; ++k) own += usable(y[k]) ? 8 : 0;
     const int from = std::max(since[i], first);
     const int regions = std::max(end - from, 0);
-    const bool measured_alone = own > 0 && !(regions > 0 && from == 0);
-    const std::int64_t messages = regions + (measured_alone ? 1 : 0);
+    const bool with_region = regions > 0 && from == 0;
+    if (told[i] == Told::derived && !with_region) own = 0;
+    const bool alone = !with_region && (own > 0 || told[i] == Told::as_numbers);
+    const std::int64_t messages = regions + (alone ? 1 : 0);
     bytes += listeners_[i] * (messages * bare_[i] + own + regions * region_);
   }
   return bytes;

@@ -24,8 +24,10 @@ class EvidenceBytes {
 
   /// y: all measurements, agent by agent. relaying: all have a region already.
   std::int64_t flooded(const double* y, bool relaying);
-  /// Local and direct; since: the first round in which each agent has a region to relay, rounds = none.
-  std::int64_t local(const double* y, std::span<const int> since) const;
+  /// Local and direct; told: of each agent's measurements; since: the first round in which it has a region to
+  /// relay, rounds = none.
+  std::int64_t local(const double* y, std::span<const certificate::Told> told,
+                     std::span<const int> since) const;
 
  private:
   bool same_pattern(const double* y, bool relaying);

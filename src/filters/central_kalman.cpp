@@ -20,8 +20,7 @@ void require(const Model& model, const MatrixRef& measurements, double start_var
     refuse("model", "no covariances", "process_covariance and measurement_covariance",
            "a Kalman filter weighs with them");
   if (measurements.cols() != model.total_outputs())
-    refuse("measurements", std::to_string(measurements.cols()) + " columns",
-           std::to_string(model.total_outputs()));
+    refuse("measurements", amount(measurements.cols(), "column"), std::to_string(model.total_outputs()));
   if (!(start_variance >= 0.0) || std::isinf(start_variance))
     refuse("start_variance", text(start_variance), "a finite number >= 0");
   const Matrix& u = known.inputs;
@@ -31,7 +30,7 @@ void require(const Model& model, const MatrixRef& measurements, double start_var
                ", because the model has B",
            "row t is u(t), which leads from time t to t + 1");
   if (model.inputs() == 0 && u.size() > 0)
-    refuse("inputs", std::to_string(u.rows()) + " rows", "none, because the model has no B");
+    refuse("inputs", amount(u.rows(), "row"), "none, because the model has no B");
   if (!u.allFinite()) refuse("inputs", "a number that is not finite", "known inputs at all times");
   require_series(known.series, model, static_cast<int>(measurements.rows()));
 }
@@ -86,8 +85,7 @@ Matrix filtered(const Model& model, const MatrixRef& measurements, const VectorR
 Matrix central_kalman(const Model& model, const MatrixRef& measurements, const VectorRef& x0,
                       double start_variance, const Screen& screen, const Known& known) {
   require(model, measurements, start_variance, screen, known);
-  if (x0.size() != model.states())
-    refuse("x0", std::to_string(x0.size()) + " numbers", std::to_string(model.states()));
+  if (x0.size() != model.states()) refuse("x0", amount(x0.size(), "number"), std::to_string(model.states()));
   return filtered(model, measurements, x0, start_variance, screen, known);
 }
 
@@ -96,7 +94,7 @@ std::vector<Matrix> local_kalman(const Model& model, const Network& network, con
                                  const Known& known) {
   require(model, measurements, start_variance, screen, known);
   if (network.agents() != model.agents())
-    refuse("network", std::to_string(network.agents()) + " agents",
+    refuse("network", amount(network.agents(), "agent"),
            std::to_string(model.agents()) + ", because C has one matrix per agent");
   if (x0.rows() != model.states() || x0.cols() != model.agents())
     refuse("x0", std::to_string(x0.rows()) + " x " + std::to_string(x0.cols()),

@@ -33,7 +33,7 @@ void require_noise(const NonlinearPlant& plant, const MatrixRef& y, Index n) {
   const auto& Q = plant.process_covariances;
   if (Q.empty()) checked("process_covariance", plant.process_covariance, n, n, 0);
   if (!Q.empty() && static_cast<Index>(Q.size()) < y.rows())
-    refuse("process_covariance", std::to_string(Q.size()) + " matrices over time",
+    refuse("process_covariance", amount(Q.size(), "matrix", "matrices") + " over time",
            "at least " + std::to_string(y.rows()) + ", one per step");
   for (std::size_t t = 0; t < Q.size(); ++t) checked("process_covariance", Q[t], n, n, static_cast<int>(t));
   const Matrix& R = plant.measurement_variances;
@@ -44,7 +44,7 @@ void require_noise(const NonlinearPlant& plant, const MatrixRef& y, Index n) {
     return require_variance(R);
   }
   if (plant.measurement_variance.size() != y.cols())
-    refuse("measurement_variance", std::to_string(plant.measurement_variance.size()) + " numbers",
+    refuse("measurement_variance", amount(plant.measurement_variance.size(), "number"),
            std::to_string(y.cols()) + ", one per column of measurements");
   require_variance(plant.measurement_variance);
 }
@@ -57,7 +57,7 @@ void require(const NonlinearPlant& plant, const MatrixRef& y, const VectorRef& x
   checked("P0", Matrix(P0), n, n, 0);
   require_noise(plant, y, n);
   if (inputs.rows() != y.rows())
-    refuse("inputs", std::to_string(inputs.rows()) + " rows",
+    refuse("inputs", amount(inputs.rows(), "row"),
            std::to_string(y.rows()) + ", one per step: row t is u(t)");
   if (!inputs.allFinite()) refuse("inputs", "a number that is not finite", "known inputs at all times");
 }

@@ -22,7 +22,7 @@ constexpr double kWidth = 0.1;
 
 void require_poles(const std::vector<double>& given, int n) {
   if (!given.empty() && static_cast<int>(given.size()) != n)
-    refuse("lfre.poles", std::to_string(given.size()) + " numbers", std::to_string(n) + ", one per state");
+    refuse("lfre.poles", amount(given.size(), "number"), std::to_string(n) + ", one per state");
   for (const double pole : given)
     if (!(std::abs(pole) < 1.0))
       refuse("lfre.poles", text(pole), "numbers between -1 and 1, these excluded",

@@ -74,8 +74,8 @@ void Checkpoint::write(std::int64_t t, const std::vector<int>& ids,
   });
   together([&] {
     if (rank != 0) return;
-    const std::string line = "garrison-mpi 1 sample " + std::to_string(t) + " ranks " +
-                             std::to_string(ranks) + " scenario " + std::to_string(scenario_) + "\n";
+    const std::string line = "garrison-mpi 1 sample " + amount(t, "rank") + " " + std::to_string(ranks) +
+                             " scenario " + std::to_string(scenario_) + "\n";
     node::replace_file(folder_ + "/latest", std::as_bytes(std::span(line)), 0644);
     const std::string kept = "sample-" + std::to_string(t) + ".";
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
@@ -128,7 +128,7 @@ void Checkpoint::read(const std::vector<int>& ids, partition::PartRunner& runner
   }
   if (found != ids.size())
     refuse(folder_,
-           "states of " + std::to_string(found) + " of " + std::to_string(ids.size()) + " agents of a rank",
+           "states of " + std::to_string(found) + " of " + amount(ids.size(), "agent") + " of a rank",
            "the state of every agent once", kOtherwise);
 }
 

@@ -140,8 +140,8 @@ void NetcdfVariable::require_all_there() const {
       std::accumulate(sizes_.begin(), sizes_.end(), std::int64_t{1}, std::multiplies<>());
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(path_));
   if (numbers > (size - begin) / bytes_of(type_))
-    refuse(where(), "a file of " + std::to_string(size) + " bytes, cut short",
-           std::to_string(numbers) + " numbers from byte " + std::to_string(begin) + " on", "write it anew");
+    refuse(where(), "a file of " + amount(size, "byte") + ", cut short",
+           amount(numbers, "number") + " from byte " + std::to_string(begin) + " on", "write it anew");
 }
 
 void NetcdfVariable::require(std::span<const std::int64_t> sizes, bool whole,

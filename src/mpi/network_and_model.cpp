@@ -56,7 +56,7 @@ double near_share(double radius) {
 /// Refuses neighbours that no memory holds; `heard`: by each of `agents` agents.
 void require_lists(const std::string& where, const std::string& got, double agents, double heard,
                    const Bytes& bytes) {
-  require_memory(where, got + ", some " + std::to_string(std::llround(heard)) + " neighbours each",
+  require_memory(where, got + ", some " + amount(std::llround(heard), "neighbour") + " each",
                  agents * (bytes.agent + heard * bytes.heard));
 }
 

@@ -166,8 +166,8 @@ void Results::write(std::int64_t t, std::span<const double> truth, const Summary
 void Results::make_room(std::uintmax_t from, std::uintmax_t to) {
   const int failed = take_room(path_, from, to);
   if (failed != 0 && failure_.empty())
-    failure_ = path_ + ": got " + std::strerror(failed) + ", expected room for " + std::to_string(to - from) +
-               " bytes more; free the disk";
+    failure_ = path_ + ": got " + std::strerror(failed) + ", expected room for " + amount(to - from, "byte") +
+               " more; free the disk";
 }
 
 std::uintmax_t Results::length_of(MPI_Offset records) {

@@ -86,10 +86,10 @@ class Share {
       model_ = std::make_unique<Model>(scenario_.sensors.model(ids_));
       const std::string why = partition::needs_whole(scenario_.family, scenario_.params, scenario_.agents());
       if (why.empty()) return;
-      require_memory("filter (" + why + ")",
-                     std::to_string(scenario_.agents()) + " agents on each of " + std::to_string(others) +
-                         " ranks of a machine",
-                     kWhole.agent * others * scenario_.agents());
+      require_memory(
+          "filter (" + why + ")",
+          amount(scenario_.agents(), "agent") + " on each of " + amount(others, "rank") + " of a machine",
+          kWhole.agent * others * scenario_.agents());
       std::vector<int> all(static_cast<std::size_t>(scenario_.agents()));
       std::iota(all.begin(), all.end(), 0);
       whole.emplace(scenario_.sensors.model(all), partition::network_of(*scenario_.ground));

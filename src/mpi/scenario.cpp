@@ -99,7 +99,7 @@ Scenario read_scenario(const std::string& path, const Bytes& bytes) {
   out.fingerprint += inputs.checksum();
   out.inputs = inputs.paths();
   if (!out.sensors.C.empty() && static_cast<int>(out.sensors.C.size()) != out.agents())
-    refuse(file.section("model").where("C"), std::to_string(out.sensors.C.size()) + " rows",
+    refuse(file.section("model").where("C"), amount(out.sensors.C.size(), "row"),
            std::to_string(out.agents()) + ", one per agent");
   read_filter(file.section("filter"), out);
   read_run(file.section("run"), out);

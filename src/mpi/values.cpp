@@ -38,8 +38,8 @@ Matrix matrix(const Section& s, const char* key, std::size_t columns) {
   Matrix M(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(columns));
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (rows[r].size() != columns)
-      refuse(s.where(key), "a row of " + std::to_string(rows[r].size()) + " numbers",
-             std::to_string(columns) + " numbers in every row");
+      refuse(s.where(key), "a row of " + amount(rows[r].size(), "number"),
+             amount(columns, "number") + " in every row");
     for (std::size_t c = 0; c < columns; ++c)
       M(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];
   }
@@ -49,8 +49,7 @@ Matrix matrix(const Section& s, const char* key, std::size_t columns) {
 Vector vector(const Section& s, const char* key, int states) {
   const auto numbers = s.numbers(key);
   if (!numbers.empty() && static_cast<int>(numbers.size()) != states)
-    refuse(s.where(key), std::to_string(numbers.size()) + " numbers",
-           std::to_string(states) + ", one per state");
+    refuse(s.where(key), amount(numbers.size(), "number"), std::to_string(states) + ", one per state");
   return Eigen::Map<const Vector>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
 }
 

@@ -161,7 +161,7 @@ LogReplay replay_log(Bytes file, const AgentMaker& make) {
   const Bytes magic = std::as_bytes(std::span(kMagic));
   const char* expected = "a log that garrison-node wrote (MCAP)";
   if (file.size() < magic.size() || !std::equal(magic.begin(), magic.end(), file.begin()))
-    refuse("log", std::to_string(file.size()) + " bytes that do not begin like one", expected);
+    refuse("log", amount(file.size(), "byte") + " that do not begin like one", expected);
   LogReplay out;
   std::unique_ptr<Agent> agent;
   std::optional<Replay> replay;

@@ -13,7 +13,7 @@ namespace garrison::partition {
 void PartAverage::prepare() {
   const std::size_t numbers = region_.ids.size() * static_cast<std::size_t>(width_);
   if (numbers > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-    refuse("partition", std::to_string(region_.ids.size()) + " agents and ghosts on one rank",
+    refuse("partition", amount(region_.ids.size(), "agent") + " and ghosts on one rank",
            "fewer than 2^31 numbers of their estimates", "use more ranks");
   now_.resize(numbers);
   next_.resize(numbers);

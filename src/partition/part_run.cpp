@@ -75,15 +75,14 @@ PartRun::PartRun(PartRunner& runner, const Model& model, std::vector<int> ids, i
   for (const auto& attack : options_.message_attacks) {
     if (!attack->fits(model.states()))
       refuse("attack", "numbers for another plant",
-             "one per attacked agent and state (" + std::to_string(model.states()) + " states)");
+             "one per attacked agent and state (" + amount(model.states(), "state") + ")");
     runner.require(*attack, agents);
   }
   if (plant_.x0.size() != 0 && plant_.x0.size() != model.states())
-    refuse("x0", std::to_string(plant_.x0.size()) + (plant_.x0.size() == 1 ? " number" : " numbers"),
-           std::to_string(model.states()) + ", one per state");
+    refuse("x0", amount(plant_.x0.size(), "number"), std::to_string(model.states()) + ", one per state");
   if (options_.start.size() == 0) options_.start = Vector::Zero(model.states());
   if (options_.start.rows() != model.states() || options_.start.cols() != 1)
-    refuse("start", std::to_string(options_.start.size()) + " numbers",
+    refuse("start", amount(options_.start.size(), "number"),
            std::to_string(model.states()) + ", one initial estimate for all agents");
   parts_ = std::make_unique<Parts>(model, std::move(ids), agents, plant_, options_);
 }

@@ -43,7 +43,7 @@ std::string unbalanced(std::span<const std::int32_t> owner, int ranks) {
   const auto [least, most] = std::minmax_element(size.begin(), size.end());
   if (*least == 0) return "no agent on rank " + std::to_string(least - size.begin());
   if (*most > most_agents(owner.size(), ranks))
-    return std::to_string(*most) + " agents on rank " + std::to_string(most - size.begin()) + " of " +
+    return amount(*most, "agent") + " on rank " + std::to_string(most - size.begin()) + " of " +
            std::to_string(ranks);
   return "";
 }
@@ -52,7 +52,7 @@ void require_balanced(const std::string& source, std::span<const std::int32_t> o
   const std::string why = unbalanced(owner, ranks);
   if (!why.empty())
     refuse("partition (" + source + ")", why,
-           "1 to " + std::to_string(most_agents(owner.size(), ranks)) + " agents on every rank",
+           "1 to " + amount(most_agents(owner.size(), ranks), "agent") + " on every rank",
            "use fewer ranks, or [partition].method = \"blocks\"");
 }
 

@@ -39,7 +39,7 @@ void add_lists(Region& r, const std::vector<Neighbours>& all) {
   std::int64_t links = 0;
   for (const Neighbours& one : all) links += static_cast<std::int64_t>(one.lists.size());
   if (links > std::numeric_limits<std::int32_t>::max())
-    refuse("partition", std::to_string(links) + " links on one rank", "fewer than 2^31", "use more ranks");
+    refuse("partition", amount(links, "link") + " on one rank", "fewer than 2^31", "use more ranks");
   std::unordered_map<int, std::int32_t> ghosts;
   for (int place = r.own; place < r.places(); ++place) ghosts.emplace(r.ids[at(place)], place);
   const auto place_of = [&](int id) {

@@ -35,6 +35,7 @@ class AnyFields {
 
   /// The fields of a certificate take no bytes where they say nothing: whether they are to be visited.
   void show_certificate(bool shown) { shown_ = shown ? slots_.size() : filters_; }
+  bool shows_certificate() const { return shown_ > filters_; }
   bool has_certificate() const { return filters_ < slots_.size(); }
   bool silent() const {
     for (std::size_t k = filters_; k < slots_.size(); ++k)
@@ -109,7 +110,7 @@ class AnyFields {
       case FieldKind::sparse: {
         const auto* numbers = std::get_if<std::vector<double>>(&value);
         if (numbers == nullptr || numbers->size() != slot.numbers.size())
-          wrong(std::to_string(slot.numbers.size()) + " numbers");
+          wrong(amount(slot.numbers.size(), "number"));
         else
           slot.numbers = *numbers;
         break;
@@ -182,7 +183,9 @@ AnyFields decoded(const Letter& letter) {
   if (decode(letter.body, letter.agents, fields) == Refusal::none) return fields;
   fields.show_certificate(true);
   Refusal refusal = decode(letter.body, letter.agents, fields);
-  if (refusal == Refusal::none && fields.has_certificate() && fields.silent()) refusal = Refusal::size;
+  // That is said by no bytes; but in the first round these may mean that the measurement follows.
+  if (refusal == Refusal::none && fields.has_certificate() && fields.silent() && letter.envelope.round > 0)
+    refusal = Refusal::size;
   if (refusal != Refusal::none)
     refuse("message", "a body with a wrong " + std::string(word(refusal)), "the fields of " + letter.family);
   return fields;
@@ -203,8 +206,9 @@ Letter Letter::with(const std::string& name, const FieldValue& value) const {
   for (const FieldInfo& info : fields) known.push_back(info.name);
   const auto at = std::find(known.begin(), known.end(), name);
   if (at == known.end()) refuse_unknown("message of " + family, name, known);
+  const bool means = all.shows_certificate() && all.silent();  // that nothing follows
   all.set_value(static_cast<std::size_t>(at - known.begin()), value);
-  all.show_certificate(!all.silent());
+  all.show_certificate(means || !all.silent());
   Letter changed = *this;
   changed.body.resize(most_bytes(all, agents));
   changed.body.resize(encode(all, agents, changed.body.data()));
@@ -225,7 +229,7 @@ Letter Letter::from_bytes(std::span<const std::byte> bytes) {
     refuse("message", got, "what to_bytes() of a message returned");
   };
   if (bytes.size() < kFrame || load<std::uint32_t>(bytes.data()) != kMagic)
-    refuse_bytes(std::to_string(bytes.size()) + " bytes that do not begin like a message");
+    refuse_bytes(amount(bytes.size(), "byte") + " that do not begin like a message");
   const auto content = bytes.subspan(kFrame);
   if (load<std::uint64_t>(bytes.data() + 4) != checksum(content)) refuse_bytes("damaged bytes");
   Letter letter;

@@ -14,6 +14,7 @@
 namespace garrison {
 
 /// Budget of an exact search, within current_budget(). When it runs out, the result is a certified interval.
+/// Of a search over directions: as many looks at all rows, of which a look at fewer rows is a part.
 struct SubsetLimits {
   std::int64_t max_nodes = 20'000'000;
   double max_seconds = kInfinity;
@@ -27,12 +28,13 @@ struct GARRISON_EXPORT SubsetBound {
   double upper = 0.0;
   bool exact = false;        ///< the search finished: both ends agree to rounding
   std::vector<int> removed;  ///< the worst set found, sorted; size s
-  std::int64_t nodes = 0;    ///< sets or partial sets looked at
+  std::int64_t nodes = 0;    ///< sets, partial sets or cones of directions looked at
   std::string method;
 };
 
 /// (6): least lambda_min(sum of C_i'C_i) over all sets of N - s rows. C: N x n, finite, rows of any length,
-/// zero rows (relays) allowed; 0 <= s <= N. s = N gives 0. @throws InvalidInput
+/// zero rows (relays) allowed; 0 <= s <= N. s = N gives 0. Up to three states: N log N about, whatever s is;
+/// more: over sets, which takes exponentially long in s where rows are alike. @throws InvalidInput
 GARRISON_EXPORT SubsetBound lambda0(const MatrixRef& C, int s, const SubsetLimits& limits = {});
 
 /// Closed form of (6) when every two rows are parallel or orthogonal unit vectors (|C_i C_j'| within 1e-12 of

@@ -2,6 +2,7 @@
 // Errors of construction, design and files. The inner step of a filter never throws.
 #pragma once
 
+#include <concepts>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -58,5 +59,11 @@ GARRISON_EXPORT double memory_limit();
 
 /// A double as a person would type it: shortest form that reads back the same.
 GARRISON_EXPORT std::string text(double value);
+
+/// "1 number", "3 numbers"; `many` where that is not `one` and an s.
+template <std::integral Count>
+std::string amount(Count count, const std::string& one, const std::string& many = "") {
+  return std::to_string(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
+}
 
 }  // namespace garrison

@@ -109,6 +109,8 @@ inline void next_measurement(const Local& local, const double* x, double* out) n
 ///   `shape(local, gains, sender, t, message)`: sizes and derived indices of a message that will be read;
 ///   `most_missing(gains)`: sensors that may lack a measurement at once; where there are more, drivers that
 ///   see all of them uncover everybody before the sample;
+///   `sensed(message)`: the estimate in a message, n numbers, if C times that of the first round is the
+///   measurement wherever it was used in full: certificates then need not send it;
 ///   `part(gains, id, neighbours)`: what one agent needs of the gains, the rest left empty;
 ///   `sound(state)`: whether a state that was read from a snapshot may be gone on from;
 ///   `runs(gains)`: whether this build has all that they ask for (a solver, say);
@@ -164,6 +166,14 @@ void shape(const Local& local, const typename F::Gains& gains, int sender, std::
            typename F::template Message<n>& message) noexcept {
   if constexpr (requires { F::template shape<n>(local, gains, sender, t, message); })
     F::template shape<n>(local, gains, sender, t, message);
+}
+/// The estimate in a message from which measurements may follow; null where the family has none. See Filter.
+template <class F, int n>
+const double* sensed(const typename F::template Message<n>& message) noexcept {
+  if constexpr (requires { F::template sensed<n>(message); })
+    return F::template sensed<n>(message);
+  else
+    return nullptr;
 }
 /// Whether an estimate can be worked with: an agent whose cannot is made to rejoin at the end of the sample.
 template <int n>

@@ -47,21 +47,29 @@ class AgentEvidence {
   std::size_t encode(int round, int rounds, std::byte* out) noexcept {
     if (!certifier_) return 0;
     if (round < rounds) certifier_->say(round, said_);
-    return said_.silent() ? 0 : wire::encode(said_, agents_, out);
+    return certifier_->spares(round, said_) ? 0 : wire::encode(said_, agents_, out);
   }
-  /// Reads what neighbour k put behind the message in this place.
-  void decode(wire::Decoder& body, std::size_t place, std::size_t neighbour) noexcept {
+  /// Reads what neighbour k put behind the message in this place. first: of a sample, with an estimate.
+  void decode(wire::Decoder& body, std::size_t place, std::size_t neighbour, bool first) noexcept {
     if (!certifier_) return;
     if (body.at_end()) return shelf_->leave(place, neighbour);
     certificate::Evidence& heard = shelf_->open(place, neighbour);
     heard.visit(body);
-    if (heard.silent()) body.refuse_as(Refusal::size);  // that is said by no bytes
+    if (!heard.silent() || (first && certifier_->derives(neighbours_[neighbour]))) return;
+    body.refuse_as(Refusal::size);  // that is said by no bytes
   }
-  /// Hears what lies in these places, which are in ascending order of sender.
-  void hear(int round, std::span<const std::uint32_t> slots, std::span<const int> senders) noexcept {
+  /// Hears what lies in these places, which are in ascending order of sender; sensed(slot): the estimate that
+  /// measurements may follow from, or null.
+  template <class Sensed>
+  void hear(int round, std::span<const std::uint32_t> slots, std::span<const int> senders,
+            const Sensed& sensed) noexcept {
     std::size_t neighbour = 0;
     for (std::size_t k = 0; k < slots.size(); ++k) {
-      if (!shelf_->has(slots[k])) continue;
+      if (!shelf_->has(slots[k])) {
+        const double* const x = round == 0 ? sensed(slots[k]) : nullptr;
+        if (x != nullptr) certifier_->hear_estimate(senders[k], x);
+        continue;
+      }
       while (neighbours_[neighbour] != senders[k]) ++neighbour;
       certifier_->hear(round, senders[k], shelf_->take(slots[k], neighbour));
     }

@@ -98,7 +98,7 @@ class AgentOf final : public Agent {
     shape<F, n>(local_, *gains_, envelope.sender, t, mailbox_[at]);
     wire::Decoder decoder(body, local_.agents);
     mailbox_[at].visit(decoder);
-    evidence_.decode(decoder, at, neighbour);
+    evidence_.decode(decoder, at, neighbour, envelope.round == 0 && sensed<F, n>(mailbox_[at]) != nullptr);
     if (decoder.end() == Refusal::none) mail_.put(at, t);
     return decoder.end();
   }
@@ -123,7 +123,7 @@ class AgentOf final : public Agent {
     t_ = t;
     round_ = 0;
     listening_ = true;
-    if (evidence_) evidence_->begin(t, silence_.data());
+    if (evidence_) evidence_->begin(t, silence_.data(), nullptr);
     return Refusal::none;
   }
   Refusal join(bool speak) noexcept override {
@@ -131,7 +131,7 @@ class AgentOf final : public Agent {
     const Inbox<Message> heard = rounds_ > 0 ? inbox() : nobody();
     F::template rejoin<n>(local_, *gains_, heard, t_, state_);
     if (evidence_) {
-      if (rounds_ > 0) evidence_.hear(round_, mail_.slots(), mail_.senders());
+      if (rounds_ > 0) hear_evidence();
       evidence_->end_sample();
     }
     uncover();
@@ -267,7 +267,7 @@ class AgentOf final : public Agent {
     if constexpr (follows<F, n>())
       if (plant_.varying()) F::template vary<n>(local_, *gains_, plant_.change(), 0, state_);
     F::template sense<n>(local_, *gains_, state_, y, t, outgoing_);
-    if (evidence_) evidence_->begin(t, y);
+    if (evidence_) evidence_->begin(t, y, sensed<F, n>(outgoing_));
     lost_ = fresh_ || !usable<n>(F::template estimate<n>(state_));
     if (rounds_ == 0 && lost_) rejoin(nobody());
   }
@@ -280,10 +280,14 @@ class AgentOf final : public Agent {
   void fuse_round(const Inbox<Message>& inbox) noexcept {
     F::template fuse<n>(local_, *gains_, state_, inbox, round_, outgoing_);
     if (evidence_) {
-      evidence_.hear(round_, mail_.slots(), mail_.senders());
+      hear_evidence();
       evidence_->end_round(round_);
     }
     if (++round_ == rounds_ && lost_) rejoin(inbox);
+  }
+  void hear_evidence() noexcept {
+    evidence_.hear(round_, mail_.slots(), mail_.senders(),
+                   [this](std::uint32_t slot) { return sensed<F, n>(mailbox_[slot]); });
   }
   void rejoin(const Inbox<Message>& inbox) noexcept {
     F::template rejoin<n>(local_, *gains_, inbox, t_, state_);

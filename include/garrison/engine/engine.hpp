@@ -201,8 +201,9 @@ class Engine final : public Runner {
   void filter(std::int64_t t, const double* y) {
     const bool plain = places_.measures_below(kPlain, y);
     if (plain && mail_.routes().perfect()) {
-      const BatchStep taken = batch_.step(
-          BatchSample{*gains_, plan_, mail_.routes().wiring(), workers_, t, locals(), measured(y)});
+      const auto derive_from = [this](const auto& estimate) { derive(estimate); };
+      const BatchStep taken = batch_.step(BatchSample{*gains_, plan_, mail_.routes().wiring(), workers_, t,
+                                                      locals(), measured(y), derive_from});
       if (taken.done == BatchStep::everything) return;
       if (taken.done == BatchStep::sensed) {
         each([&](std::size_t k, Message* out) { batch_.send(k, out[k]); });
@@ -216,10 +217,20 @@ class Engine final : public Runner {
     rounds(t, plain && all_plain());
   }
 
+  /// Tells certificates which estimates are sent, estimate(k) by agent k: measurements may follow from them.
+  template <class Estimate>
+  void derive(const Estimate& estimate) {
+    if constexpr (requires(const Message& m) { F::template sensed<n>(m); }) {
+      if (!certified_ || !certified_->derives()) return;
+      for (std::size_t k = 0; k < states_.size(); ++k) certified_->derive(places_.id(k), estimate(k));
+    }
+  }
+
   /// `plain`: every estimate and measurement is so small that every number of a message surely is below
   /// kHuge. Agents whose estimate cannot be worked with send nothing that is delivered, and rejoin after the
   /// last round.
   void rounds(std::int64_t t, bool plain) {
+    derive([this](std::size_t k) { return sensed<F, n>(mail_.current(k)); });
     if (!plain) note_lost();
     const int L = F::rounds(*gains_);
     for (int round = 0; round < L; ++round) {
@@ -230,7 +241,9 @@ class Engine final : public Runner {
           t, round, plain,
           [&](std::size_t k, int sender, Message& m) { shape<F, n>(local(k), *gains_, sender, t, m); },
           certified);
-      if (certified != nullptr) certified->hear(workers_, mail_.routes());
+      if (certified != nullptr)
+        certified->hear(workers_, mail_.routes(),
+                        [this](std::size_t at) { return sensed<F, n>(mail_.at(at)); });
       const auto inbox = [this](std::size_t k) { return mail_.inbox(k); };
       if (batch_.fuse(*gains_, locals(), inbox, workers_))
         mail_.post();

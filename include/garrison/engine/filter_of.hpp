@@ -49,8 +49,8 @@ void require_room(const Part<F>& part, const certificate::Certifier* certifier) 
   if (bytes > kMostMail)
     refuse("design",
            "an agent of " + std::to_string(part.who.agents) + " whose mailboxes, for " +
-               std::to_string(part.who.neighbours.size()) + " neighbours and " +
-               std::to_string(F::rounds(part.gains)) + " rounds, take " + megabytes(bytes),
+               amount(part.who.neighbours.size(), "neighbour") + " and " +
+               amount(F::rounds(part.gains), "round") + ", would take " + megabytes(bytes),
            "at most " + megabytes(kMostMail),
            "design with fewer rounds or neighbours; a file that nobody designed so is forged or damaged");
 }
@@ -264,7 +264,7 @@ class FilterOf final : public AnyFilter {
   }
   static void require_same_size(const Model& model, const Network& network) {
     if (model.agents() != network.agents())
-      refuse("network", std::to_string(network.agents()) + " agents",
+      refuse("network", amount(network.agents(), "agent"),
              std::to_string(model.agents()) + ", because C has one matrix per agent");
   }
   typename F::Params params_;

@@ -68,6 +68,10 @@ class Mailroom {
     routes_.deliver(t, round, Letters<Shape>(*this, shape, certified));
   }
 
+  /// What agent k has sent; what is in any place of Routes.
+  const Message& current(std::size_t k) const { return messages_[routes_.current() + k]; }
+  const Message& at(std::size_t place) const { return messages_[place]; }
+
   Inbox<Message> inbox(std::size_t k) const {
     const Heard heard = routes_.heard(k);
     return {messages_.data() + heard.begin, heard.slots, heard.senders, heard.due};

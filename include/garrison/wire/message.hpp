@@ -218,21 +218,22 @@ class Decoder : public NumbersOf<Decoder> {
     if (!has(bytes)) return;
     const std::byte* const bits = at_;
     at_ += bytes;
-    std::size_t present = 0;
-    for (std::size_t first = 0; first < bytes; first += 8) present += ones(word(bits, first, bytes));
     const std::size_t beyond = 8 * bytes - values.size();
     if (beyond > 0 && std::to_integer<unsigned>(bits[bytes - 1]) >> (8 - beyond) != 0)
       return refuse_as(Refusal::set);
-    if (!has(8 * present)) return;
     bool fine = true;
-    for (std::size_t k = 0; k < present; ++k) fine &= std::abs(load_double(at_ + 8 * k)) < kHuge;
-    if (!fine) return refuse_as(Refusal::number);
-    if (present < values.size()) std::fill(values.begin(), values.end(), kNaN);
-    for (std::size_t first = 0; first < bytes && present > 0; first += 8)
-      for (std::uint64_t rest = word(bits, first, bytes); rest != 0; rest &= rest - 1) {
-        values[8 * first + static_cast<std::size_t>(std::countr_zero(rest))] = load_double(at_);
+    std::fill(values.begin(), values.end(), kNaN);
+    for (std::size_t first = 0; first < bytes; first += 8) {
+      std::uint64_t rest = word(bits, first, bytes);
+      if (!has(8 * ones(rest))) return;
+      for (; rest != 0; rest &= rest - 1) {
+        double& value = values[8 * first + static_cast<std::size_t>(std::countr_zero(rest))];
+        value = load_double(at_);
+        fine &= std::abs(value) < kHuge;
         at_ += 8;
       }
+    }
+    if (!fine) refuse_as(Refusal::number);
   }
   /// Up to eight bytes as a word, the first one in the lowest bits.
   static std::uint64_t word(const std::byte* bits, std::size_t first, std::size_t bytes) {

@@ -16,7 +16,7 @@ Sensors sensors_of(std::span<const int> measured) {
 void require_cost(const MatrixRef& cost, Eigen::Index agents, Eigen::Index states) {
   if (cost.cols() != states || (agents >= 0 && cost.rows() != agents))
     refuse("cost", std::to_string(cost.rows()) + " x " + std::to_string(cost.cols()),
-           "one row per agent and " + std::to_string(states) + " columns, one per state");
+           "one row per agent and " + amount(states, "column") + ", one per state");
   if (!(cost.array() >= 0.0).all())
     refuse("cost", "a negative number or nan", "numbers >= 0 (inf = impossible)");
 }
@@ -27,7 +27,7 @@ Mitigation mitigate(const System& system, std::span<const int> measured, std::sp
                     std::span<const int> alarms, Choice choice, const MatrixRef& cost) {
   const auto N = static_cast<int>(measured.size());
   if (static_cast<int>(types.size()) != N)
-    refuse("types", std::to_string(types.size()) + " agents", std::to_string(N) + ", as in measured");
+    refuse("types", amount(types.size(), "agent"), std::to_string(N) + ", as in measured");
   if (cost.size() != 0) require_cost(cost, N, system.states());
   (void)system.classes(sensors_of(measured));  // refuses states out of range
   Mitigation m;

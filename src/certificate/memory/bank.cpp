@@ -281,7 +281,7 @@ const WindowWitness& Bank::update(const VectorRef& y, const WindowLevels& z, con
 
 const WindowWitness& Bank::checked_update(const VectorRef& y, const WindowLevels& z, const BankStep& step) {
   const Eigen::Index n = states();
-  if (y.size() != outputs_) refuse("y", std::to_string(y.size()) + " numbers", std::to_string(outputs_));
+  if (y.size() != outputs_) refuse("y", amount(y.size(), "number"), std::to_string(outputs_));
   detail::require_least("z1", z.z1, 0.0);
   detail::require_least("z2", z.z2, 0.0);
   detail::require_least("zc", z.zc, 0.0);

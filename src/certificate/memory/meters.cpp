@@ -65,7 +65,7 @@ Meters meters(const MatrixRef& H, std::span<const int> source) {
   require_rows(H);
   const Eigen::Index m = H.rows();
   if (!source.empty() && static_cast<Eigen::Index>(source.size()) != m)
-    refuse("source", std::to_string(source.size()), std::to_string(m) + " numbers", "one per row");
+    refuse("source", std::to_string(source.size()), amount(m, "number"), "one per row");
   std::vector<std::vector<Eigen::Index>> rows_of;
   for (Eigen::Index r = 0; r < m; ++r) {
     const int of = source.empty() ? static_cast<int>(r) : source[static_cast<std::size_t>(r)];

@@ -59,7 +59,7 @@ ObserverTable observer_table(const MatrixRef& A, const MatrixRef& C, const Matri
   detail::require_least("T", o.T, 1);
   detail::require_least("lags", o.lags, 1);
   if (!source.empty() && static_cast<Eigen::Index>(source.size()) != m)
-    refuse("source", std::to_string(source.size()), std::to_string(m) + " numbers", "one per row");
+    refuse("source", std::to_string(source.size()), amount(m, "number"), "one per row");
   std::vector<int> of(static_cast<std::size_t>(m));
   for (std::size_t r = 0; r < of.size(); ++r) {
     of[r] = source.empty() ? static_cast<int>(r) : source[r];

@@ -178,7 +178,7 @@ void search_all(std::vector<Searched>& parts, SparseMeters& out) {
 
 std::vector<int> sources(std::span<const int> given, Eigen::Index rows) {
   if (!given.empty() && static_cast<Eigen::Index>(given.size()) != rows)
-    refuse("source", std::to_string(given.size()), std::to_string(rows) + " numbers", "one per row");
+    refuse("source", std::to_string(given.size()), amount(rows, "number"), "one per row");
   std::vector<int> of(given.begin(), given.end());
   for (Eigen::Index r = 0; given.empty() && r < rows; ++r) of.push_back(static_cast<int>(r));
   for (const int s : of)

@@ -128,7 +128,7 @@ void Window::advance(const MatrixRef& A, const MatrixRef& Gam, const VectorRef& 
   if (A.rows() != n || A.cols() != n) refuse("A", detail::shape(A), detail::shape(P_room_));
   if (Gam.rows() != n || Gam.cols() != noise_inputs_)
     refuse("Gam", detail::shape(Gam), std::to_string(n) + " x " + std::to_string(noise_inputs_));
-  if (u.size() != n) refuse("u", std::to_string(u.size()) + " numbers", std::to_string(n));
+  if (u.size() != n) refuse("u", amount(u.size(), "number"), std::to_string(n));
   for (int k = 0; k < unknowns_; ++k) X_room_.col(k) = A.lazyProduct(X_.col(k));
   if (noise_inputs_ > 0) X_room_.middleCols(n + noise_inputs_ * step_, noise_inputs_) += Gam;
   X_.leftCols(unknowns_) = X_room_.leftCols(unknowns_);

@@ -70,11 +70,13 @@ void AgentBank::restart(std::int64_t t, bool everything) noexcept {
 }
 
 /// Each epoch of twice as many samples has its share of the failure probability, so that a bank may run for
-/// ever.
+/// ever. What derived measurements are off by goes through the gains that their noise goes through: in
+/// deviations it moves nothing by more than its own length.
 WindowLevels AgentBank::levels() const noexcept {
   const BankPlan& b = plan_->bank;
   const auto epoch = static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(tests_) + 1)) - 1;
-  return {b.z1[std::min(epoch, b.z1.size() - 1)], b.z2, b.zc, kNaN};
+  const double derived = plan_->derivation(static_cast<double>(tests_) + 1.0);
+  return {b.z1[std::min(epoch, b.z1.size() - 1)] + derived, b.z2 + derived, b.zc + derived, kNaN};
 }
 
 void AgentBank::vary(const Change& change) noexcept {

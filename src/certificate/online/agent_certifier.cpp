@@ -78,6 +78,7 @@ AgentCertifier::AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::sp
   for (const std::size_t r : row_) source_.push_back(number.at(plan_->source[r]));
   one_row_each_ = number.size() == row_.size();
   y_.resize(row_.size());
+  own_.resize(row_.size());
   since_.resize(row_.size());
   present_.resize(row_.size());
   used_.resize(row_.size());
@@ -140,12 +141,32 @@ void AgentCertifier::vary(const Change& change) noexcept {
   if (bank_) bank_->vary(change);
 }
 
-void AgentCertifier::begin(std::int64_t t, const double* y) noexcept {
+std::size_t AgentCertifier::place(int agent) const {
+  return static_cast<std::size_t>(std::lower_bound(agents_.begin(), agents_.end(), agent) - agents_.begin());
+}
+
+void AgentCertifier::begin(std::int64_t t, const double* y, const double* x) noexcept {
+  if (x == nullptr) return begin(t, y, Told::never_derived);
+  const Told told = plan_->tell(id_, y, x, own_.data());
+  begin(t, own_.data(), told);
+}
+
+void AgentCertifier::begin(std::int64_t t, const double* y, Told told) noexcept {
   move_to(t);
-  const auto me = std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin();
-  for (std::size_t k = at_[static_cast<std::size_t>(me)]; k < at_[static_cast<std::size_t>(me) + 1]; ++k)
-    learn(k, *y++);
+  told_ = told;
+  hear_numbers(id_, y);
   if (rounds_ == 0) end_sample();
+}
+
+void AgentCertifier::hear_numbers(int sender, const double* y) noexcept {
+  const std::size_t at = place(sender);
+  for (std::size_t k = at_[at]; k < at_[at + 1]; ++k) learn(k, *y++);
+}
+
+void AgentCertifier::hear_estimate(int sender, const double* x) noexcept {
+  if (!plan_->derives(sender)) return;
+  const std::size_t at = place(sender);
+  for (std::size_t k = at_[at]; k < at_[at + 1]; ++k) learn(k, plan_->derived(row_[k], x));
 }
 
 void AgentCertifier::begin_knowing(std::int64_t t, const double* all, const AgentCertifier* same) noexcept {
@@ -175,23 +196,26 @@ void AgentCertifier::learn(std::size_t at, double y) noexcept {
 }
 
 void AgentCertifier::say(int round, Evidence& out) const noexcept {
+  const bool has = !direct_ && memory_.age >= 0 &&
+                   (flooded_ ? round < region_since_ + kRepeats : plan_->relays_in(round, rounds_));
   if (flooded_) {
     for (std::size_t k = 0; k < y_.size(); ++k)
       out.measurements[k] = round < since_[k] + kRepeats ? y_[k] : kNaN;
   } else {
-    const auto me =
-        static_cast<std::size_t>(std::lower_bound(agents_.begin(), agents_.end(), id_) - agents_.begin());
-    for (std::size_t k = 0; k < out.measurements.size(); ++k)
-      out.measurements[k] = round == 0 ? y_[at_[me] + k] : kNaN;
+    const std::size_t me = at_[place(id_)];
+    const bool says = round == 0 && (told_ != Told::derived || has);
+    for (std::size_t k = 0; k < out.measurements.size(); ++k) out.measurements[k] = says ? y_[me + k] : kNaN;
   }
   if (direct_) return;
-  const bool has =
-      memory_.age >= 0 && (flooded_ ? round < region_since_ + kRepeats : plan_->relays_in(round, rounds_));
   out.age = has ? memory_.age : 0;
   out.fresh = has ? memory_.fresh : 0;
   std::copy(memory_.ball.begin(), memory_.ball.end(), out.ball.begin());
   out.ball.back() = memory_.ball_radius;
   if (!has) std::fill(out.ball.begin(), out.ball.end(), kNaN);
+}
+
+bool AgentCertifier::spares(int round, const Evidence& said) const noexcept {
+  return said.silent() && !(round == 0 && told_ == Told::as_numbers);
 }
 
 void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
@@ -200,9 +224,7 @@ void AgentCertifier::hear(int round, int sender, const Evidence& in) noexcept {
     for (std::size_t k = 0; k < y_.size() && known_ < static_cast<int>(y_.size()); ++k)
       learn(k, in.measurements[k]);
   } else if (round == 0) {
-    const auto at = std::lower_bound(agents_.begin(), agents_.end(), sender) - agents_.begin();
-    for (std::size_t k = 0; k < in.measurements.size(); ++k)
-      learn(at_[static_cast<std::size_t>(at)] + k, in.measurements[k]);
+    hear_numbers(sender, in.measurements.data());
   }
   if (direct_ || !(in.ball.back() >= 0.0)) return;
   bool whole = in.age <= std::max(plan_->ages(), 0) && in.fresh <= in.age && eligible(in.age, in.fresh);
@@ -267,7 +289,9 @@ void AgentCertifier::witness() noexcept {
   Assumption a;
   a.s = plan_->wanted.attacked;
   a.bounded = plan_->deterministic();
-  a.levels = {plan_->z1, rows_.size() == plan_->all_rows ? plan_->z2_full : plan_->z2_partial};
+  const double derived = plan_->derivation(1.0);
+  a.levels = {plan_->z1 + derived,
+              (rows_.size() == plan_->all_rows ? plan_->z2_full : plan_->z2_partial) + derived};
   const bool few =
       !a.bounded && plan_->wanted.subsets > 0 && subsets_to_try(rows_, a) <= plan_->wanted.subsets;
   keep((few ? witness_subsets(rows_, a, kNaN, subsets_) : leverage_ball(rows_, a, leverage_)).region);

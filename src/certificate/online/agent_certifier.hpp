@@ -16,9 +16,12 @@ class AgentCertifier final : public Certifier {
   AgentCertifier(std::shared_ptr<const Plan> plan, int id, std::span<const int> neighbours, int rounds);
 
   void reset(std::int64_t t) noexcept override;
-  void begin(std::int64_t t, const double* y) noexcept override;
+  void begin(std::int64_t t, const double* y, const double* x) noexcept override;
   void say(int round, Evidence& out) const noexcept override;
+  bool spares(int round, const Evidence& said) const noexcept override;
   void hear(int round, int sender, const Evidence& in) noexcept override;
+  void hear_estimate(int sender, const double* x) noexcept override;
+  bool derives(int sender) const noexcept override { return plan_->derives(sender); }
   void end_round(int round) noexcept override;
   void end_sample() noexcept override;
   Bound bound(std::span<const double> estimate) const noexcept override;
@@ -39,6 +42,10 @@ class AgentCertifier final : public Certifier {
   int known_rows() const { return known_; }
   bool knows_the_same(const AgentCertifier& other) const;
 
+  /// For drivers of whole networks, who have derived what can be (Plan::tell).
+  void begin(std::int64_t t, const double* y, Told told) noexcept;
+  void hear_numbers(int sender, const double* y) noexcept;
+
   /// For drivers that do a sample without losses at once: `begin` with all measurements of the network that
   /// may arrive, by row of the plan. With `same`, which has begun: the relayed region is its.
   void begin_knowing(std::int64_t t, const double* all, const AgentCertifier* same) noexcept;
@@ -56,6 +63,7 @@ class AgentCertifier final : public Certifier {
   bool direct() const { return direct_; }
 
  private:
+  std::size_t place(int agent) const;
   void move_to(std::int64_t t) noexcept;
   void learn(std::size_t at, double y) noexcept;
   void gather() noexcept;
@@ -81,9 +89,11 @@ class AgentCertifier final : public Certifier {
   std::vector<std::size_t> row_;  // in the plan, of each entry of y_
   std::vector<int> source_;       // numbered from 0 among the rows that may become known
   std::vector<double> y_;         // NaN = not known (yet)
+  std::vector<double> own_;       // what is used for the own measurements
   std::vector<int> since_;        // first round in which each entry of y_ is passed on
   int region_since_ = 0;          // the same of the region
-  int next_round_ = 0;            // in which what is heard now can be passed on
+  Told told_ = Told::never_derived;
+  int next_round_ = 0;  // in which what is heard now can be passed on
   int known_ = 0;
   bool one_row_each_ = true;          // no source has several rows
   Change now_;                        // what of the sample is not the plan's; rows: each a column

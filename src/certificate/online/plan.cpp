@@ -25,7 +25,8 @@ constexpr double kBesideBank = 0.5;
 /// Epochs of a bank: more samples than 2^62 do not come.
 constexpr int kEpochs = 62;
 // Bounds of noise, with room for what rounding does to measurements of states a million times as large: where
-// inputs are known, what is left of these measurements is small, and does not show it.
+// inputs are known, what is left of these measurements is small, and does not show it. kFollows is part of
+// it.
 constexpr double kRounded = 1.0 + 1e-8;
 
 void require_wanted(const Wanted& wanted, const Model& model) {
@@ -146,9 +147,8 @@ void require_banks(const Plan& plan, const Network& network) {
     const double members = detail::choices(sources, plan.wanted.attacked);
     if (!(members <= kMostBankMembers))
       refuse("memory",
-             "true where agent " + std::to_string(i) + " hears " + std::to_string(sources) +
-                 " sources with " + std::to_string(plan.wanted.attacked) + " attacked: " + text(members) +
-                 " filters",
+             "true where agent " + std::to_string(i) + " hears " + amount(sources, "source") + " with " +
+                 std::to_string(plan.wanted.attacked) + " attacked: " + text(members) + " filters",
              "at most " + std::to_string(kMostBankMembers),
              plan.wanted.spread == Spread::flooded ? "take \"local\" or \"direct\", or a smaller `attacked`"
                                                    : "take a smaller `attacked`");
@@ -196,11 +196,32 @@ int Plan::outputs(int agent) const {
   return at < 0 ? 0 : first[static_cast<std::size_t>(at) + 1] - first[static_cast<std::size_t>(at)];
 }
 
+double Plan::derived(std::size_t row, const double* x) const {
+  const double* const c = rows.data() + row * static_cast<std::size_t>(states());
+  double y = 0.0;
+  for (int k = 0; k < states(); ++k) y += c[k] * x[k];
+  return y;
+}
+Told Plan::tell(int agent, const double* y, const double* x, double* out) const {
+  const int rows_here = outputs(agent);
+  const auto begin = static_cast<std::size_t>(first[static_cast<std::size_t>(place(agent))]);
+  bool follows = derives(agent) && x != nullptr;
+  for (int k = 0; k < rows_here && follows; ++k) {
+    const std::size_t row = begin + static_cast<std::size_t>(k);
+    const auto r = static_cast<Eigen::Index>(row);
+    out[k] = derived(row, x);
+    follows = std::abs(out[k] - y[k]) <= kFollows * (deterministic() ? width(r) : std::sqrt(variance(r)));
+  }
+  if (follows) return Told::derived;
+  std::copy_n(y, rows_here, out);
+  return derives(agent) ? Told::as_numbers : Told::never_derived;
+}
+
 Plan make_plan(const Wanted& wanted, const Model& model, const Network& network) {
   require_wanted(wanted, model);
   const double numbers = static_cast<double>(model.agents()) * model.total_outputs();
   if (wanted.spread == Spread::flooded && numbers > 1e8)
-    refuse("certificate", "flooded with " + std::to_string(model.agents()) + " agents",
+    refuse("certificate", "flooded with " + amount(model.agents(), "agent"),
            "a smaller network: every agent keeps all measurements", "take \"local\"");
   Plan plan;
   plan.wanted = wanted;

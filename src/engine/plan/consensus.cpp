@@ -36,8 +36,7 @@ ConsensusPlan::ConsensusPlan(std::span<const int> offsets, std::span<const int> 
     : width_(width) {
   const std::int64_t numbers = static_cast<std::int64_t>(offsets.size() - 1) * width;
   if (numbers > std::numeric_limits<std::int32_t>::max())
-    refuse("network",
-           std::to_string(offsets.size() - 1) + " agents with " + std::to_string(width) + " numbers",
+    refuse("network", amount(offsets.size() - 1, "agent") + " with " + amount(width, "number"),
            "fewer than 2^31 numbers in all", "split the network");
   order_ = reverse_cuthill_mckee(offsets, lists);
   const auto degree = [&](int i) {

@@ -71,13 +71,13 @@ SelectionProblem::SelectionProblem(Matrix form, int count, int limit)
   if (limit < 0 || limit > size)
     refuse("shared (l)", std::to_string(limit), "a number of entries in 0.." + std::to_string(size));
   if (subsets(size, limit) > kMostSubsets)
-    refuse("shared (l)", std::to_string(limit) + " of " + std::to_string(size) + " entries",
+    refuse("shared (l)", std::to_string(limit) + " of " + amount(size, "entry", "entries"),
            "at most " + text(kMostSubsets) + " subsets per agent", "every subset of a block is tried");
 }
 
 double SelectionProblem::objective(const Vector& s) const {
   if (s.size() != G.rows())
-    refuse("s", std::to_string(s.size()) + " numbers", std::to_string(G.rows()) + ", as G has rows");
+    refuse("s", amount(s.size(), "number"), std::to_string(G.rows()) + ", as G has rows");
   return s.dot(G * s);
 }
 
@@ -102,8 +102,7 @@ Vector SelectionProblem::best_block(int i, const Vector& s, double factor) const
 
 Ascent ascent(const SelectionProblem& p, const Vector& start, int sweeps, double factor, bool newest,
               bool rounding) {
-  if (start.size() != p.G.rows())
-    refuse("start", std::to_string(start.size()) + " numbers", std::to_string(p.G.rows()));
+  if (start.size() != p.G.rows()) refuse("start", amount(start.size(), "number"), std::to_string(p.G.rows()));
   constexpr int most_sweeps = 1'000'000;
   if (sweeps < 0 || sweeps > most_sweeps)
     refuse("sweeps", std::to_string(sweeps), "0.." + std::to_string(most_sweeps));

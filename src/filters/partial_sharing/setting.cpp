@@ -13,7 +13,7 @@ Matrix start_covariance(const PartialSharing::Params& p, int m) {
   if (p.start_covariance.empty()) return p.start_variance * Matrix::Identity(m, m);
   const auto expected = static_cast<std::size_t>(m) * static_cast<std::size_t>(m);
   if (p.start_covariance.size() != expected)
-    refuse("start_covariance (P0)", std::to_string(p.start_covariance.size()) + " numbers",
+    refuse("start_covariance (P0)", amount(p.start_covariance.size(), "number"),
            std::to_string(expected) + ", row by row");
   const Matrix P = Eigen::Map<const Matrix>(p.start_covariance.data(), m, m);
   if (!P.allFinite()) refuse("start_covariance (P0)", "a number that is not finite", "finite numbers");
@@ -28,7 +28,7 @@ Matrix start_covariance(const PartialSharing::Params& p, int m) {
 std::vector<int> shared_per_agent(const PartialSharing::Params& p, int N, int m) {
   if (!p.shared_each.empty()) {
     if (static_cast<int>(p.shared_each.size()) != N)
-      refuse("shared_each (l)", std::to_string(p.shared_each.size()) + " numbers",
+      refuse("shared_each (l)", amount(p.shared_each.size(), "number"),
              std::to_string(N) + ", one per agent");
     std::vector<int> each;
     for (const double l : p.shared_each) {
@@ -44,7 +44,7 @@ Selection make_selection(const PartialSharing::Params& p, int N, int m) {
   if (!p.selection.empty()) {
     const auto expected = static_cast<std::size_t>(N) * static_cast<std::size_t>(m);
     if (p.selection.size() != expected)
-      refuse("selection (s0)", std::to_string(p.selection.size()) + " numbers",
+      refuse("selection (s0)", amount(p.selection.size(), "number"),
              std::to_string(expected) + ": " + std::to_string(m) + " zeros and ones for each agent");
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     return {Matrix(Eigen::Map<const Rows>(p.selection.data(), N, m)), p.shift};

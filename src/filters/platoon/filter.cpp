@@ -18,8 +18,7 @@ namespace {
 void add_pairs(const char* which, const std::vector<double>& pairs, std::vector<int> Prior::* set, int N,
                std::vector<Prior>& priors) {
   const std::string owner = std::string("platoon.prior_") + which;
-  if (pairs.size() % 2 != 0)
-    refuse(owner, std::to_string(pairs.size()) + " numbers", "pairs vehicle, sensor");
+  if (pairs.size() % 2 != 0) refuse(owner, amount(pairs.size(), "number"), "pairs vehicle, sensor");
   for (std::size_t k = 0; k < pairs.size(); k += 2) {
     for (const double id : {pairs[k], pairs[k + 1]})
       if (!(id >= 0.0) || !(id < N) || id != std::floor(id))
@@ -51,7 +50,7 @@ std::vector<Prior> priors_of(const Platoon::Params& p, int N) {
                "attacked and free sets that do not intersect",
                "it is in a prior attacked set too: remove it from one of both");
   if (count > p.attacked)
-    refuse("platoon.prior_attacked", std::to_string(count) + " sensors",
+    refuse("platoon.prior_attacked", amount(count, "sensor"),
            "at most b = attacked = " + std::to_string(p.attacked), "raise attacked");
   return priors;
 }
@@ -160,8 +159,7 @@ Platoon::Gains Platoon::design(const Params& p, const Model& model, const Networ
   for (const auto& prior : g.priors) {
     for (const auto* set : {&prior.attacked, &prior.suspected})
       if (static_cast<int>(set->size()) > g.room)
-        refuse("platoon.prior_suspected", std::to_string(set->size()) + " sensors",
-               "at most " + std::to_string(g.room));
+        refuse("platoon.prior_suspected", amount(set->size(), "sensor"), "at most " + std::to_string(g.room));
     told.insert(told.end(), prior.free.begin(), prior.free.end());
   }
   std::sort(told.begin(), told.end());

@@ -135,7 +135,7 @@ LoopBound theorem4(int vehicles, double period, double gs, double gv, double eps
 Formation formation(const std::string& owner, const std::vector<double>& reference, double spacing, double gs,
                     double gv, double period, int vehicles) {
   if (reference.empty() || reference.size() % 2 != 0)
-    refuse(owner + ".reference", std::to_string(reference.size()) + " numbers",
+    refuse(owner + ".reference", amount(reference.size(), "number"),
            "position and velocity for time 0, or for times 0, 1, ...");
   Formation f;
   f.period = period;

@@ -50,7 +50,7 @@ std::vector<int> nearest(int id, int vehicles) {
 
 int range_of(const Network& network) {
   const int N = network.agents();
-  if (N < 3) refuse("network", std::to_string(N) + " vehicles (N)", "at least 3");
+  if (N < 3) refuse("network", amount(N, "vehicle") + " (N)", "at least 3");
   const int L = network.degree(0);
   if (network.directed()) refuse("network", "a directed one", "an undirected one", "use Network.band");
   for (int i = 0; i < N; ++i) {
@@ -65,8 +65,8 @@ int range_of(const Network& network) {
              "use Network.band(vehicles, range)");
   }
   if (N < 2 * L + 1)
-    refuse("network", std::to_string(N) + " vehicles (N) with range L = " + std::to_string(L),
-           "at least 2 L + 1 = " + std::to_string(2 * L + 1) + " vehicles, else V_1 is empty",
+    refuse("network", amount(N, "vehicle") + " (N) with range L = " + std::to_string(L),
+           "at least 2 L + 1 = " + amount(2 * L + 1, "vehicle") + ", else V_1 is empty",
            "shorten the range L or add vehicles");
   return L;
 }

@@ -116,7 +116,7 @@ class Vehicles final : public World {
   }
   void require_recorded() const {
     if (recorded_ != nullptr && recorded_->cols() != kDisturbances * setting_.vehicles)
-      refuse("noise", std::to_string(recorded_->cols()) + " columns of recorded disturbances",
+      refuse("noise", amount(recorded_->cols(), "column") + " of recorded disturbances",
              std::to_string(kDisturbances * setting_.vehicles) + ", " + std::to_string(kDisturbances) +
                  " per vehicle");
     for (int i = 0; recorded_ != nullptr && i < setting_.vehicles; ++i)
@@ -154,15 +154,14 @@ Model model(int vehicles, double period, bool inputs) {
 
 double period_of(const Model& m) {
   const char* const advice = "platoon.model(vehicles, period) makes it";
-  if (m.states() != 2)
-    refuse("model", std::to_string(m.states()) + " states", "position and velocity", advice);
+  if (m.states() != 2) refuse("model", amount(m.states(), "state"), "position and velocity", advice);
   const double T = m.A()(0, 1);
   if (m.A()(0, 0) != 1.0 || m.A()(1, 0) != 0.0 || m.A()(1, 1) != 1.0 || !(T > 0.0))
     refuse("A", "another matrix", "(1 T; 0 1) with T > 0", advice);
   for (int i = 0; i < m.agents(); ++i) {
     const int rows = m.outputs(i) - (i > 0 ? 4 : 2);
     if (rows < 0 || rows > 1 || rows != m.outputs(0) - 2)
-      refuse("C[" + std::to_string(i) + "]", std::to_string(m.outputs(i)) + " rows",
+      refuse("C[" + std::to_string(i) + "]", amount(m.outputs(i), "row"),
              i > 0 ? "2 absolute, 2 relative measurements (and the input, for all vehicles or none)"
                    : "2 absolute measurements (and the input, for all vehicles or none)",
              advice);

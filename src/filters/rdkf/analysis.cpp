@@ -95,7 +95,7 @@ void require_same(const Setting& s, const SteadyState& steady) {
   const auto agents = static_cast<int>(steady.P.size());
   const auto n = agents == 0 ? 0 : static_cast<int>(steady.P.front().rows());
   if (agents != s.agents() || n != s.states())
-    refuse("steady", std::to_string(agents) + " agents with " + std::to_string(n) + " states",
+    refuse("steady", amount(agents, "agent") + " with " + amount(n, "state"),
            std::to_string(s.agents()) + " with " + std::to_string(s.states()) + ", as the setting has");
 }
 
@@ -143,9 +143,8 @@ double lyapunov(const SteadyState& steady, const MatrixRef& errors) {
   const auto agents = static_cast<Eigen::Index>(steady.P.size());
   const Eigen::Index n = agents == 0 ? 0 : steady.P.front().rows();
   if (errors.rows() != n || errors.cols() != agents)
-    refuse("errors",
-           std::to_string(errors.cols()) + " agents with " + std::to_string(errors.rows()) + " states",
-           std::to_string(agents) + " agents with " + std::to_string(n) + " states");
+    refuse("errors", amount(errors.cols(), "agent") + " with " + amount(errors.rows(), "state"),
+           amount(agents, "agent") + " with " + amount(n, "state"));
   double largest = 0.0;
   for (std::size_t i = 0; i < steady.P.size(); ++i) {
     const Vector e = errors.col(static_cast<Eigen::Index>(i));

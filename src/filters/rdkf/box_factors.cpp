@@ -8,8 +8,8 @@ namespace garrison::rdkf {
 
 BoxFactors box_factors(const MatrixRef& whitener, const MatrixRef& C, const MatrixRef& Q) {
   if (C.rows() > kMostBoxOutputs)
-    refuse("C", std::to_string(C.rows()) + " rows",
-           "at most " + std::to_string(kMostBoxOutputs) + " sensors per agent with the l1 penalty");
+    refuse("C", amount(C.rows(), "row"),
+           "at most " + amount(kMostBoxOutputs, "sensor") + " per agent with the l1 penalty");
   const Eigen::LLT<Matrix> factor(Q);
   if (factor.info() != Eigen::Success)
     refuse("Q", "a matrix that is not positive definite", "a symmetric positive definite matrix");

@@ -132,9 +132,9 @@ std::vector<std::string> Rdkf::warnings(const Model& model, const VerdictLog& lo
     longest = std::max(longest, most);
   }
   if (trials == 0) return {};
-  return {"most agents were saturated for " + std::to_string(longest) + " steps in a row (" +
-          std::to_string(trials) + " of " + std::to_string(log.trials) +
-          " trials) and the plant is unstable: the estimates may diverge; start closer, raise the weight, or "
+  return {"most agents were saturated for " + amount(longest, "step") + " in a row (" +
+          std::to_string(trials) + " of " + amount(log.trials, "trial") +
+          ") and the plant is unstable: the estimates may diverge; start closer, raise the weight, or "
           "protect more sensors"};
 }
 

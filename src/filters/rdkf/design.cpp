@@ -70,7 +70,7 @@ void design_agents(Gains& g, const Setting& s, Borders* borders = nullptr) {
   for (std::size_t i = 0; i < s.C.size(); ++i)
     g.most_outputs = std::max(g.most_outputs, static_cast<int>(s.C[i].rows()));
   if (g.penalty == Penalty::group && g.most_outputs > kMostGroupOutputs)
-    refuse("rdkf.penalty", "\"group\" with " + std::to_string(g.most_outputs) + " outputs of one agent",
+    refuse("rdkf.penalty", "\"group\" with " + amount(g.most_outputs, "output") + " of one agent",
            "at most " + std::to_string(kMostGroupOutputs), "split the sensor, or take penalty \"huber\"");
   for (std::size_t i = 0; i < s.C.size(); ++i) {
     AgentGains a;

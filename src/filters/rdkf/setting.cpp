@@ -38,7 +38,7 @@ bool detectable(const MatrixRef& A, const MatrixRef& C) {
 Setting part_setting(const Model& model, const Network& network) {
   const int N = model.agents();
   if (network.agents() != N)
-    refuse("network", std::to_string(network.agents()) + " agents",
+    refuse("network", amount(network.agents(), "agent"),
            std::to_string(N) + ", because C has one matrix per agent");
   const auto& noise = model.noise();
   if (noise.process_covariance.size() == 0 && noise.agent_process_covariance.empty())

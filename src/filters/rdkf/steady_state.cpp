@@ -11,7 +11,7 @@ namespace {
 
 void require_start(const Setting& s, const std::vector<Matrix>& P) {
   if (static_cast<int>(P.size()) != s.agents())
-    refuse("P", std::to_string(P.size()) + " matrices", std::to_string(s.agents()) + ", one per agent");
+    refuse("P", amount(P.size(), "matrix", "matrices"), std::to_string(s.agents()) + ", one per agent");
   for (std::size_t i = 0; i < P.size(); ++i)
     if (P[i].rows() != s.states() || P[i].cols() != s.states() || !P[i].allFinite())
       refuse("P[" + std::to_string(i) + "]",

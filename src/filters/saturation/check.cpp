@@ -209,7 +209,7 @@ void add_table(Check& c, const Saturation::Params& p, const Model& model, const 
       {"table bound", settles ? last : kNaN,
        settles ? "||error|| of any agent from t = " + std::to_string(table.d.rows() - 1) +
                      (gaussian ? " to " + std::to_string(p.horizon) : " on") + ", " + theorem +
-                     ", whatever " + std::to_string(p.attacked) + " sensors say and whoever is informed" +
+                     ", whatever comes from " + amount(p.attacked, "sensor") + " and whoever is informed" +
                      (gaussian ? "; with probability " + text(p.failure) + " at most any of it is false" : "")
                : theorem + " gives no bound for ever: take more rounds, or a smaller attacked"});
   if (p.recovery) add_recovery(c, table.losses.excess);
@@ -260,7 +260,7 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
                               ? "worst information of N - s sensors (6), exact"
                               : "certified lower bound of (6), which is at most " +
                                     text(facts.lambda0.upper) + "; the exact search was stopped after " +
-                                    std::to_string(facts.lambda0.nodes) + " sets"});
+                                    amount(facts.lambda0.nodes, "set")});
   c.quantities.push_back(
       {"varpi", facts.varpi,
        "largest growth of the mean error while no honest measurement is clipped (theorem 3)"});

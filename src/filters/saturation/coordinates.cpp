@@ -32,7 +32,7 @@ void require_shape(const char* which, MatrixRef M, Eigen::Index rows, Eigen::Ind
 UnitRows normalise_rows(MatrixRef C, VectorRef b_v) {
   require_shape("C", C, C.rows(), C.cols());
   if (b_v.size() != C.rows())
-    refuse("b_v", std::to_string(b_v.size()) + " numbers", std::to_string(C.rows()), "give one per row of C");
+    refuse("b_v", amount(b_v.size(), "number"), std::to_string(C.rows()), "give one per row of C");
   for (Eigen::Index i = 0; i < b_v.size(); ++i)
     if (!std::isfinite(b_v[i]) || b_v[i] < 0.0)
       refuse("b_v[" + std::to_string(i) + "]", text(b_v[i]), "a finite number >= 0");

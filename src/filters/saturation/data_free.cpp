@@ -151,7 +151,7 @@ Matrix averaging(const Network& network, double alpha, std::span<const double> o
 DataFree data_free(const Model& model, const Network& network, const DataFreeOptions& o) {
   const int numbers = model.agents() * model.states();
   if (numbers > kMostNumbers)
-    refuse("saturation.table", "a network of " + std::to_string(numbers) + " numbers (agents times states)",
+    refuse("saturation.table", "a network of " + amount(numbers, "number") + " (agents times states)",
            "at most " + std::to_string(kMostNumbers), "leave it out: the bound of the paper remains");
   const Matrix C = detail::sensor_rows(model);
   Vector spread;

@@ -24,8 +24,7 @@ void require_bound_assumptions(const Model& model, bool gaussian) {
            "saturation.failure > 0 means Gaussian noise of these covariances");
   for (int i = 0; i < model.agents(); ++i) {
     if (model.outputs(i) > 1)
-      refuse("C[" + std::to_string(i) + "]", std::to_string(model.outputs(i)) + " rows",
-             "at most one row per agent",
+      refuse("C[" + std::to_string(i) + "]", amount(model.outputs(i), "row"), "at most one row per agent",
              "an error bound needs scalar sensors: split_outputs gives each row an agent of its own");
     if (model.outputs(i) == 0) continue;
     const double length = model.C(i).stableNorm();

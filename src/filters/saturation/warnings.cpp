@@ -45,9 +45,9 @@ std::vector<std::string> refutations(const VerdictLog& log) {
     most = one.taken_back ? std::max(most, one.attacked) : most;
   }
   if (trials == 0) return {};
-  return {std::to_string(most) + " sensors were found attacked, more than `attacked` allows (" +
-          std::to_string(trials) + " of " + std::to_string(log.trials) +
-          " trials): an assumption is false, so no accusation of this run is a proof. Either attacked is too "
+  return {"it found " + amount(most, "sensor") + " attacked, more than `attacked` allows (" +
+          std::to_string(trials) + " of " + amount(log.trials, "trial") +
+          "): an assumption is false, so no accusation of this run is a proof. Either attacked is too "
           "small, the set of attacked sensors changed over time, measurement_bound or process_bound is too "
           "small, A or C is wrong, or the start was farther off than initial_error"};
 }
@@ -75,8 +75,8 @@ std::vector<std::string> Saturation::warnings(const Params& params, const Model&
   std::vector<std::string> all = refutations(log);
   if (!params.detector && std::isnan(params.initial_error)) return all;  // nothing was claimed
   if (const int first = first_gap(model, log, params.attacked); first > 0)
-    all.push_back("more than " + std::to_string(params.attacked) +
-                  " sensors (`attacked`) had no measurement at sample " + std::to_string(first) +
+    all.push_back("more than " + amount(params.attacked, "sensor") +
+                  " (`attacked`) had no measurement at sample " + std::to_string(first) +
                   ": from then on the filter has no bound and proves nothing; allow for them in attacked, or "
                   "ask for a certificate");
   return all;

@@ -15,8 +15,7 @@ using Index = Eigen::Index;
 
 void require_columns(const MatrixRef& residuals, Index agents) {
   if (residuals.cols() != agents)
-    refuse("residuals", std::to_string(residuals.cols()) + " columns",
-           std::to_string(agents) + ", one per agent");
+    refuse("residuals", amount(residuals.cols(), "column"), std::to_string(agents) + ", one per agent");
 }
 
 int window_of(std::span<const Matrix> covariances) {

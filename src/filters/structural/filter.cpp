@@ -31,8 +31,8 @@ std::string at(int i, int j) {
 
 Matrix square_from(const std::string& which, const std::vector<double>& numbers, Index N) {
   if (static_cast<Index>(numbers.size()) != N * N)
-    refuse(which, std::to_string(numbers.size()) + " numbers",
-           std::to_string(N * N) + ", N*N for N = " + std::to_string(N) + " agents, row by row");
+    refuse(which, amount(numbers.size(), "number"),
+           std::to_string(N * N) + ", N*N for N = " + amount(N, "agent") + ", row by row");
   return Eigen::Map<const Eigen::Matrix<double, Dynamic, Dynamic, Eigen::RowMajor>>(numbers.data(), N, N);
 }
 
@@ -179,8 +179,7 @@ Setting Structural::setting(const Params& p, const Model& model, const Network& 
   for (int i = 0; i < N; ++i) {
     if (model.outputs(i) > 1)
       refuse(
-          "C[" + std::to_string(i) + "]", std::to_string(model.outputs(i)) + " rows",
-          "at most one row per agent",
+          "C[" + std::to_string(i) + "]", amount(model.outputs(i), "row"), "at most one row per agent",
           "the structural filter tests scalar residuals: split_outputs gives each row an agent of its own");
     if (model.outputs(i) == 1) s.C.row(i) = model.C(i).row(0);
   }
@@ -222,7 +221,7 @@ GainMatrices Structural::gains_of(const Params& p, const Setting& s) {
   const Index N = s.N();
   const Index n = s.n();
   if (static_cast<Index>(p.gain.size()) != N * n * n)
-    refuse("structural.gain", std::to_string(p.gain.size()) + " numbers",
+    refuse("structural.gain", amount(p.gain.size(), "number"),
            std::to_string(N * n * n) + ", N*n*n, K_i row by row, agent by agent");
   GainMatrices K;
   for (Index i = 0; i < N; ++i)

@@ -69,7 +69,7 @@ void require_valid(const Setting& s) {
 
 void require_gains(const Setting& s, const GainMatrices& K) {
   if (static_cast<Eigen::Index>(K.size()) != s.N())
-    refuse("K", std::to_string(K.size()) + " matrices", std::to_string(s.N()) + ", one per agent");
+    refuse("K", amount(K.size(), "matrix", "matrices"), std::to_string(s.N()) + ", one per agent");
   for (std::size_t i = 0; i < K.size(); ++i)
     require_matrix("K[" + std::to_string(i) + "]", K[i], s.n(), s.n());
 }

@@ -106,8 +106,8 @@ std::vector<std::string> Structural::warnings(const Params& params, const Model&
     all.push_back(std::to_string(more) + (more == 1 ? " more sensor was" : " more sensors were") +
                   " tested in less than half of the samples");
   if (c.longest >= long_row(params, log))
-    all.push_back("more than half of the sensors were accused for " + std::to_string(c.longest) +
-                  " samples in a row: that may as well be a wrong model or a wrong estimate");
+    all.push_back("more than half of the sensors were accused for " + amount(c.longest, "sample") +
+                  " in a row: that may as well be a wrong model or a wrong estimate");
   if (params.window > 1 && (params.isolate || misses_some(model, c, log)))
     all.push_back(
         "window = " + std::to_string(params.window) +

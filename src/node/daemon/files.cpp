@@ -36,7 +36,7 @@ std::vector<std::byte> read_bytes(const std::string& path, std::size_t most, con
     if (got == 0) return all;
     all.insert(all.end(), piece.begin(), piece.begin() + got);
     if (all.size() > most)
-      throw IoError(path + ": got more than " + std::to_string(most) + " bytes, expected a smaller file");
+      throw IoError(path + ": got more than " + amount(most, "byte") + ", expected a smaller file");
   }
 }
 

@@ -27,7 +27,7 @@ std::vector<double> read_rows(const std::string& path, std::size_t inputs) {
     if (!known)
       refuse(path + ", line " + std::to_string(line),
              "\"" + std::string(rest.substr(0, std::min<std::size_t>(end, 40))) + "\"",
-             std::to_string(inputs) + " numbers, separated by commas: inputs are known at all times",
+             amount(inputs, "number") + ", separated by commas: inputs are known at all times",
              "a row a sample, no header; what is not known is process noise");
     rest.remove_prefix(std::min(end + 1, rest.size()));
     all.insert(all.end(), row->y.begin(), row->y.end());

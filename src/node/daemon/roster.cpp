@@ -26,8 +26,8 @@ Member read_member(const Section& section) {
   m.name = section.text("name", std::to_string(m.id));
   if (m.name.empty()) refuse(section.where("name"), "\"\"", "a name, or none: then its id is the name");
   if (m.name.size() > kLongestName)
-    refuse(section.where("name"), std::to_string(m.name.size()) + " bytes",
-           "at most " + std::to_string(kLongestName), "a shorter name: files are named by it");
+    refuse(section.where("name"), amount(m.name.size(), "byte"), "at most " + std::to_string(kLongestName),
+           "a shorter name: files are named by it");
   m.open = open_key_from(section.where("key"), section.text("key"));
   m.address = address_from(section.where("address"), section.text("address"));
   if (is_any(m.address))
@@ -101,7 +101,7 @@ Schedule schedule_for(const Roster& roster, int rounds) {
   if (s.resend == 0) s.resend = std::max<Micros>(2000, s.round / 8);
   if (s.round < kLeastRound || s.round * rounds > s.period)
     refuse(roster.path + ", [run]",
-           text(static_cast<double>(s.period) / 1000) + " ms for " + std::to_string(rounds) + " rounds of " +
+           text(static_cast<double>(s.period) / 1000) + " ms for " + amount(rounds, "round") + " of " +
                text(static_cast<double>(s.round) / 1000) + " ms",
            "rounds of 1 ms or more that fit into the period",
            "a longer period_ms, or fewer rounds in the design");

@@ -37,7 +37,7 @@ bool wait_for_clock(const Settings& settings, Desk& desk) {
 void require_inputs_now(const Station& station) {
   const std::int64_t slot = station.schedule.slot(now().wall);
   if (slot > station.inputs.last())
-    refuse(station.settings.inputs, std::to_string(station.inputs.last()) + " rows",
+    refuse(station.settings.inputs, amount(station.inputs.last(), "row"),
            std::to_string(slot) + " at least: the run is at that sample",
            "the inputs of the whole run, the same on all nodes");
 }

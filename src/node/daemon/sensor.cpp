@@ -41,7 +41,7 @@ std::optional<double> number_in(std::string_view word) {
 void require_size(const std::string& file, const char* key, const std::vector<double>& given,
                   std::size_t outputs) {
   if (!given.empty() && given.size() != outputs)
-    refuse(file + ", [sensor]." + key, std::to_string(given.size()) + " numbers",
+    refuse(file + ", [sensor]." + key, amount(given.size(), "number"),
            std::to_string(outputs) + ", one per output of this agent");
 }
 
@@ -89,7 +89,7 @@ Sensor::Sensor(const SensorSettings& settings, std::size_t outputs, const std::s
   if (settings.source != Source::procfs) return;
   machine_.emplace(file + ", [sensor].read", settings.read);
   if (machine_->size() != outputs)
-    refuse(file + ", [sensor].read", std::to_string(machine_->size()) + " names",
+    refuse(file + ", [sensor].read", amount(machine_->size(), "name"),
            std::to_string(outputs) + ", one per output of this agent");
 }
 
@@ -120,8 +120,7 @@ void Sensor::read_table() {
     if (!row || row->taken)
       refuse(settings_.path + ", line " + std::to_string(line),
              "\"" + std::string(rest.substr(0, std::min<std::size_t>(end, 40))) + "\"",
-             std::to_string(outputs_) + " numbers (or nan), separated by commas",
-             "a row a sample, no header");
+             amount(outputs_, "number") + " (or nan), separated by commas", "a row a sample, no header");
     rest.remove_prefix(std::min(end + 1, rest.size()));
     table_.insert(table_.end(), row->y.begin(), row->y.end());
     prepare(std::span(table_).last(outputs_));

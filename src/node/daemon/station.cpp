@@ -42,7 +42,7 @@ const Member& self_in(const Roster& roster, const Settings& settings) {
 Vector initial_of(const Roster& roster, int states) {
   if (roster.initial.empty()) return Vector::Zero(states);
   if (roster.initial.size() != static_cast<std::size_t>(states))
-    refuse(roster.path + ", [run].initial", std::to_string(roster.initial.size()) + " numbers",
+    refuse(roster.path + ", [run].initial", amount(roster.initial.size(), "number"),
            std::to_string(states) + ", one per state");
   return Eigen::Map<const Vector>(roster.initial.data(), states);
 }
@@ -55,7 +55,7 @@ Inputs inputs_of(const Settings& settings, const AgentPart& part) {
   if (part.B.cols() == 0) return {};
   if (settings.inputs.empty())
     refuse(which, "none", "source = \"file\" and a path: the model of the design has known inputs",
-           "a CSV file with " + std::to_string(part.B.cols()) + " numbers a row, the same on all nodes");
+           "a CSV file with " + amount(part.B.cols(), "number") + " a row, the same on all nodes");
   return {settings.inputs, part};
 }
 

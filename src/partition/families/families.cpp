@@ -44,7 +44,7 @@ std::unique_ptr<PartRunner> part_runner(const std::string& family, const ParamMa
 }
 
 void require_sets(const std::string& which, const Region& region, double sets, int agents) {
-  require_memory(which, std::to_string(region.own) + " sets of " + std::to_string(agents) + " agents",
+  require_memory(which, amount(region.own, "set") + " of " + amount(agents, "agent"),
                  sets * region.places() * agents / 8.0);
 }
 

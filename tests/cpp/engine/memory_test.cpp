@@ -436,7 +436,7 @@ TEST_CASE("a bank goes on through gaps, and starts anew after long ones and afte
   const std::vector<double> silent(4, kNaN);
   const std::vector<double> lying{0.0, 0.0, 90.0, 0.0};
   const auto at = [&](std::int64_t t, const std::vector<double>& y) {
-    certifier->begin(t, y.data());
+    certifier->begin(t, y.data(), nullptr);
     return certifier->bound({&x, 1});
   };
   for (int t = 1; t <= 50; ++t) at(t, lying);

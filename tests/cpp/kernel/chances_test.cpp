@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 using namespace garrison;
@@ -19,7 +21,11 @@ TEST_CASE("many events at once are those of one after the other, for any count a
         happen(random, time, address.data(), 5, probability, count, out.data());
         for (std::size_t e = 0; e < count; ++e)
           CHECK((out[e] != 0) == (random.uniform(time, address[e], 5) < probability));
-        CHECK(out[count] == 7);  // nothing is written behind the end
+        CHECK(out[count] == 7);                   // nothing is written behind the end
+        std::vector<std::uint8_t> narrow(count);  // as on a machine without wide registers
+        const auto limit = static_cast<std::uint64_t>(std::ceil(std::ldexp(probability, 53)));
+        detail::run_two<detail::Happen>(&random, time, address.data(), 5U, limit, count, narrow.data());
+        CHECK(std::equal(narrow.begin(), narrow.end(), out.begin()));
       }
   }
 }

@@ -54,10 +54,17 @@ class Certifier {
   /// Starts anew at the end of sample t: nothing is known.
   virtual void reset(std::int64_t t) noexcept = 0;
   /// Sample t, later than the last one by any number; y: own outputs, anything but finite numbers = missing.
-  virtual void begin(std::int64_t t, const double* y) noexcept = 0;
+  /// x: the estimate in the first message (`sensed` of core/filter.hpp); null = there is none.
+  virtual void begin(std::int64_t t, const double* y, const double* x) noexcept = 0;
   /// What to send in this round; shape_evidence sized `out`.
   virtual void say(int round, Evidence& out) const noexcept = 0;
+  /// Whether what is said in this round is said by no bytes.
+  virtual bool spares(int round, const Evidence& said) const noexcept = 0;
   virtual void hear(int round, int sender, const Evidence& in) noexcept = 0;
+  /// In the first round, of a sender that has put nothing behind this estimate.
+  virtual void hear_estimate(int sender, const double* x) noexcept = 0;
+  /// Whether that says something.
+  virtual bool derives(int sender) const noexcept = 0;
   virtual void end_round(int round) noexcept = 0;
   /// After what was heard of a sample in which the agent took no part.
   virtual void end_sample() noexcept = 0;

@@ -2,6 +2,7 @@
 // The certificate of a run: what is asked for, and what design leaves of it for the agents.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,17 @@ struct Wanted {
   }
 };
 
+/// A measurement follows from an estimate x where C x is as near to it as this part of its deviation, or of
+/// its bound (Plan::width has room for that).
+inline constexpr double kFollows = 1e-10;
+
+/// What becomes of an agent's measurements in its first message of a sample.
+enum class Told : std::uint8_t {
+  never_derived,  ///< they are in it, as numbers
+  as_numbers,     ///< the same, where others would take silence for `derived`
+  derived,        ///< they follow from its estimate, and nothing more is said of them
+};
+
 /// A bank takes at most so many filters, the sets of sources that may be attacked.
 inline constexpr int kMostBankMembers = 3000;
 
@@ -81,6 +93,7 @@ struct BankPlan {
 /// 1 sums of process noise, which share the rest. With levels that are given, each F fails with `failure` for
 /// an agent, and a bound with at most kChoice + 2 and a quarter of it.
 struct GARRISON_EXPORT Plan {
+  std::int32_t messages = 2;  ///< version of how they are written: agents of another do not understand them
   Wanted wanted;
   bool family = true;  ///< the bound of the filter's family holds for as many attacked sources, too
   int agents = 0;
@@ -119,9 +132,22 @@ struct GARRISON_EXPORT Plan {
   /// Position of an agent in `ids`; -1 when its rows are not here.
   int place(int agent) const;
   int outputs(int agent) const;
+  /// Whether measurements are not sent that follow from the estimate in an agent's first message. Flooded,
+  /// they travel on as numbers; direct, an agent that lies in its estimates must not lie with them.
+  bool derives() const { return wanted.spread == Spread::local; }
+  bool derives(int agent) const { return derives() && outputs(agent) > 0; }
+  /// What everybody uses for the measurement of this row, its own agent included: the same bits everywhere.
+  double derived(std::size_t row, const double* x) const;
+  /// What is told of y where x (null = none) is the estimate in the message; what is used for y to `out`.
+  Told tell(int agent, const double* y, const double* x, double* out) const;
+  /// By how much the noise of so many samples, in standard deviations, may be longer where it is derived.
+  double derivation(double samples) const {
+    return derives() ? kFollows * std::sqrt(samples * all_rows) : 0.0;
+  }
 
   template <class V>
   void visit(V& v) {
+    v.range("messages", messages, 2, 2);
     v("wanted", wanted);
     v("family", family);
     v.range("agents", agents, 1, INT32_MAX);

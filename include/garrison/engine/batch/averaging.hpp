@@ -67,6 +67,7 @@ class Averaging {
     gathered_ = finite && alike;
     stale_ = true;
     if (gathered_) {
+      s.sensed([this](std::size_t k) { return estimate(k); });
       const auto [alpha, omega] = F::averaging(s.gains);
       s.plan.run(estimates_.data(), scratch_.data(), alpha, omega, F::rounds(s.gains), &s.workers);
     } else {

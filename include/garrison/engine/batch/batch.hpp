@@ -14,8 +14,9 @@
 namespace garrison {
 
 /// One sample of all agents over perfect links. `local(k)`, `y(k)`: Local and measurements of agent k in the
-/// order of the plan.
-template <class Gains, class Locals, class Measurements>
+/// order of the plan. `sensed(estimate)` is called before the rounds where no messages are sent:
+/// estimate(k) is what agent k would say.
+template <class Gains, class Locals, class Measurements, class Sensed>
 struct BatchSample {
   const Gains& gains;
   const ConsensusPlan& plan;
@@ -24,10 +25,11 @@ struct BatchSample {
   std::int64_t t;
   Locals local;
   Measurements y;
+  Sensed sensed;
 };
-template <class Gains, class Locals, class Measurements>
-BatchSample(const Gains&, const ConsensusPlan&, Wiring, Workers&, std::int64_t, Locals, Measurements)
-    -> BatchSample<Gains, Locals, Measurements>;
+template <class Gains, class Locals, class Measurements, class Sensed>
+BatchSample(const Gains&, const ConsensusPlan&, Wiring, Workers&, std::int64_t, Locals, Measurements, Sensed)
+    -> BatchSample<Gains, Locals, Measurements, Sensed>;
 
 /// What was done of it: nothing, so that every agent has yet to sense; all have sensed and have a message to
 /// send, `plain` as in Engine::rounds; everything.

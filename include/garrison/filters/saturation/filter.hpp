@@ -252,6 +252,12 @@ struct GARRISON_EXPORT Saturation {
     if (s.loss != nullptr) s.loss->forget(s.t);
   }
 
+  /// (3): C_i xtilde_i = y_i where |C_i| = 1 and nothing was clipped.
+  template <int n>
+  static const double* sensed(const Message<n>& m) noexcept {
+    return m.x.data();
+  }
+
   /// The rounds would change nothing but the average if both agents carry the same side information.
   template <int n>
   static bool same_side_information(const State<n>& a, const State<n>& b) noexcept {

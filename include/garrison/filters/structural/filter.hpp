@@ -158,8 +158,7 @@ struct GARRISON_EXPORT Structural {
     const bool carried = carries(g) && (g.isolate || !(settled && seen.measurements));
     if (carried) {
       mix_spreads(l, g, s, inbox);
-      constexpr int like = spread_dimension(n);
-      run_widest_of<PredictSpread<like>, like>(&l, &g, static_cast<Memory*>(&s));
+      run_spread<PredictSpread, n>(l, g, s);
     }
     const double* c = row(g, l.id, nn);
     s.innovation = measured ? s.y - dot(g, l.id, s.prior, nn) : kNaN;
@@ -279,9 +278,6 @@ struct GARRISON_EXPORT Structural {
     bool estimates = true;
     bool measurements = true;
   };
-  /// The bound of the error, in registers as wide as the machine's where its rows fill them; other dimensions
-  /// share one piece of code.
-  static constexpr int spread_dimension(int n) { return n == 2 || n == 4 || n == 8 ? n : Dynamic; }
   template <int n>
   struct PredictSpread {
     template <int B>
@@ -296,6 +292,15 @@ struct GARRISON_EXPORT Structural {
       update_spread<B, n>(*l, *g, *s);
     }
   };
+  /// One of them, in registers as wide as the machine's; dimensions whose rows do not fill registers share
+  /// one piece of code.
+  template <template <int> class Kernel, int n>
+  static void run_spread(const Local& l, const Gains& g, Memory& s) noexcept {
+    if constexpr (n == 2 || n == 4 || n == 8)
+      run_widest_of<Kernel<n>, n>(&l, &g, &s);
+    else
+      run_widest<Kernel<Dynamic>>(&l, &g, &s);
+  }
   /// What one sample says about whom to use: (4) gathers it.
   struct Doubts {
     bool carried;         ///< the bound of the error is carried
@@ -393,6 +398,8 @@ struct GARRISON_EXPORT Structural {
 
 }  // namespace garrison
 
+#include "garrison/filters/structural/bound.hpp"
 #include "garrison/filters/structural/judge.hpp"
 #include "garrison/filters/structural/params.hpp"
 #include "garrison/filters/structural/step.hpp"
+#include "garrison/filters/structural/trust.hpp"

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "garrison/core/types.hpp"
 #include "garrison/kernel/block.hpp"
@@ -60,48 +61,53 @@ GARRISON_INLINE void add_packed(const double* lower, double weight, int nn,
   const int size = static_cast<int>(packed(n == Dynamic ? nn : n));
   for (int k = 0; k < size; ++k) sum[k] += weight * lower[k];
 }
+/// body(width, j) for all numbers j .. j + width - 1 of a row, in blocks of at most B: of one width where n
+/// is known when this is compiled, else what is left over from `first` on in narrower ones.
+template <int B, int n, class Body>
+GARRISON_INLINE void for_each_block(int size, const Body& body, int first = 0) {
+  constexpr int W = n == Dynamic ? B : block_of(n, B);
+  int j = first;
+  for (; j + W <= size; j += W) body(std::integral_constant<int, W>{}, j);
+  if constexpr (n == Dynamic && W > 1) for_each_block<W / 2, n>(size, body, j);
+}
 /// out = L S L' + out, S symmetric; L column by column, so that all rows are read along memory. `half`: room
 /// for n x n. B: doubles of a register.
 template <int B, int n>
 GARRISON_INLINE void add_congruence(const double* L, const double* S, int nn, double* __restrict__ half,
                                     double* __restrict__ out) noexcept {
   const int size = n == Dynamic ? nn : n;
-  constexpr int W = n == Dynamic ? 1 : block_of(n, B);
-  using V = typename Block<W>::type;
   const auto at = [size](int i, int j) { return static_cast<std::ptrdiff_t>(i) * size + j; };
   for (int i = 0; i < size; ++i)
-    for (int j = 0; j < size; j += W) {
-      V sum = L[i] * *Block<W>::of(S + j);
+    for_each_block<B, n>(size, [&]<int W>(std::integral_constant<int, W>, int j) GARRISON_INLINED {
+      auto sum = L[i] * *Block<W>::of(S + j);
       for (int k = 1; k < size; ++k) sum += L[at(k, i)] * *Block<W>::of(S + at(k, j));
       *Block<W>::of(half + at(i, j)) = sum;
-    }
+    });
   for (int i = 0; i < size; ++i)
-    for (int j = 0; j < size; j += W) {
-      V sum = *Block<W>::of(out + at(i, j));
+    for_each_block<B, n>(size, [&]<int W>(std::integral_constant<int, W>, int j) GARRISON_INLINED {
+      auto sum = *Block<W>::of(out + at(i, j));
       for (int k = 0; k < size; ++k) sum += half[at(i, k)] * *Block<W>::of(L + at(k, j));
       *Block<W>::of(out + at(i, j)) = sum;
-    }
+    });
 }
 /// Whether no entry of S is larger than positive semidefinite matrices with its diagonal have it, and that
 /// diagonal is in [0, most * limit], all up to rounding. NaN is not.
 template <int B, int n>
 GARRISON_INLINE bool is_covariance(const double* S, double most, double limit, int nn) noexcept {
   const int size = n == Dynamic ? nn : n;
-  constexpr int W = n == Dynamic ? 1 : block_of(n, B);
-  using V = typename Block<W>::type;
-  V bad{};
-  for (int j = 0; j < size; j += W) {
+  bool all = true;
+  for_each_block<B, n>(size, [&]<int W>(std::integral_constant<int, W>, int j) GARRISON_INLINED {
+    using V = typename Block<W>::type;
     V d{};  // put together in a register: what was stored number by number is slow to read as a block
     for (int lane = 0; lane < W; ++lane) d[lane] = S[static_cast<std::ptrdiff_t>(j + lane) * (size + 1)];
-    bad += ((d >= -1e-9 * most) & (d <= limit * most)) ? V{} : V{} + 1.0;
+    V bad = ((d >= -1e-9 * most) & (d <= limit * most)) ? V{} : V{} + 1.0;
     for (int i = 0; i < size; ++i) {
       const V entry = *Block<W>::of(S + static_cast<std::ptrdiff_t>(i) * size + j);
       const V largest = S[static_cast<std::ptrdiff_t>(i) * (size + 1)] * d;
       bad += entry * entry <= largest + 1e-9 * (largest + most * most) ? V{} : V{} + 1.0;
     }
-  }
-  bool all = true;
-  for (int lane = 0; lane < W; ++lane) all = all && bad[lane] == 0.0;
+    for (int lane = 0; lane < W; ++lane) all = all && bad[lane] == 0.0;
+  });
   return all;
 }
 /// c'S c
@@ -134,10 +140,10 @@ template <int B, int n>
 GARRISON_INLINE void add_outer(const double* a, const double* b, double factor, int nn,
                                double* __restrict__ out) noexcept {
   const int size = n == Dynamic ? nn : n;
-  constexpr int W = n == Dynamic ? 1 : block_of(n, B);
   for (int i = 0; i < size; ++i)
-    for (int j = 0; j < size; j += W)
+    for_each_block<B, n>(size, [&]<int W>(std::integral_constant<int, W>, int j) GARRISON_INLINED {
       *Block<W>::of(out + static_cast<std::ptrdiff_t>(i) * size + j) += factor * a[i] * *Block<W>::of(b + j);
+    });
 }
 
 }  // namespace garrison::structural
