@@ -7,12 +7,11 @@ from garrison.scenario.section import Section
 from garrison.varying import VaryingModel
 from garrison.words import refusal
 
-#: keys that make A and B those of dx/dt = A x + B u + white noise
-CONTINUOUS = ["interval", "times", "process_intensity"]
-
 
 def sampled(section: Section, A: Any, C: Any, rest: dict[str, Any]) -> _core.Model | VaryingModel:
-    """The model of these matrices, from sample to sample. rest: arguments of Model."""
+    """The model of these matrices, which are those of dx/dt = A x + B u + white noise where the section says how it is
+    sampled. rest: arguments of Model.
+    """
     given = [key for key in ("interval", "times") if key in section]
     if len(given) > 1:
         raise refusal(section.where, "interval and times", "one of them")
@@ -31,4 +30,4 @@ def sampled(section: Section, A: Any, C: Any, rest: dict[str, Any]) -> _core.Mod
     return _core.Model(A, C, **rest)
 
 
-__all__ = ["CONTINUOUS", "sampled"]
+__all__ = ["sampled"]

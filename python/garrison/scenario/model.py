@@ -8,7 +8,7 @@ from garrison import _core
 from garrison.fitting import Fit
 from garrison.identifying import fit
 from garrison.numeric import numbers
-from garrison.scenario.continuous import CONTINUOUS, sampled
+from garrison.scenario.continuous import sampled
 from garrison.scenario.model_file import read_model_file
 from garrison.scenario.section import Section, moment, number, renamed
 from garrison.sizes import require_memory
@@ -36,7 +36,9 @@ _FIT_KEYS = [
 _MATRIX_KEYS = [
     "A",
     "C",
-    *CONTINUOUS,
+    "interval",
+    "times",
+    "process_intensity",
     "process_bound",
     "measurement_bound",
     "process_covariance",
