@@ -183,7 +183,7 @@ TEST_CASE("groups of like agents read one copy of sensors and gains") {
       const ConsensusPlan plan(p.network.offsets(), p.network.lists(), 4);
       for (int t = 1; t <= 200; ++t)
         all.step(BatchSample{g, plan, Wiring{nobody.data(), nullptr}, workers, t, local,
-                             [&](std::size_t k) { return y.data() + 2 * k; }});
+                             [&](std::size_t k) { return y.data() + 2 * k; }, [](const auto&) {}});
       CHECK(!first.moving());
       CHECK(sharing() == alike);
     }
