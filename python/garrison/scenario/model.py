@@ -170,6 +170,8 @@ def _rows(section: Section, n: int) -> list[Any]:
         raise refusal(section.place("C"), shown(given), "a list with a row (or a matrix) per agent")
     if n == 1 and all(isinstance(c, (int, float)) and not isinstance(c, bool) for c in given):
         given = [[c] for c in given]
+    if (plain := _plain_rows(given, n)) is not None:
+        return plain
     out = []
     for k, one in enumerate(given):
         rows = np.zeros((0, n)) if _is_empty(one) else numbers(f"{section.place('C')}[{k}]", one)
@@ -177,6 +179,13 @@ def _rows(section: Section, n: int) -> list[Any]:
             raise refusal(f"{section.place('C')}[{k}]", shown(one), f"a row of {n} numbers, or a matrix with such rows")
         out.append(np.atleast_2d(rows))
     return out
+
+
+def _plain_rows(given: Any, n: int) -> list[Any] | None:
+    """What is a list with one row of n doubles per agent, as large scenarios have it: all rows at once."""
+    if not all(type(row) is list and len(row) == n and all(type(v) is float for v in row) for row in given):
+        return None
+    return list(np.array(given, dtype=float).reshape(len(given), 1, n))
 
 
 def _is_empty(one: Any) -> bool:

@@ -137,7 +137,9 @@ def read_scenario(path: str | Path, set: Mapping[str, Any] | None = None) -> Sce
         Its content does not fit: where, what was found and what was expected.
     """
     path = Path(path)
-    document = overridden(read_document(path), set or {})
+    document = read_document(path)
+    if set:
+        document = overridden(document, set)
     only("scenario", document, ["title", *TABLES])
     folder = path.parent
 

@@ -91,31 +91,37 @@ TEST_CASE("a search that is stopped returns an interval that contains the value"
   }
 }
 
-TEST_CASE("fifty of a thousand sensors: check ends, with a certified lower bound") {
+TEST_CASE(
+    "fifty of a thousand sensors: check ends, exact for two states, with a certified lower bound for four") {
   test::Rng rng(2);
   const int N = 1000;
-  const Matrix rows = unit_rows(rng, N, 2);
-  std::vector<Matrix> C;
-  for (int i = 0; i < N; ++i) C.push_back(rows.row(i));
-  const Model model(Matrix{{1.0, 0.01}, {0.0, 1.0}}, C, {0.01, Vector::Constant(N, 0.01), {}, {}});
-  const auto filter = make_filter("saturation", {{"threshold", 1.0},
-                                                 {"rounds", std::int64_t{40}},
-                                                 {"attacked", std::int64_t{50}},
-                                                 {"initial_error", 3.0},
-                                                 {"detector", true}});
-  const Check check = filter->check(model, Network::complete(N));
-  bool found = false;
-  for (const auto& q : check.quantities) {
-    if (q.name != "lambda_0") continue;
-    found = true;
-    CHECK(q.value > 400.0);
-    CHECK(q.value < 500.0);
-    CHECK(q.meaning.find("certified lower bound") == 0);
+  for (const int n : {2, 4}) {
+    const Matrix rows = unit_rows(rng, N, n);
+    std::vector<Matrix> C;
+    for (int i = 0; i < N; ++i) C.push_back(rows.row(i));
+    Matrix A = Matrix::Identity(n, n);
+    A(0, 1) = 0.01;
+    const Model model(A, C, {0.01, Vector::Constant(N, 0.01), {}, {}});
+    const auto filter = make_filter("saturation", {{"threshold", 1.0},
+                                                   {"rounds", std::int64_t{40}},
+                                                   {"attacked", std::int64_t{50}},
+                                                   {"initial_error", 3.0},
+                                                   {"detector", true}});
+    const Check check = filter->check(model, Network::complete(N));
+    bool found = false;
+    for (const auto& q : check.quantities) {
+      if (q.name != "lambda_0") continue;
+      found = true;
+      CHECK(q.value > 0.8 * (N / n - 50));
+      CHECK(q.value < N / n);
+      CHECK((q.meaning.find("certified lower bound") == 0) == (n == 4));
+    }
+    CHECK(found);
+    // The interval is narrow, and every set of removed rows is above its lower end.
+    const SubsetBound b = lambda0(rows, 50, usual_limits(N, n));
+    CHECK(b.exact == (n == 2));
+    CHECK(b.upper - b.lower < (n == 2 ? 1e-12 : 5e-2) * b.upper);
   }
-  CHECK(found);
-  // The interval is narrow, and every set of removed rows is above its lower end.
-  const SubsetBound b = lambda0(rows, 50, usual_limits(N, 2));
-  CHECK(b.upper - b.lower < 1e-2 * b.upper);
 }
 
 TEST_CASE("many rows and large removals need no memory per removal, and equal rows are still one group") {
