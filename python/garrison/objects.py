@@ -9,6 +9,8 @@ from garrison.encoded import Kind, decoded, encoded
 from garrison.numeric import numbers
 
 Plain = dict[str, Any]
+#: types of what is plain already; networks have millions of such entries
+_PLAIN = {int, float, str, bool, type(None)}
 
 
 def described(model: _core.Model, network: _core.Network, filter: _core.Filter) -> Plain:
@@ -19,7 +21,7 @@ def described(model: _core.Model, network: _core.Network, filter: _core.Filter) 
 def plain_lists(value: Any) -> Any:
     """Arrays and tuples, also inside lists, as nested lists; None stays."""
     if isinstance(value, (list, tuple)):
-        return [plain_lists(v) for v in value]
+        return list(value) if _PLAIN.issuperset(map(type, value)) else [plain_lists(v) for v in value]
     if isinstance(value, dict):
         return {key: plain_lists(v) for key, v in value.items()}
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value

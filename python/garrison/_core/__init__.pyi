@@ -1300,7 +1300,7 @@ class SubsetBound:
     removed : sequence of int
         Worst set found, sorted.
     nodes : int
-        Sets, or parts of sets, that were looked at.
+        Sets, parts of sets, or cones of directions, that were looked at.
     method : str
         How it was found, in words.
     """
@@ -1340,7 +1340,7 @@ class SubsetBound:
     @property
     def nodes(self) -> int:
         """
-        Sets, or parts of sets, that were looked at.
+        Sets, parts of sets, or cones of directions, that were looked at.
         """
     @property
     def removed(self) -> list[int]:
@@ -1821,7 +1821,8 @@ def lambda0(
     s : int
         Rows that are left out, 0..N.
     max_nodes : int
-        The search ends after so many sets, >= 1, with an interval.
+        The search ends after so many sets, >= 1, with an interval (with up to three states: after as
+        much work as so many looks at all rows).
     max_seconds : float
         Or after so many seconds, >= 0.
 
