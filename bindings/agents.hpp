@@ -24,7 +24,7 @@ struct PyAgent {
     std::vector<std::byte> bytes(agent->snapshot_bytes());
     if (agent->save(bytes) == 0)
       garrison::refuse("agent", "an agent in the middle of a sample", "one between samples",
-                       "call fuse for each of its " + std::to_string(agent->rounds()) + " rounds");
+                       "call fuse " + garrison::amount(agent->rounds(), "time"));
     return bytes;
   }
 };

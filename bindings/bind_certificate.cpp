@@ -35,14 +35,13 @@ Region given_region(const Vector& center, double radius, const std::optional<Vec
     refuse("center", amount(center.size(), "number"), "at least one, all finite");
   if (radius < 0.0) refuse("radius", text(radius), "a number >= 0, infinity or NaN");
   if (box && (box->size() != center.size() || !box->allFinite() || box->minCoeff() < 0.0))
-    refuse("box", amount(box->size(), "number"), std::to_string(center.size()) + " finite numbers >= 0");
+    refuse("box", amount(box->size(), "number"), amount(center.size(), "finite number") + " >= 0");
   return Region{center, radius, box.value_or(Vector())};
 }
 
 double checked_bound_around(const Region& r, const VectorRef& estimate) {
   if (r.answered() && (estimate.size() != r.center.size() || !estimate.allFinite()))
-    refuse("estimate", amount(estimate.size(), "number"),
-           std::to_string(r.center.size()) + " finite numbers");
+    refuse("estimate", amount(estimate.size(), "number"), amount(r.center.size(), "finite number"));
   return bound_around(r, estimate);
 }
 

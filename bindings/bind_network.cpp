@@ -208,7 +208,7 @@ agent : str or int | A name of the network, or a number 0..N-1.
       .def("__repr__", [](const Network& net) { return as_code("garrison.Network", arguments(net)); })
       .def("__str__", [](const Network& net) {
         return std::string(net.directed() ? "Directed network" : "Network") + " of " +
-               amount(net.agents(), "agent") + ", " + std::to_string(net.edges().size()) + " edges";
+               amount(net.agents(), "agent") + ", " + amount(net.edges().size(), "edge");
       });
   bind_generators(network);
   bind_matrices(network);

@@ -50,7 +50,7 @@ class Directions {
     Vector eigenvalues(n);
     symmetric_eigen(S.data(), n, eigenvalues.data(), axes.data());
     for (Eigen::Index k = 0; k < n; ++k) improve(axes.col(k));
-    const auto root = std::make_shared<const Rows>(Rows{std::move(all), s_, Small::Zero(n, n), S});
+    const auto root = hold({std::move(all), s_, Small::Zero(n, n), S});
     gather(*root);
     for (int signs = 0; signs < 1 << (n - 1); ++signs) {  // u and -u are one direction
       Small V = axes;
@@ -61,12 +61,15 @@ class Directions {
     while (!open_.empty() && open_.front().lower < best_.upper - margin_ && !out_of_budget()) split();
     const double lower = open_.empty() ? best_.upper : std::min(best_.upper, open_.front().lower);
     best_.exact = lower >= best_.upper - margin_;
-    best_.lower = std::max(lower - margin_, 0.0);
+    best_.lower = std::max(lower - 2.0 * margin_, 0.0);  // a cone goes within one, its bound is off by one
     best_.method = "directions";
     return best_;
   }
 
  private:
+  static constexpr std::size_t kMostCones =
+      4'000'000;  // and numbers of rows that their lists hold: half a GB each
+  static constexpr std::size_t kMostHeld = 125'000'000;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1>;
   /// Rows of which a cone's directions do not agree whether they go, and what they agree on.
   struct Rows {
@@ -98,6 +101,7 @@ class Directions {
   /// Remove the rows most aligned with u, turn to the weakest direction of the rest, and so on.
   void improve(Column u) {
     for (int step = 0; step < 20; ++step) {
+      work_ += static_cast<double>(C_.rows());
       const Vector aligned = (C_ * u).cwiseAbs();
       values_ = aligned;
       const auto last = values_.data() + s_;  // the least that goes is before it
@@ -121,9 +125,17 @@ class Directions {
     }
   }
 
+  std::shared_ptr<const Rows> hold(Rows&& rows) {
+    held_ += rows.free.size();
+    return {new Rows(std::move(rows)), [this](const Rows* gone) {
+              held_ -= gone->free.size();
+              delete gone;
+            }};
+  }
+
   bool out_of_budget() {
     constexpr double kOften = 65536.0;  // rows looked at between two questions, less than a millisecond
-    if (work_ >= most_) return true;
+    if (work_ >= most_ || open_.size() >= kMostCones) return true;
     if (work_ < asked_ + kOften) return false;
     asked_ = work_;
     return budget_.over();
@@ -154,7 +166,7 @@ class Directions {
         Q(k, j) = Q(j, k);
       }
     for (Eigen::Index j = 0; j < n; ++j)
-      if (Q(j, j) < best_.upper) improve(V.col(j));
+      if (Q(j, j) < best_.upper - margin_) improve(V.col(j));
     Small G = V.transpose() * V;
     G.diagonal().setOnes();
     const double lower = least_ratio(Q, G.cwiseMax(0.0));
@@ -221,11 +233,12 @@ class Directions {
       else
         fewer.free.push_back(row);
     }
-    if (4 * fewer.free.size() > 3 * rows.free.size()) return cone.rows;
+    if (4 * fewer.free.size() > 3 * rows.free.size() || held_ + fewer.free.size() > kMostHeld)
+      return cone.rows;
     fewer.kept += outer(kept);
     fewer.most = fewer.kept + outer(fewer.free);
     gather(fewer);
-    return std::make_shared<const Rows>(std::move(fewer));
+    return hold(std::move(fewer));
   }
 
   Matrix C_;
@@ -234,6 +247,7 @@ class Directions {
   Budget budget_;
   double margin_ = 0.0;
   SubsetBound best_;
+  std::size_t held_ = 0;    // rows that all lists hold
   std::vector<Cone> open_;  // a heap
   double work_ = 0.0;
   double asked_ = 0.0;

@@ -11,8 +11,18 @@ namespace garrison {
 namespace {
 
 constexpr double kOrthogonal = 1e-12;
-constexpr Eigen::Index kFewRows =
-    20;  // of three states: sets, which rows of very different lengths do not slow
+// Of three states: sets, which rows of very different lengths do not slow.
+constexpr Eigen::Index kFewRows = 20;
+/// Entries that are farther from 1 than this power of two are brought there: squares of squares of others are
+/// numbers, and keep their bits.
+constexpr int kFar = 64;
+
+SubsetBound searched(const MatrixRef& C, int s, const SubsetLimits& limits) {
+  if (C.cols() < 3 || (C.cols() == 3 && C.rows() > kFewRows))
+    return detail::lambda0_by_directions(C, s, limits);
+  return dispatch(static_cast<int>(C.cols()),
+                  [&]<int n>() { return detail::BranchAndBound<n>(C, s, limits).run(); });
+}
 
 }  // namespace
 
@@ -79,10 +89,14 @@ SubsetBound lambda0(const MatrixRef& C, int s, const SubsetLimits& limits) {
     trivial.method = "orthogonal rows";
     return trivial;
   }
-  if (C.cols() < 3 || (C.cols() == 3 && C.rows() > kFewRows))
-    return detail::lambda0_by_directions(C, s, limits);
-  return dispatch(static_cast<int>(C.cols()),
-                  [&]<int n>() { return detail::BranchAndBound<n>(C, s, limits).run(); });
+  int power = 0;
+  std::frexp(C.cwiseAbs().maxCoeff(), &power);
+  if (std::abs(power) <= kFar) return searched(C, s, limits);
+  power = std::max(power, -1000);  // 2^1000 is a number
+  SubsetBound bound = searched(C * std::ldexp(1.0, -power), s, limits);
+  bound.lower = std::ldexp(bound.lower, 2 * power);
+  bound.upper = std::ldexp(bound.upper, 2 * power);
+  return bound;
 }
 
 }  // namespace garrison

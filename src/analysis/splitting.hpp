@@ -155,4 +155,8 @@ class Splitting {
   Visibility out_;
 };
 
+// Compiled once, in unseen_part.cpp: that takes a compiler half a minute.
+extern template class Splitting<double>;
+extern template class Splitting<Complex>;
+
 }  // namespace garrison::detail

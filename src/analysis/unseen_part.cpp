@@ -51,6 +51,9 @@ Pair part(const Matrix& A, const Matrix& C, const std::vector<Index>& kept) {
 
 }  // namespace
 
+template class Splitting<double>;
+template class Splitting<Complex>;
+
 Visibility examine(const Matrix& A, const Matrix& C, double least) {
   const auto reached = reach_outputs(A, C);
   std::vector<Index> heard;

@@ -74,8 +74,8 @@ void Checkpoint::write(std::int64_t t, const std::vector<int>& ids,
   });
   together([&] {
     if (rank != 0) return;
-    const std::string line = "garrison-mpi 1 sample " + amount(t, "rank") + " " + std::to_string(ranks) +
-                             " scenario " + std::to_string(scenario_) + "\n";
+    const std::string line = "garrison-mpi 1 sample " + std::to_string(t) + " ranks " +
+                             std::to_string(ranks) + " scenario " + std::to_string(scenario_) + "\n";
     node::replace_file(folder_ + "/latest", std::as_bytes(std::span(line)), 0644);
     const std::string kept = "sample-" + std::to_string(t) + ".";
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {

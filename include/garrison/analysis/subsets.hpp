@@ -33,8 +33,9 @@ struct GARRISON_EXPORT SubsetBound {
 };
 
 /// (6): least lambda_min(sum of C_i'C_i) over all sets of N - s rows. C: N x n, finite, rows of any length,
-/// zero rows (relays) allowed; 0 <= s <= N. s = N gives 0. Up to three states: N log N about, whatever s is;
-/// more: over sets, which takes exponentially long in s where rows are alike. @throws InvalidInput
+/// zero rows (relays) allowed; 0 <= s <= N. s = N gives 0. Up to three states (three: more than 20 rows): N
+/// log N about, whatever s is; else over sets, which takes exponentially long in s where rows are alike.
+/// @throws InvalidInput
 GARRISON_EXPORT SubsetBound lambda0(const MatrixRef& C, int s, const SubsetLimits& limits = {});
 
 /// Closed form of (6) when every two rows are parallel or orthogonal unit vectors (|C_i C_j'| within 1e-12 of

@@ -255,12 +255,13 @@ Check Saturation::check(const Params& p, const Model& model, const Network& netw
   const auto facts = saturation::detail::facts(model, p.attacked, true);
   const Matrix C = saturation::detail::sensor_rows(model);
   c.quantities.push_back({"||A||", facts.a, "largest growth of an error per step"});
-  c.quantities.push_back({"lambda_0", facts.lambda0.lower,
-                          facts.lambda0.exact
-                              ? "worst information of N - s sensors (6), exact"
-                              : "certified lower bound of (6), which is at most " +
-                                    text(facts.lambda0.upper) + "; the exact search was stopped after " +
-                                    amount(facts.lambda0.nodes, "set")});
+  c.quantities.push_back(
+      {"lambda_0", facts.lambda0.lower,
+       facts.lambda0.exact
+           ? "worst information of N - s sensors (6), exact"
+           : "certified lower bound of (6), which is at most " + text(facts.lambda0.upper) +
+                 "; the exact search was stopped after " +
+                 amount(facts.lambda0.nodes, facts.lambda0.method == "directions" ? "cone" : "set")});
   c.quantities.push_back(
       {"varpi", facts.varpi,
        "largest growth of the mean error while no honest measurement is clipped (theorem 3)"});

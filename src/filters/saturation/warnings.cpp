@@ -45,7 +45,7 @@ std::vector<std::string> refutations(const VerdictLog& log) {
     most = one.taken_back ? std::max(most, one.attacked) : most;
   }
   if (trials == 0) return {};
-  return {"it found " + amount(most, "sensor") + " attacked, more than `attacked` allows (" +
+  return {"the filter found " + amount(most, "sensor") + " attacked, more than `attacked` allows (" +
           std::to_string(trials) + " of " + amount(log.trials, "trial") +
           "): an assumption is false, so no accusation of this run is a proof. Either attacked is too "
           "small, the set of attacked sensors changed over time, measurement_bound or process_bound is too "

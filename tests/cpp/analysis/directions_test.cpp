@@ -99,6 +99,28 @@ TEST_CASE("thousands of rows, any share removed: the search over sets does not d
   }
 }
 
+TEST_CASE("the unit of the rows does not matter, however large or small") {
+  test::Rng rng(26);
+  for (int instance = 0; instance < 300; ++instance) {
+    const int n = test::whole(rng, 1, 4);
+    const int N = test::whole(rng, 15, n < 4 ? 39 : 18);
+    const int s = test::whole(rng, 1, 5);
+    const Matrix C = random_rows(rng, N, n);
+    const SubsetLimits limits{20000, kInfinity};
+    const auto found = lambda0(C, s, limits);
+    for (const int power : {-199, 199, 450}) {
+      const auto other = lambda0(C * std::ldexp(1.0, power), s, limits);
+      CAPTURE(instance);
+      CAPTURE(power);
+      const double rounding = 1e-13 * C.squaredNorm();
+      CHECK(std::ldexp(other.lower, -2 * power) ==
+            doctest::Approx(found.lower).epsilon(1e-9).scale(rounding / 1e-9));
+      CHECK(std::ldexp(other.upper, -2 * power) ==
+            doctest::Approx(found.upper).epsilon(1e-9).scale(rounding / 1e-9));
+    }
+  }
+}
+
 TEST_CASE("directions that are all equally weak, and a search that is stopped") {
   constexpr int N = 1000;
   Matrix C(N, 2);
