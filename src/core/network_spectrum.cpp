@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <vector>
 
@@ -123,14 +124,26 @@ class Last {
         return spectrum_;
     }
     const LaplacianSpectrum found = of_large(network);
-    const std::lock_guard lock(mutex_);
-    offsets_.assign(network.offsets().begin(), network.offsets().end());
-    lists_.assign(network.lists().begin(), network.lists().end());
-    spectrum_ = found;
+    remember(network, found);
     return found;
   }
 
  private:
+  /// Not where that takes much memory, which stays taken, or more than there is.
+  void remember(const Network& network, const LaplacianSpectrum& found) {
+    constexpr std::size_t kMost = 50'000'000;
+    if (network.lists().size() > kMost) return;
+    try {
+      std::vector<int> offsets(network.offsets().begin(), network.offsets().end());
+      std::vector<int> lists(network.lists().begin(), network.lists().end());
+      const std::lock_guard lock(mutex_);
+      offsets_.swap(offsets);
+      lists_.swap(lists);
+      spectrum_ = found;
+    } catch (const std::bad_alloc&) {
+    }
+  }
+
   std::mutex mutex_;
   std::vector<int> offsets_, lists_;
   LaplacianSpectrum spectrum_{};
