@@ -55,7 +55,7 @@ if ! fresh "$stamp" "$sources"; then
   if [[ -n $wheel ]] && fresh dist/sources "$sources"; then
     tools/stage.sh "install $wheel" "${pip[@]}" --no-deps --force-reinstall "$wheel"
   else
-    echo "setup: garrison is built now, about four minutes on two cores; a wheel or the Debian packages need no build (docs/install.md)"
+    echo "setup: garrison is built now, 5 to 15 minutes on two cores; a wheel or the Debian packages need no build (docs/install.md)"
     tools/stage.sh "build and install garrison" .venv/bin/python -m pip install -v --no-build-isolation --no-deps \
       --config-settings=build-dir=build/python .
   fi
