@@ -63,6 +63,20 @@ TEST_CASE("a measurement that was used in full takes no bytes, a clipped one tho
     }
 }
 
+TEST_CASE("what an agent of one round says after it holds no empty evidence, which is for first rounds") {
+  test::Rng rng(4);
+  const Model model = test::scalar_model(rng, 3, kAgents, 0.98, 0.02, 0.01);
+  const auto plain = make_filter("saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{1}}})
+                         ->prepare(model, Network::complete(kAgents));
+  const auto agent = certified(*plain, {Spread::local, 1e-6, 1, 1000})->agent(2);
+  std::vector<std::byte> body(agent->most_bytes());
+  const std::size_t first = agent->sense(1, std::array{kNaN}, body).bytes;
+  body.resize(agent->fuse(body).bytes);
+  CHECK(first == body.size() + 6);
+  const wire::Letter after{"saturation", 0, {2, 1, 1}, kAgents, agent->fields(2, 1), body};
+  CHECK(after.values().size() == after.fields.size());
+}
+
 TEST_CASE("only in the first message of an agent with a sensor evidence may hold nothing") {
   test::Rng rng(4);
   const Model model = test::scalar_model(rng, 3, kAgents, 0.98, 0.02, 0.01);
