@@ -27,6 +27,11 @@ struct CertifiedNetwork::Agents {
     return alike && certifiers.front()->flooded() && !certifiers.front()->has_bank();
   }
   bool all_alike() const;
+  /// In evidence that holds nothing, which is said by bytes all the same.
+  bool says_missing(int sender) const {
+    const auto j = static_cast<std::size_t>(sender);
+    return silent[j] == 0 && said[j].silent();
+  }
   void plan_at_once(const certificate::Plan& plan, const Network& network, int rounds,
                     const std::vector<int>& listeners);
   /// Fills `since`: a region comes from the nearest agent that found one after the first round.
@@ -160,18 +165,17 @@ void CertifiedNetwork::hear_all(Workers& workers, const Heard& heard) {
   end_round(workers);
 }
 
-/// Whether the measurements of this agent follow from its message of this round.
+/// Whether the measurements of this agent follow from its message of this round where no bytes say more.
 bool CertifiedNetwork::derives_now(int sender) const {
-  const auto j = static_cast<std::size_t>(sender);
-  return round_ == 0 && told_[j] == Told::derived && all_->silent[j] != 0;
+  return round_ == 0 && !varied_ && told_[static_cast<std::size_t>(sender)] != Told::never_derived;
 }
 
 void CertifiedNetwork::hear_honest(AgentCertifier& listener, int sender) const {
   const auto j = static_cast<std::size_t>(sender);
-  if (derives_now(sender))
-    listener.hear_numbers(sender, derived_.data() + first_[j]);
-  else if (all_->silent[j] == 0)
+  if (all_->silent[j] == 0)
     listener.hear(round_, sender, all_->said[j]);
+  else if (derives_now(sender))
+    listener.hear_numbers(sender, derived_.data() + first_[j]);
 }
 
 void CertifiedNetwork::hear(Workers& workers, const Routes& routes, const Sensed& sensed) {
@@ -188,8 +192,8 @@ void CertifiedNetwork::hear(Workers& workers, const Routes& routes, const Sensed
         hear_honest(listener, sender);
       else if (!lie->silent())
         listener.hear(round_, sender, *lie);
-      else if (derives_now(sender))
-        listener.hear_estimate(sender, sensed(slot));
+      else if (derives_now(sender) && !all_->says_missing(sender))
+        listener.hear_estimate(sender, sensed(slot));  // who takes all of it away leaves no bytes
     }
   });
 }

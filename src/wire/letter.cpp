@@ -183,7 +183,8 @@ AnyFields decoded(const Letter& letter) {
   if (decode(letter.body, letter.agents, fields) == Refusal::none) return fields;
   fields.show_certificate(true);
   Refusal refusal = decode(letter.body, letter.agents, fields);
-  // That is said by no bytes; but in the first round these may mean that the measurement follows.
+  // That is said by no bytes; but in the first round these may mean that the measurement follows. Whether
+  // they do in this family, with this certificate, agents know: they refuse what a letter takes here.
   if (refusal == Refusal::none && fields.has_certificate() && fields.silent() && letter.envelope.round > 0)
     refusal = Refusal::size;
   if (refusal != Refusal::none)

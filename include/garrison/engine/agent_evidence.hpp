@@ -43,7 +43,8 @@ class AgentEvidence {
     if (certifier_) wire::list_fields(FieldList(shaped(sender, said)), agents_, all);
   }
 
-  /// Writes what is to be said in this round; how many bytes. After the last round as in it.
+  /// Writes what is to be said in this round; how many bytes. After the last round as in it, but for evidence
+  /// that holds nothing: it has a meaning in the first round alone.
   std::size_t encode(int round, int rounds, std::byte* out) noexcept {
     if (!certifier_) return 0;
     if (round < rounds) certifier_->say(round, said_);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstring>
+#include <functional>
 
 #include "../certificate/random_network.hpp"
 #include "../random_system.hpp"
@@ -60,6 +61,20 @@ TEST_CASE("a measurement that was used in full takes no bytes, a clipped one tho
       wanted.spread = Spread::direct;
       CHECK(added(*certified(*plain, wanted), 2, x0, 0.1) == 1 + 8);
     }
+}
+
+TEST_CASE("what an agent of one round says after it holds no empty evidence, which is for first rounds") {
+  test::Rng rng(4);
+  const Model model = test::scalar_model(rng, 3, kAgents, 0.98, 0.02, 0.01);
+  const auto plain = make_filter("saturation", {{"threshold", 0.5}, {"rounds", std::int64_t{1}}})
+                         ->prepare(model, Network::complete(kAgents));
+  const auto agent = certified(*plain, {Spread::local, 1e-6, 1, 1000})->agent(2);
+  std::vector<std::byte> body(agent->most_bytes());
+  const std::size_t first = agent->sense(1, std::array{kNaN}, body).bytes;
+  body.resize(agent->fuse(body).bytes);
+  CHECK(first == body.size() + 6);
+  const wire::Letter after{"saturation", 0, {2, 1, 1}, kAgents, agent->fields(2, 1), body};
+  CHECK(after.values().size() == after.fields.size());
 }
 
 TEST_CASE("only in the first message of an agent with a sensor evidence may hold nothing") {
@@ -122,23 +137,25 @@ TEST_CASE("bounds hold where measurements are derived, at the origin and ten mil
   CHECK(bytes[3] > 10 * bytes[1]);
 }
 
-TEST_CASE("what follows from a first message that lies counts as a measurement, in engine and agents alike") {
-  constexpr int kSamples = 20;
-  constexpr int kLiar = 2;
-  constexpr double kOffset = 0.03125;
-  test::Rng rng(12);
-  const Model model = test::scalar_model(rng, 2, kAgents, 0.95, 0.02, 0.1);
-  const Network network = Network::complete(kAgents);
-  const auto prepared = certified(*clipping()->prepare(model, network), {Spread::local, 0.0, 1, 1000});
-  const Matrix y = 0.05 * test::normal_matrix(rng, kAgents, kSamples);
-  Link lying(network, {}, {forge(Schedule(1, {kLiar}), kOffset, false)}, 0, 0);
-  const auto runner = prepared->runner(1);
-  const auto honest = prepared->runner(1);
-  runner->reset(Matrix::Zero(2, kAgents), &lying);
-  honest->reset(Matrix::Zero(2, kAgents), nullptr);
+namespace {
+
+constexpr int kSamples = 20;
+constexpr int kLiar = 2;
+using Lie = std::function<wire::Letter(const wire::Letter&)>;
+
+/// Runs engine and agents of bytes on y (agents x samples), the liar's messages changed by `attacks` and by
+/// `lie`, and compares the bits of bounds; how many differ from those without lies.
+int moved_bounds(const Prepared& prepared, const Network& network, const Matrix& y,
+                 std::vector<std::shared_ptr<const MessageAttack>> attacks, const Lie& lie) {
+  const Matrix x0 = Matrix::Zero(prepared.agent(0)->states(), kAgents);
+  Link lying(network, {}, std::move(attacks), 0, 0);
+  const auto runner = prepared.runner(1);
+  const auto honest = prepared.runner(1);
+  runner->reset(x0, &lying);
+  honest->reset(x0, nullptr);
 
   std::vector<std::unique_ptr<Agent>> agents;
-  for (int i = 0; i < kAgents; ++i) agents.push_back(prepared->agent(i));
+  for (int i = 0; i < kAgents; ++i) agents.push_back(prepared.agent(i));
   std::vector<std::vector<std::byte>> sent(kAgents);
   const auto speak = [&](int i, const auto& step) {
     auto& body = sent[static_cast<std::size_t>(i)];
@@ -152,13 +169,11 @@ TEST_CASE("what follows from a first message that lies counts as a measurement, 
     for (int round = 0; round < agents.front()->rounds(); ++round) {
       const wire::Letter letter{"saturation", 0, {kLiar, t, round}, kAgents, agents[0]->fields(kLiar, t),
                                 sent[kLiar]};
-      auto estimate = std::get<std::vector<double>>(letter.values().front());
-      for (double& one : estimate) one += kOffset;
-      const auto lie = letter.with(letter.fields.front().name, estimate).body;
+      const auto told = lie(letter).body;
       for (int i = 0; i < kAgents; ++i)
         for (const int j : network.neighbours(i))
           REQUIRE(agents[static_cast<std::size_t>(i)]->deliver(
-                      {j, t, round}, j == kLiar ? lie : sent[static_cast<std::size_t>(j)]) == Refusal::none);
+                      {j, t, round}, j == kLiar ? told : sent[static_cast<std::size_t>(j)]) == Refusal::none);
       for (int i = 0; i < kAgents; ++i) speak(i, [&](Agent& agent, auto& body) { return agent.fuse(body); });
     }
     std::array<double, kAgents> bound{};
@@ -173,10 +188,64 @@ TEST_CASE("what follows from a first message that lies counts as a measurement, 
     runner->step(t, y.col(t - 1).data());
     runner->read(frame);
     for (std::size_t i = 0; i < kAgents; ++i) {
+      CAPTURE(t);
+      CAPTURE(i);
       const double found = agents[i]->report().bound;
       CHECK(std::memcmp(&bound[i], &found, sizeof found) == 0);
       moved += bound[i] == unmoved[i] ? 0 : 1;
     }
   }
-  CHECK(moved > kSamples);
+  return moved;
+}
+
+/// A lie in the estimate alone.
+wire::Letter shifted(const wire::Letter& letter, double offset) {
+  auto estimate = std::get<std::vector<double>>(letter.values().front());
+  for (double& one : estimate) one += offset;
+  return letter.with(letter.fields.front().name, estimate);
+}
+
+Model plant(test::Rng& rng) { return test::scalar_model(rng, 2, kAgents, 0.95, 0.02, 0.1); }
+Matrix small_measurements(test::Rng& rng) { return 0.05 * test::normal_matrix(rng, kAgents, kSamples); }
+
+}  // namespace
+
+TEST_CASE("what follows from a first message that lies counts as a measurement, in engine and agents alike") {
+  constexpr double kOffset = 0.03125;
+  test::Rng rng(12);
+  const Network network = Network::complete(kAgents);
+  const auto prepared = certified(*clipping()->prepare(plant(rng), network), {Spread::local, 0.0, 1, 1000});
+  Matrix y = small_measurements(rng);
+  const auto run = [&] {
+    return moved_bounds(*prepared, network, y, {forge(Schedule(1, {kLiar}), kOffset, false)},
+                        [&](const wire::Letter& letter) { return shifted(letter, kOffset); });
+  };
+  CHECK(run() > kSamples);
+  y.row(kLiar).setConstant(kNaN);  // said to be missing: nothing follows
+  CHECK(run() > 0);
+}
+
+TEST_CASE("who withholds what it says beside its estimate says the estimate, in engine and agents alike") {
+  const Schedule always(1, {kLiar});
+  const auto run = [&](const Network& network, int rounds, double measured) {
+    CAPTURE(rounds);
+    test::Rng rng(12);
+    const auto filter =
+        make_filter("saturation", {{"threshold", 0.5}, {"rounds", static_cast<std::int64_t>(rounds)}});
+    const auto prepared = certified(*filter->prepare(plant(rng), network), {Spread::local, 0.0, 1, 1000});
+    Matrix y = small_measurements(rng);
+    y.row(kLiar).array() += measured;
+    return moved_bounds(*prepared, network, y,
+                        {falsify(always, "certificate.measurements", kNaN, {}),
+                         falsify(always, "certificate.ball", kNaN, {})},
+                        [](const wire::Letter& letter) {
+                          return letter.with("certificate.measurements", std::vector{kNaN})
+                              .with("certificate.ball", std::vector<double>(3, kNaN));
+                        });
+  };
+  // The number was clipped: what follows is another one.
+  CHECK(run(Network::complete(kAgents), 3, 2.0) > kSamples);
+  // It follows, but is sent with the region, which is in first messages where the network is wider than the
+  // rounds.
+  CHECK(run(Network::band(kAgents, 3), 1, 0.0) == 0);
 }

@@ -22,7 +22,7 @@ inline constexpr int kChoice = 3;
 inline constexpr int kRepeats = 3;
 
 /// Fields in the sense of core/fields.hpp; drivers put them behind those of the filter's message. Where
-/// nothing is said, nothing is put there: no bytes.
+/// nothing is said, no bytes are put there, but for a missing measurement (Certifier::spares).
 struct Evidence {
   /// The sender's own measurements (local; in the first round only), or those of the whole network that have
   /// become known to it of late (flooded). NaN = absent.

@@ -252,7 +252,7 @@ struct GARRISON_EXPORT Saturation {
     if (s.loss != nullptr) s.loss->forget(s.t);
   }
 
-  /// (3): C_i xtilde_i = y_i where |C_i| = 1 and nothing was clipped.
+  /// (3): C_i xtilde_i = y_i where C_i C_i' = I and nothing was clipped.
   template <int n>
   static const double* sensed(const Message<n>& m) noexcept {
     return m.x.data();
