@@ -2,6 +2,7 @@
 // Single agents.
 #include "agents.hpp"
 #include "bytes.hpp"
+#include "garrison/core/covariance.hpp"
 #include "garrison/core/series.hpp"
 #include "garrison/wire/letter.hpp"
 
@@ -73,6 +74,8 @@ void vary(PyAgent& a, const std::optional<Matrix>& A, const std::optional<Matrix
   require("C", C, a->outputs(), a->states());
   require("process_covariance", Q, a->states(), a->states());
   require("measurement_covariance", R, a->outputs(), a->outputs());
+  if (Q) require_covariance("process_covariance", *Q);
+  if (R) require_covariance("measurement_covariance", *R);
   const Matrix W = R ? whitener(*R) : Matrix();
   if (R && W.size() != R->size())
     refuse("measurement_covariance", "a matrix that is not positive definite",
@@ -235,14 +238,15 @@ t : int, optional | The sample that x0 is the estimate of. Default: the beginnin
           py::arg("process_covariance") = py::none(), py::arg("measurement_covariance") = py::none(),
           numpydoc(
               R"(The plant of the next samples, until told again; for the filters that take a VaryingModel, with the bits of its
-simulation. What is left out is the design's. `reset` goes back to the design's; a snapshot does not hold it.
+simulation. What is left out is the design's. `reset` and `load` go back to the design's: a snapshot does not hold the plant, and
+an agent that goes on from one has to be told again.
 
 A : (n, n) array, optional | Leads to the next sample.
 C : (m_i, n) array, optional | Of the own sensor.
-process_covariance : (n, n) array, optional | Of the noise on the way to the next sample.
+process_covariance : (n, n) array, optional | Of the noise on the way to the next sample; positive semidefinite.
 measurement_covariance : (m_i, m_i) array, optional | Of the own sensor; positive definite.
-! InvalidInput | Sizes that do not fit, numbers that are not finite, a filter that is designed for one plant, an
-  agent with a certificate, or a call within a sample.)")
+! InvalidInput | Sizes that do not fit, numbers that are not finite, covariances that are none, a filter that is designed for
+  one plant, an agent with a certificate, or a call within a sample.)")
               .c_str())
       .def(
           "sense",
@@ -358,7 +362,7 @@ speak : bool | Send the own estimate although nobody was heard, for networks in 
       .def("load", &take_snapshot, py::arg("data"),
            numpydoc(R"(Go on from a snapshot.
 
-data : bytes | Of `save`, of this agent and design.
+data : bytes | Of `save`, of this agent and design. A plant that `vary` told is not in it and has to be told again.
 ! InvalidInput | A snapshot of another agent or design, damaged bytes, or within a sample.)")
                .c_str())
       .def(

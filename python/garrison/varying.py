@@ -12,7 +12,7 @@ from garrison import _core, notebook
 from garrison.arguments import whole
 from garrison.numeric import matched, numbers
 from garrison.varying_noise import below_each_other
-from garrison.words import Hinting, hinted, hinted_methods, refusal, shown
+from garrison.words import Hinting, count, hinted, hinted_methods, refusal, shown
 
 Array = NDArray[np.float64]
 #: matrices over time, or a function of the time
@@ -98,7 +98,7 @@ class VaryingModel(metaclass=Hinting):
             raise refusal("VaryingModel", "nothing that changes", f"one of {', '.join(_PARTS)} over time")
         lengths = {name: len(value) for name, value in self._parts.items()}
         if len(set(lengths.values())) > 1:
-            got = ", ".join(f"{name} of {length} steps" for name, length in lengths.items())
+            got = ", ".join(f"{name} of {count(length, 'step')}" for name, length in lengths.items())
             raise refusal("VaryingModel", got, "equally many of each")
         for value in self._parts.values():
             value.flags.writeable = False
@@ -250,7 +250,7 @@ def _over_time(
     if value.ndim != 3 or value.shape[1:] != shape or len(value) == 0:
         raise refusal(f"VaryingModel.{name}", f"{value.shape}", f"(steps, {shape[0]}, {shape[1]})")
     if steps is not None and len(value) != steps:
-        raise refusal(f"VaryingModel.{name}", f"{len(value)} steps", f"{steps}, as `steps` says")
+        raise refusal(f"VaryingModel.{name}", count(len(value), "step"), f"{steps}, as `steps` says")
     if not np.isfinite(value).all():
         raise refusal(f"VaryingModel.{name}", "a number that is not finite", "finite numbers")
     return value.copy()

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from garrison import _core, notebook
 from garrison.arguments import entries, whole
 from garrison.numeric import numbers
-from garrison.words import Hinting, hinted, hinted_methods, refusal, shown
+from garrison.words import Hinting, count, hinted, hinted_methods, refusal, shown
 
 
 @hinted_methods
@@ -59,7 +59,7 @@ class VaryingNetwork(metaclass=Hinting):
             listed = entries("VaryingNetwork.network", network, "a Network with `present`, or a list of Networks")
             self._network, self._present = _united(listed)
         if T is not None and len(self._present) != T:
-            raise refusal("VaryingNetwork", f"{len(self._present)} samples", f"{T}, as `steps` says")
+            raise refusal("VaryingNetwork", count(len(self._present), "sample"), f"{T}, as `steps` says")
         self._present.flags.writeable = False
 
     @property
@@ -158,7 +158,9 @@ def links_of(network: Any, link: dict[str, Any], steps: int) -> tuple[Any, dict[
     if not isinstance(network, VaryingNetwork):
         return network, link
     if network.steps < steps:
-        raise refusal("network", f"a network over {network.steps} samples", f"at least {steps}, one per sample")
+        raise refusal(
+            "network", f"a network over {count(network.steps, 'sample')}", f"at least {steps}, one per sample"
+        )
     return network.network, link | {"cuts": [*link.get("cuts", []), *network.cuts]}
 
 

@@ -203,7 +203,8 @@ def count(number: int, noun: str, plural: str = "") -> str:
 def _require_constant(function: str, model: object) -> None:
     kind = type(model).__name__
     if kind in ("VaryingModel", "NonlinearModel"):
-        raise refusal(function, f"a {kind}", "a constant Model", f"simulate and replay take a {kind}")
+        takers = "simulate, replay and compare" if kind == "VaryingModel" else "simulate and replay"
+        raise refusal(function, f"a {kind}", "a constant Model", f"{takers} take a {kind}")
 
 
 def require_plant(function: str, model: object, network: object) -> None:

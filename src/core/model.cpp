@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/spectrum.hpp"
+#include "garrison/core/covariance.hpp"
 #include "garrison/core/params.hpp"
 
 namespace garrison {
@@ -27,13 +28,7 @@ void require_covariance(const std::string& which, const Matrix& m, Eigen::Index 
   if (m.rows() != size || m.cols() != size)
     refuse(which, shape(m), std::to_string(size) + " x " + std::to_string(size));
   require_finite(which, m);
-  if (size == 0) return;
-  const double scale = m.cwiseAbs().maxCoeff();
-  if (!m.isApprox(m.transpose(), 1e-12))
-    refuse(which, "a matrix that is not symmetric", "a symmetric one", "use (M + M') / 2");
-  const double least = detail::least_eigenvalue(m);
-  if (least < -1e-12 * scale)
-    refuse(which, "least eigenvalue " + text(least), "a positive semidefinite covariance", "check its sign");
+  garrison::require_covariance(which, m);
 }
 
 void require_bound(const std::string& which, double value) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/solvers.hpp"
+#include "garrison/core/covariance.hpp"
 
 namespace garrison {
 namespace {
@@ -24,14 +25,6 @@ void require_part(const char* name, const std::vector<Matrix>& part, Eigen::Inde
       refuse(which, shape(part[t].rows(), part[t].cols()), shape(rows, cols), "as at all other times");
     if (!part[t].allFinite()) refuse(which, "a number that is not finite", "finite numbers");
   }
-}
-
-void require_covariance(const std::string& which, const Matrix& S) {
-  if (S.size() == 0) return;
-  if (!S.isApprox(S.transpose(), 1e-12)) refuse(which, "a matrix that is not symmetric", "a symmetric one");
-  const double least = Eigen::SelfAdjointEigenSolver<Matrix>(S, Eigen::EigenvaluesOnly).eigenvalues()(0);
-  if (least < -1e-12 * S.cwiseAbs().maxCoeff())
-    refuse(which, "least eigenvalue " + std::to_string(least), "a positive semidefinite covariance");
 }
 
 void require_blocks(const Model& model, const Matrix& R, const std::string& when) {

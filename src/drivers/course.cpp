@@ -26,6 +26,12 @@ void require_certifiable(const certificate::Plan& plan, const Model& model, cons
   }
 }
 
+/// Whether anything changes that filters and certificates rest on: B is that of the known inputs alone.
+bool concerns_filters(const Series& series) {
+  return !(series.A.empty() && series.C.empty() && series.process_covariance.empty() &&
+           series.measurement_covariance.empty());
+}
+
 void require_nonlinear(const Prepared& prepared, const RunOptions& options) {
   if (!options.nonlinear->f || !options.nonlinear->h)
     refuse("nonlinear", options.nonlinear->f ? "no h" : "no f", "both");
@@ -68,6 +74,7 @@ void require_course(const Prepared& prepared, const RunOptions& options, int ste
   if (options.nonlinear != nullptr) return require_nonlinear(prepared, options);
   if (options.series == nullptr) return;
   require_series(*options.series, model, steps);
+  if (!concerns_filters(*options.series)) return;
   if (prepared.certificate() != nullptr) require_certifiable(*prepared.certificate(), model, *options.series);
   prepared.require_varying(*options.series);
 }
@@ -95,7 +102,7 @@ const Matrix& Course::rows() const {
 void Course::enter(int t, Runner& runner) {
   enter(t);
   if (functions_) return linearise(runner);
-  if (options_.series == nullptr) return;
+  if (options_.series == nullptr || !concerns_filters(*options_.series)) return;
   const auto now = [t](const std::vector<Matrix>& all) {
     return all.empty() ? nullptr : &all[static_cast<std::size_t>(t - 1)];
   };

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from garrison.comparison import baselines
-from garrison.comparison.job import KALMAN
+from garrison.comparison.job import KALMAN, Job
 
 
 def plant(agents=7, attacked=(2,)):
@@ -189,6 +189,20 @@ def test_a_baseline_takes_the_matrices_of_every_sample(parts):
     alone = gr.VaryingModel(model.model, **model.parts), gr.Network([], agents=7)
     found = baselines.covariance_intersection(baselines.plant_of(*alone, 0), y)
     assert np.allclose(found, gr.local_kalman(*alone, y), atol=1e-7)
+
+
+def test_covariances_that_are_known_over_time_alone_are_enough():
+    model, network, attacked = changing()
+    bare = gr.VaryingModel(gr.Model(model.model.A, model.model.C), **model.parts)
+    log = measured(model, network, steps=30)
+    for name, baseline in baselines.BASELINES.items():
+        found, full = (baseline(baselines.plant_of(m, network, 0), log.measurements[0]) for m in (bare, model))
+        assert np.array_equal(found, full), name
+    jobs = [Job(m, network, attacked, 30, 10, 1, 0, None) for m in (bare, model)]
+    for label in KALMAN:
+        rows = [job.baseline(label, None, log) for job in jobs]
+        assert rows[0]["status"] == "ok", label
+        assert rows[0]["q95"] == rows[1]["q95"]
 
 
 def test_a_plant_that_does_not_change_has_the_numbers_of_the_constant_one():

@@ -493,7 +493,7 @@ def test_agents_of_resilience_are_named_as_agents() -> None:
 
 def test_what_takes_a_constant_model_says_who_takes_others() -> None:
     varying = gr.VaryingModel(MODEL, A=[MODEL.A, MODEL.A])
-    rest = "got a VaryingModel, expected a constant Model; simulate and replay take a VaryingModel"
+    rest = "got a VaryingModel, expected a constant Model; simulate, replay and compare take a VaryingModel"
     for function in (gr.prepare, gr.check):
         with pytest.raises(gr.InvalidInput, match=f"^{function.__name__}: {rest}"):
             function(varying, NET, gr.filters.ScalarGain(rounds=1))

@@ -69,6 +69,12 @@ def test_rows_may_change_beside_the_times(tmp_path: Path) -> None:
         ("process_intensity = 1.0", "no interval and no times"),
         ("interval = 0.1\nprocess_covariance = 1.0", "process_covariance beside interval"),
         (f"times = {TIMES}\nA_over_time = {[F] * 4}", "A_over_time: got times beside it"),
+        (f"interval = 0.1\nA_over_time = {[F] * 4}", "A_over_time: got interval and A beside it.*leave interval out"),
+        (f"interval = 0.1\nB_over_time = {[[[0.0], [1.0]]] * 4}", "B_over_time: got interval and B beside it"),
+        (
+            f"interval = 0.1\nprocess_intensity = 1.0\nprocess_covariance_over_time = {[[[1.0, 0.0], [0.0, 1.0]]] * 4}",
+            "process_covariance_over_time: got interval and process_intensity beside it",
+        ),
         ("times = [0.0, 1.0, 0.5]", "times"),
         ("interval = 0.0", r"\[model\].interval: got 0"),
     ],

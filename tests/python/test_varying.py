@@ -353,3 +353,24 @@ seed = 2
         path.write_text(text.replace(old, new, 1))
         with pytest.raises(gr.InvalidInput, match=words):
             read_scenario(path)
+
+
+def test_a_snapshot_of_an_agent_that_was_told_claims_no_bound() -> None:
+    filt = gr.filters.Saturation(threshold=0.5, rounds=12, attacked=1, initial_error=1.0)
+    for told in (False, True):
+        agents = [gr.Agent(MODEL, NETWORK, filt, i) for i in range(4)]
+        if told:
+            agents[0].vary(A=A_T[0])
+        sent = [agent.sense(1, [0.0]) for agent in agents]
+        for _ in range(12):
+            sent = [agent.fuse([sent[j] for j in range(4) if j != i]) for i, agent in enumerate(agents)]
+        again = gr.Agent(MODEL, NETWORK, filt, 0)
+        again.load(agents[0].save())
+        assert np.isfinite(again.bound) != told
+
+
+def test_refusals_count_one_of_a_thing() -> None:
+    with pytest.raises(gr.InvalidInput, match="got 1 step, expected 2, as"):
+        gr.VaryingModel(MODEL, A=A_T[:1], steps=2)
+    with pytest.raises(gr.InvalidInput, match="got 1 sample, expected 2, as"):
+        gr.VaryingNetwork(NETWORK, np.ones((1, 6)), steps=2)

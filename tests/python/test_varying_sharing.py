@@ -177,6 +177,9 @@ def test_gains_that_do_not_follow_refuse_and_name_those_that_do() -> None:
         ({"A": np.eye(3)}, "A: got 3 x 3, expected 2 x 2"),
         ({"C": np.full((1, 2), np.inf)}, "C: got inf, expected finite numbers"),
         ({"measurement_covariance": [[0.0]]}, "measurement_covariance: got a matrix that is not positive definite"),
+        ({"process_covariance": -100 * np.eye(2)}, "process_covariance: got least eigenvalue -100"),
+        ({"process_covariance": [[1, 5], [-5, 1]]}, "process_covariance: got a matrix that is not symmetric"),
+        ({"measurement_covariance": [[-1.0]]}, "measurement_covariance: got least eigenvalue -1"),
         ({"measurement_covariance": np.eye(2)}, "measurement_covariance: got 2 x 2, expected 1 x 1"),
     ],
 )
@@ -188,3 +191,15 @@ def test_an_agent_says_what_does_not_fit(given: dict[str, Any], words: str) -> N
     agent.sense(1, [0.0])
     with pytest.raises(gr.InvalidInput, match="vary: got a call in round 0 of sample 1"):
         agent.vary()
+
+
+def test_gains_that_freeze_take_a_plant_of_which_b_alone_changes() -> None:
+    p = Problem(2, 5, 3)
+    driven = gr.Model(**{**p.base.__getstate__(), "B": np.ones((2, 1))})
+    options: dict[str, Any] = {"steps": STEPS, "inputs": np.ones((STEPS, 1)), "seed": 1}
+    for gains in ("frozen", "steady", "varying"):
+        B = np.ones((STEPS, 2, 1))
+        one = gr.simulate(gr.VaryingModel(driven, B=B), p.network, p.filter(gains), **options)
+        assert np.array_equal(one.estimate, gr.simulate(driven, p.network, p.filter(gains), **options).estimate)
+        other = gr.simulate(gr.VaryingModel(driven, B=-B), p.network, p.filter(gains), **options)
+        assert not np.allclose(one.truth, other.truth) and np.allclose(one.error, other.error)

@@ -109,9 +109,9 @@ class GARRISON_EXPORT Agent {
   virtual std::vector<wire::FieldInfo> fields(int sender, std::int64_t t) = 0;
 
   /// Between samples: the plant of the next ones, until told again; matrices of this agent alone, null = the
-  /// design's. It is no part of a snapshot, and `reset` goes back to the design's. Nothing is bounded by a
-  /// family's theorem then. Refused, with nothing changed: order, size, number, foreign (a family that is
-  /// designed for one plant, or an agent with a certificate). It may allocate.
+  /// design's. It is no part of a snapshot; `reset` and `load` go back to the design's. No theorem of a
+  /// family bounds anything then. Refused, with nothing changed: order, size, number, foreign (a family that
+  /// is designed for one plant, or an agent with a certificate). It may allocate.
   virtual Refusal vary(const Change& plant) = 0;
 };
 

@@ -62,7 +62,7 @@ class AgentOf final : public Agent {
 
   Refusal vary(const Change& plant) override {
     if (round_ < rounds_ || listening_) return Refusal::order;
-    if (evidence_ || !why_constant<F>(*gains_).empty()) return Refusal::foreign;
+    if (evidence_ || !may_vary_) return Refusal::foreign;
     return plant_.take(plant, part_, local_);
   }
 
@@ -206,6 +206,7 @@ class AgentOf final : public Agent {
     SnapshotHead head{local_.id, part_.design, 0, 0, false};
     if (const Refusal why = head.read(snapshot); why != Refusal::none) return why;
     wire::Reader reader(SnapshotHead::state_in(snapshot), local_.agents, false);
+    plant_.constant(part_, local_);
     reader("", state_);
     if (evidence_) reader("certificate", *evidence_.get());
     const bool certified = !evidence_ || (reader.end() == Refusal::none && evidence_->resume(head.t));
@@ -213,12 +214,14 @@ class AgentOf final : public Agent {
     if constexpr (requires { F::template sound<n>(state_); }) sound = sound && F::template sound<n>(state_);
     if (reader.end() != Refusal::none || head.t < start() || head.t > kLatest || !sound) {
       // Somebody forged a checksum: nothing of it may stay.
+      loaded_ = false;
       Vec<n> zero = Vec<n>::Zero(local_.states);
       F::template init<n>(local_, *gains_, zero, state_, outgoing_);
       if (evidence_) evidence_->reset(t_);
       uncover();
       return Refusal::damaged;
     }
+    loaded_ = true;
     t_ = head.t;
     resets_ = head.resets;
     fresh_ = head.fresh;
@@ -241,6 +244,7 @@ class AgentOf final : public Agent {
     const Vec<n> x = x0;
     plant_.constant(part_, local_);
     F::template init<n>(local_, *gains_, x, state_, outgoing_);
+    loaded_ = false;
     fresh_ = t != start();
     if (fresh_) uncover();
     t_ = t;
@@ -264,8 +268,11 @@ class AgentOf final : public Agent {
   void begin(std::int64_t t, const double* y) noexcept {
     t_ = t;
     round_ = 0;
+    if (plant_.varying()) uncover();  // what a snapshot of now claims rests on no theorem
     if constexpr (follows<F, n>())
-      if (plant_.varying()) F::template vary<n>(local_, *gains_, plant_.change(), 0, state_);
+      if (plant_.varying() || (loaded_ && may_vary_))
+        F::template vary<n>(local_, *gains_, plant_.change(), 0, state_);
+    loaded_ = false;
     F::template sense<n>(local_, *gains_, state_, y, t, outgoing_);
     if (evidence_) evidence_->begin(t, y, sensed<F, n>(outgoing_));
     lost_ = fresh_ || !usable<n>(F::template estimate<n>(state_));
@@ -325,6 +332,7 @@ class AgentOf final : public Agent {
   Local local_;
   AgentPlant plant_;
   int rounds_;
+  const bool may_vary_ = why_constant<F>(*gains_).empty();
   AgentMail mail_;
   AgentEvidence evidence_;
   State state_;
@@ -337,8 +345,9 @@ class AgentOf final : public Agent {
   std::int64_t resets_ = 0;
   int round_ = 0;
   bool listening_ = false;
-  bool fresh_ = false;  // has just started in a running network: says nothing before it has heard the others
-  bool lost_ = false;   // the estimate is of no use, or nobody knows: rejoins after the last round
+  bool fresh_ = false;   // has just started in a running network: says nothing before it has heard the others
+  bool loaded_ = false;  // from a snapshot, whose last sample may have been of another plant
+  bool lost_ = false;    // the estimate is of no use, or nobody knows: rejoins after the last round
 };
 
 }  // namespace garrison

@@ -10,8 +10,8 @@ namespace garrison {
 /// Threads: several may read; whoever changes it is alone.
 class AgentPlant {
  public:
-  /// Another plant: matrices of this agent alone, null = the design's. Refused, with nothing changed: size,
-  /// number.
+  /// Another plant: matrices of this agent alone, null = the design's; Q is a covariance, whoever tells it
+  /// sees to that. Refused, with nothing changed: size, number.
   Refusal take(const Change& told, const AgentPart& who, Local& local) {
     const auto n = who.A.rows();
     const auto q = who.C_transposed.cols();
@@ -19,7 +19,7 @@ class AgentPlant {
          {Expected{told.A, n, n}, {told.C, q, n}, {told.Q, n, n}, {told.W, q, q}}) {
       if (given == nullptr) continue;
       if (given->rows() != rows || given->cols() != cols) return Refusal::size;
-      if (!(given->size() == 0 || given->cwiseAbs().maxCoeff() < kHuge)) return Refusal::number;
+      if (!(given->array().abs() < kHuge).all()) return Refusal::number;  // nor nan
     }
     A_ = told.A != nullptr ? *told.A : who.A;
     C_transposed_ = told.C != nullptr ? Matrix(told.C->transpose()) : who.C_transposed;
@@ -34,6 +34,7 @@ class AgentPlant {
   /// Back to the design's.
   void constant(const AgentPart& who, Local& local) noexcept {
     local = local_of(who);
+    change_ = {};
     varying_ = false;
   }
   bool varying() const noexcept { return varying_; }

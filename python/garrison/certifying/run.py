@@ -16,7 +16,7 @@ from garrison.certifying.methods import Record, by_bank, by_window, rule, steady
 from garrison.certifying.plant import Plant
 from garrison.numeric import matched, numbers, output_names
 from garrison.varying import Inputs, inputs_of
-from garrison.words import hinted, refusal, shown
+from garrison.words import count, hinted, refusal, shown
 
 Array = NDArray[np.float64]
 
@@ -155,7 +155,7 @@ def _moved(model: _core.Model, inputs: Array, samples: int) -> Array:
     if not inputs.size:
         return np.zeros((samples, model.states))
     if len(inputs) != samples:
-        raise refusal("inputs", f"{len(inputs)} rows", f"{samples}, one per row of the measurements")
+        raise refusal("inputs", count(len(inputs), "row"), f"{samples}, one per row of the measurements")
     return np.asarray(inputs @ np.asarray(model.B).T, dtype=float)
 
 

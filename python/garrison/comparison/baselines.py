@@ -39,7 +39,11 @@ class Moment:
 
 @dataclass(frozen=True)
 class Plant:
-    """A plant and who hears whom. constant: of the model; moments: of every sample where something changes."""
+    """A plant and who hears whom.
+
+    constant: of the model, with the covariances of sample 1 where it has none; moments: of every sample where something
+    changes.
+    """
 
     constant: Moment
     moments: list[Moment]
@@ -64,10 +68,16 @@ class Plant:
 def plant_of(model: _core.Model | VaryingModel, network: _core.Network, liars: int) -> Plant:
     """Raises InvalidInput where nothing is known of the noise."""
     base, parts = parted(model)
-    constant = _moment(base)
+    constant = _moment(base, parts)
     steps = len(next(iter(parts.values()))) if parts else 0
     moments = [_changed(constant, {name: part[t] for name, part in parts.items()}) for t in range(steps)]
     return Plant(constant, moments, [list(network.neighbours(i)) for i in range(base.agents)], liars)
+
+
+def _blocks(R: Array, C: list[Array]) -> list[Array]:
+    """The covariance of each agent, of all below each other."""
+    ends = np.cumsum([len(c) for c in C])[:-1]
+    return [block[:, : len(block)] for block in np.split(R, ends)]
 
 
 def _changed(moment: Moment, now: dict[str, Array]) -> Moment:
@@ -78,21 +88,25 @@ def _changed(moment: Moment, now: dict[str, Array]) -> Moment:
     if "C" in now:
         C = moment.split(now["C"])
     if "measurement_covariance" in now:
-        R = [block[:, : len(block)] for block in moment.split(now["measurement_covariance"])]
+        R = _blocks(now["measurement_covariance"], C)
     return Moment(now.get("A", moment.A), C, Q, R)
 
 
-def _moment(model: _core.Model) -> Moment:
-    """Covariances even where only bounds are known (a bound taken as two deviations)."""
+def _moment(model: _core.Model, parts: dict[str, Array]) -> Moment:
+    """Covariances even where only bounds are known (a bound taken as two deviations), or only those over time."""
     n = model.states
     Q, R = model.process_covariance, model.measurement_covariance
     if isinstance(Q, list):
         Q = Q[0]
+    if Q is None and "process_covariance" in parts:
+        Q = parts["process_covariance"][0]
     if Q is None:
         if not np.isfinite(model.process_bound):
             raise refusal("baseline", "a model without process noise", "a bound or a covariance")
         Q = (model.process_bound / 2) ** 2 / n * np.eye(n)
     C = [np.asarray(c).reshape(-1, n) for c in model.C]
+    if R is None and "measurement_covariance" in parts:
+        R = _blocks(parts["measurement_covariance"][0], C)
     if R is None:
         bounds = np.asarray(model.measurement_bound).ravel()
         if not bounds.size:

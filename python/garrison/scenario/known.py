@@ -29,6 +29,8 @@ def changing_keys(section: Section) -> list[str]:
 def read_varying(section: Section, plant: _core.Model | VaryingModel) -> VaryingModel | None:
     """The plant over time, where [model] says so: arrays (T, rows, n), or files with the matrices below each other."""
     model, moving = parted(plant)
+    if "interval" in section:
+        _require_sampled(section)
     n, p, m = model.states, model.inputs, model.outputs
     shapes = {"A": (n, n), "B": (n, p), "C": (m, n), "process_covariance": (n, n)}
     parts: dict[str, Any] = {}
@@ -47,6 +49,16 @@ def read_varying(section: Section, plant: _core.Model | VaryingModel) -> Varying
         return VaryingModel(model, **parts)
     except _core.Error as error:
         raise renamed(error, section.where) from None
+
+
+def _require_sampled(section: Section) -> None:
+    """Beside `interval`, A, B and the intensity are those of dx/dt; what changes over time is of steps."""
+    rests = {"A_over_time": "A", "B_over_time": "B", "process_covariance_over_time": "process_intensity"}
+    for key, whose in rests.items():
+        if key in section and whose in section:
+            expected = f"one of them: {whose} is in continuous time, {key} is of steps"
+            advice = "leave interval out and give the matrices of steps, or give `times`"
+            raise refusal(section.place(key), f"interval and {whose} beside it", expected, advice)
 
 
 def _noises(section: Section, outputs: int, most: int) -> Array:

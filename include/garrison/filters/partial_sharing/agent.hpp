@@ -7,6 +7,18 @@
 namespace garrison {
 
 template <int n>
+void PartialSharing::use_sensor(const Local& l, const Gains& g, const Matrix* told, Eigen::Index first,
+                                State<n>& s) noexcept {
+  partial_sharing::Group<n>& group = *s.group;
+  const double* const own = g.W[static_cast<std::size_t>(l.id)].data();
+  for (int k = 0; k < l.outputs * group.m; ++k) group.at(group.C, k, s.lane) = l.C[k];
+  for (int r = 0; r < l.outputs; ++r)
+    for (int c = 0; c <= r; ++c)
+      group.at(group.W, packed(r, c), s.lane) =
+          told != nullptr ? (*told)(first + r, c) : own[static_cast<std::ptrdiff_t>(r) * l.outputs + c];
+}
+
+template <int n>
 void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, State<n>& s, Message<n>& m) {
   const int nn = dimension<n>(l);
   const int q = l.outputs;
@@ -17,10 +29,8 @@ void PartialSharing::init(const Local& l, const Gains& g, const Vec<n>& x0, Stat
   };
   const auto id = static_cast<std::size_t>(l.id);
   fill(group.z, 0, nn, [&](int k) { return x0[k]; });
-  fill(group.C, 0, q * nn, [&](int k) { return l.C[k]; });
+  use_sensor<n>(l, g, nullptr, 0, s);
   fill(group.y, 0, q, [](int) { return kNaN; });
-  for (int i = 0; i < q; ++i)
-    fill(group.W, packed(i), i + 1, [&](int k) { return g.W[id][static_cast<std::size_t>(i * q + k)]; });
   const bool steady = !g.steady.empty();
   const double* const P = steady ? g.steady[id].P.data() : g.P0.data();
   for (int i = 0; i < nn; ++i) fill(group.P, packed(i), i + 1, [&](int k) { return P[i * nn + k]; });

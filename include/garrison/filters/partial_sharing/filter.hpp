@@ -276,6 +276,10 @@ struct GARRISON_EXPORT PartialSharing {
   static partial_sharing::Common common(const Local& l, const Gains& g) noexcept {
     return {l.A, g.Q.data(), g.gamma, g.freeze};
   }
+  /// C of `l`, and W from row `first` of what was told on; null = the design's.
+  template <int n>
+  static void use_sensor(const Local& l, const Gains& g, const Matrix* told, Eigen::Index first,
+                         State<n>& s) noexcept;
   /// sum_j S_j (xbar_j - xhat_i)
   template <int n>
   static void disagreement(const State<n>& s, const Inbox<Message<n>>& inbox, double* u) noexcept;

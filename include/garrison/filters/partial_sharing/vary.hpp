@@ -55,10 +55,7 @@ void PartialSharing::vary(const Local& l, const Gains& g, const Change& change, 
       for (int k = 0; k <= i; ++k) lane(group.P, packed(i, k)) = P(i, k);
   }
   if (group.started || !g.given) multiply<n>(l.A, estimate<n>(s).data(), group.prediction(s.lane), nn);
-  for (int k = 0; k < l.outputs * nn; ++k) lane(group.C, k) = l.C[k];
-  if (change.W == nullptr) return;
-  for (int r = 0; r < l.outputs; ++r)
-    for (int c = 0; c <= r; ++c) lane(group.W, packed(r, c)) = (*change.W)(first + r, c);
+  use_sensor<n>(l, g, change.W, first, s);
 }
 
 }  // namespace garrison

@@ -176,9 +176,13 @@ TEST_CASE("an agent refuses a plant that is not its own, and goes back to its de
   auto agent = prepared->agent(1);
   const Matrix wide = Matrix::Zero(3, 4);
   const Matrix endless = Matrix::Constant(3, 3, kInfinity);
+  Matrix none = Matrix::Zero(3, 3);
+  none(2, 2) = kNaN;
   CHECK(agent->vary({.A = &wide}) == Refusal::size);
   CHECK(agent->vary({.C = &wide}) == Refusal::size);
   CHECK(agent->vary({.Q = &endless}) == Refusal::number);
+  for (const Change& one : {Change{.A = &none}, Change{.Q = &none}})
+    CHECK(agent->vary(one) == Refusal::number);
   CHECK(prepare(p, false, "frozen")->agent(1)->vary({}) == Refusal::foreign);
   CHECK(prepare(p, false, "steady")->agent(1)->vary({}) == Refusal::foreign);
 
@@ -204,4 +208,92 @@ TEST_CASE("an agent refuses a plant that is not its own, and goes back to its de
   CHECK_FALSE(same(told, constant));
   CHECK(same(after(*agent), constant));
   CHECK(agent->report().kind != CertificateKind::varying);
+}
+
+TEST_CASE("what an agent was told once and then is not is the design's again") {
+  const Problem p(3, test::Rng(kSeed + 200));
+  const auto prepared = prepare(p);
+  const Moment design = Problem::moment(p.model);
+  constexpr int id = 4;
+  const int q = p.model.outputs(id);
+  const auto own = [&](const Moment& at) {
+    return Moment{at.A, at.C.middleRows(p.model.offset(id), q), at.Q,
+                  at.W.block(p.model.offset(id), 0, q, q)};
+  };
+  const Moment other = own(p.plant[0]);
+  const Moment constant = own(design);
+  // Three samples of which the second is told `second`, the third `third`.
+  const auto after = [&](const Change& second, const Change& third) {
+    const auto agent = prepared->agent(id);
+    std::vector<std::byte> body(agent->most_bytes());
+    agent->reset(Vector::Constant(3, 0.3));
+    for (std::int64_t t = 1; t <= 3; ++t) {
+      if (t > 1) REQUIRE(agent->vary(t == 2 ? second : third) == Refusal::none);
+      REQUIRE(agent->sense(t, std::vector<double>(static_cast<std::size_t>(q), 0.5), body).refusal ==
+              Refusal::none);
+      REQUIRE(agent->fuse(body).refusal == Refusal::none);
+    }
+    std::vector<double> x(3);
+    agent->estimate(x);
+    return x;
+  };
+  for (const Change& told :
+       {Change{.A = &other.A}, Change{.C = &other.C}, Change{.Q = &other.Q}, Change{.W = &other.W}}) {
+    CHECK(same(after(told, {}), after(told, constant.change())));
+    CHECK_FALSE(same(after(told, {}), after(told, told)));
+  }
+}
+
+TEST_CASE("an agent that goes on from a snapshot and is told nothing has its design's plant") {
+  const Problem p(3, test::Rng(kSeed + 300));
+  const auto prepared = prepare(p);
+  const Moment design = Problem::moment(p.model);
+  constexpr int id = 4;
+  const std::vector<double> y(static_cast<std::size_t>(p.model.outputs(id)), 0.5);
+  const auto one_more = [&](Agent& agent) {
+    std::vector<std::byte> body(agent.most_bytes());
+    REQUIRE(agent.sense(agent.sample() + 1, y, body).refusal == Refusal::none);
+    REQUIRE(agent.fuse(body).refusal == Refusal::none);
+    std::vector<double> x(3);
+    agent.estimate(x);
+    return x;
+  };
+  const auto agent = prepared->agent(id);
+  tell(*agent, p.model, p.plant[0]);
+  one_more(*agent);
+  std::vector<std::byte> snapshot(agent->snapshot_bytes());
+  REQUIRE(agent->save(snapshot) == snapshot.size());
+
+  const auto loaded = prepared->agent(id);
+  tell(*loaded, p.model, p.plant[1]);  // no more than `reset` does `load` keep it
+  REQUIRE(loaded->load(snapshot) == Refusal::none);
+  CHECK(loaded->report().kind != CertificateKind::varying);
+  tell(*agent, p.model, design);
+  CHECK(same(one_more(*loaded), one_more(*agent)));
+  CHECK(same(one_more(*loaded), one_more(*agent)));
+}
+
+TEST_CASE("an agent that was never told goes on from a snapshot with the same bits") {
+  for (const bool given : {false, true}) {
+    const Problem p(4, test::Rng(kSeed + 400));
+    for (const char* gains : {"varying", "frozen", "steady"}) {
+      const auto prepared = prepare(p, given, gains);
+      test::AgentsByHand kept(*prepared, p.network), renewed(*prepared, p.network);
+      std::vector<double> left, right;
+      const auto y = [&](int i) { return Vector(p.y.row(0).segment(p.model.offset(i), p.model.outputs(i))); };
+      for (int t = 0; t < kSteps; ++t) {
+        for (std::size_t i = 0; i < renewed.all().size(); ++i) {
+          std::vector<std::byte> snapshot(renewed.all()[i]->snapshot_bytes());
+          REQUIRE(renewed.all()[i]->save(snapshot) == snapshot.size());
+          renewed.all()[i] = prepared->agent(static_cast<int>(i));
+          REQUIRE(renewed.all()[i]->load(snapshot) == Refusal::none);
+        }
+        kept.step(t + 1, y);
+        renewed.step(t + 1, y);
+        kept.append_estimates(left);
+        renewed.append_estimates(right);
+      }
+      CHECK(same(left, right));
+    }
+  }
 }
