@@ -1107,8 +1107,8 @@ class Agent:
     ) -> None:
         """
         The plant of the next samples, until told again; for the filters that take a VaryingModel, with the bits of its
-        simulation. What is left out is the design's. `reset` and `load` go back to the design's: a snapshot does not hold the plant, and
-        an agent that goes on from one has to be told again.
+        simulation. What is left out is the design's. `reset` and `load` go back to the design's: a snapshot does not hold the
+        plant, and an agent that goes on from one has to be told again.
 
         Parameters
         ----------
