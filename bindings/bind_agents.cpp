@@ -238,8 +238,8 @@ t : int, optional | The sample that x0 is the estimate of. Default: the beginnin
           py::arg("process_covariance") = py::none(), py::arg("measurement_covariance") = py::none(),
           numpydoc(
               R"(The plant of the next samples, until told again; for the filters that take a VaryingModel, with the bits of its
-simulation. What is left out is the design's. `reset` and `load` go back to the design's: a snapshot does not hold the plant, and
-an agent that goes on from one has to be told again.
+simulation. What is left out is the design's. `reset` and `load` go back to the design's: a snapshot does not hold the
+plant, and an agent that goes on from one has to be told again.
 
 A : (n, n) array, optional | Leads to the next sample.
 C : (m_i, n) array, optional | Of the own sensor.

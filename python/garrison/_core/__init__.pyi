@@ -1032,7 +1032,7 @@ class Agent:
         Parameters
         ----------
         data : bytes
-            Of `save`, of this agent and design.
+            Of `save`, of this agent and design. A plant that `vary` told is not in it and has to be told again.
 
         Raises
         ------
@@ -1107,7 +1107,8 @@ class Agent:
     ) -> None:
         """
         The plant of the next samples, until told again; for the filters that take a VaryingModel, with the bits of its
-        simulation. What is left out is the design's. `reset` goes back to the design's; a snapshot does not hold it.
+        simulation. What is left out is the design's. `reset` and `load` go back to the design's: a snapshot does not hold the
+        plant, and an agent that goes on from one has to be told again.
 
         Parameters
         ----------
@@ -1116,15 +1117,15 @@ class Agent:
         C : (m_i, n) array, optional
             Of the own sensor.
         process_covariance : (n, n) array, optional
-            Of the noise on the way to the next sample.
+            Of the noise on the way to the next sample; positive semidefinite.
         measurement_covariance : (m_i, m_i) array, optional
             Of the own sensor; positive definite.
 
         Raises
         ------
         InvalidInput
-            Sizes that do not fit, numbers that are not finite, a filter that is designed for one plant, an
-            agent with a certificate, or a call within a sample.
+            Sizes that do not fit, numbers that are not finite, covariances that are none, a filter that is designed for
+            one plant, an agent with a certificate, or a call within a sample.
         """
     @property
     def accused(self) -> list[int]:
