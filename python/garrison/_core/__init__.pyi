@@ -1822,8 +1822,8 @@ def lambda0(
     s : int
         Rows that are left out, 0..N.
     max_nodes : int
-        The search ends after so many sets, >= 1, with an interval (with up to three states: after as
-        much work as so many looks at all rows).
+        The search ends after so many sets, >= 1, with an interval (with up to two states, or three and
+        more than 20 rows: after as much work as so many looks at all rows).
     max_seconds : float
         Or after so many seconds, >= 0.
 
