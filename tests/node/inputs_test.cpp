@@ -81,7 +81,7 @@ TEST_CASE("without inputs nothing is changed, and nothing ends") {
 }
 
 TEST_CASE("inputs that cannot be used are refused by line") {
-  CHECK(says(refused_table("1\nnan\n"), {"u.csv, line 2", "\"nan\"", "1 numbers", "known at all times"}));
+  CHECK(says(refused_table("1\nnan\n"), {"u.csv, line 2", "\"nan\"", "1 number", "known at all times"}));
   CHECK(says(refused_table("1\n1,2\n"), {"u.csv, line 2", "\"1,2\""}));
   CHECK(says(refused_table("@3 1\n"), {"u.csv, line 1", "\"@3 1\""}));
   CHECK(says(refused_table(""), {"u.csv", "no row"}));

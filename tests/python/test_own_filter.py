@@ -192,7 +192,7 @@ def test_errors_of_the_users_code_come_back_with_traceback_agent_and_sample(meth
     ("method", "body", "words"),
     [
         ("sense", lambda *_: 3, r"Broken.sense: got 3, expected a message.*agent \d, sample 1"),
-        ("sense", lambda *_: {"estimate": [1.0]}, r'Broken.sense\["estimate"\]: got 1 numbers, expected 2'),
+        ("sense", lambda *_: {"estimate": [1.0]}, r'Broken.sense\["estimate"\]: got 1 number, expected 2'),
         ("fuse", lambda *_: {"estimat": [1.0, 2.0]}, r"unknown field 'estimat', expected the fields estimate"),
         ("fuse", lambda *_: {}, r'no field "estimate"'),
         ("start", lambda *_: 5, r"Broken.start: got 5 as state"),

@@ -22,7 +22,7 @@ TEST_CASE("what is known of the noise must make sense") {
   says({kNaN, {}, Matrix::Identity(3, 3), {}}, "process_covariance: got 3 x 3, expected 2 x 2");
   says({kNaN, {}, Matrix{{1, 2}, {0, 1}}, {}}, "not symmetric");
   says({kNaN, {}, Matrix{{1, 0}, {0, kNaN}}, {}}, "process_covariance[1, 1]: got nan");
-  says({kNaN, {}, {}, {Matrix::Ones(1, 1)}}, "measurement_covariance: got 1 matrices");
+  says({kNaN, {}, {}, {Matrix::Ones(1, 1)}}, "measurement_covariance: got 1 matrix");
   says({kNaN, {}, {}, {Matrix::Ones(1, 1), Matrix::Ones(1, 1)}}, "measurement_covariance[1]: got 1 x 1");
   says({kNaN, {}, {}, {-Matrix::Ones(1, 1), kA}}, "measurement_covariance[0]: got least eigenvalue -1");
 }

@@ -29,13 +29,13 @@ TEST_CASE("labels fit the model or are refused") {
                              .units = {{"height", "m"}, {"sum", "m"}}});
   CHECK(named.state_names()[1] == "speed");
   CHECK(named.labels().units.at("sum") == "m");
-  CHECK_THROWS_WITH_AS(model({.states = {"a"}}), doctest::Contains("states: got 1 names, expected 2"),
+  CHECK_THROWS_WITH_AS(model({.states = {"a"}}), doctest::Contains("states: got 1 name, expected 2"),
                        InvalidInput);
   CHECK_THROWS_WITH_AS(model({.states = {"a", "a"}}), doctest::Contains("states[1]: got \"a\" once more"),
                        InvalidInput);
   CHECK_THROWS_WITH_AS(model({.outputs = {"a", "", "c"}}), doctest::Contains("outputs[1]: got an empty name"),
                        InvalidInput);
-  CHECK_THROWS_WITH_AS(model({.sources = {"a"}}), doctest::Contains("sources: got 1 names, expected 3"),
+  CHECK_THROWS_WITH_AS(model({.sources = {"a"}}), doctest::Contains("sources: got 1 name, expected 3"),
                        InvalidInput);
   CHECK_THROWS_WITH_AS(model({.units = {{"x3", "m"}}}), doctest::Contains("unknown name \"x3\""),
                        InvalidInput);
@@ -50,7 +50,7 @@ TEST_CASE("models and networks are equal by value, unknown bounds included") {
   const std::vector<Edge> edges{{0, 1}};
   CHECK_FALSE(Network(2, edges) == Network(2, edges, true));
   CHECK_FALSE(Network(2, edges) == Network(2, edges, false, {"a", "b"}));
-  CHECK_THROWS_WITH_AS(Network(2, edges, false, {"a"}), doctest::Contains("names: got 1 names, expected 2"),
+  CHECK_THROWS_WITH_AS(Network(2, edges, false, {"a"}), doctest::Contains("names: got 1 name, expected 2"),
                        InvalidInput);
 }
 

@@ -67,7 +67,7 @@ TEST_CASE("a plant that was stacked by hand has the same bits") {
 
 TEST_CASE("sizes that do not fit are refused") {
   CHECK_THROWS_WITH_AS(driven(Matrix::Identity(2, 2), Vector::Zero(3), Matrix::Ones(2, 1), Vector::Zero(1)),
-                       doctest::Contains("B: got 2 x 1 for 3 states and 1 inputs"), InvalidInput);
+                       doctest::Contains("B: got 2 x 1 for 3 states and 1 input"), InvalidInput);
 }
 
 TEST_CASE("an input that is held is the limit of many short steps") {
@@ -92,7 +92,7 @@ TEST_CASE("matrices over time are checked against the model") {
   const Matrix I = Matrix::Identity(2, 2);
   require_series({.A = {I, I}, .B = {model.B(), model.B()}, .C = {I, I}, .process_covariance = {I, I}}, model,
                  2);
-  says({.A = {I}}, "A: got 1 matrices over time, expected at least 2");
+  says({.A = {I}}, "A: got 1 matrix over time, expected at least 2");
   says({.A = {I, Matrix::Ones(2, 3)}}, "A[1]: got 2 x 3, expected 2 x 2");
   says({.B = {model.B(), I}}, "B[1]: got 2 x 2, expected 2 x 1");
   says({.C = {I, kNaN * I}}, "C[1]: got a number that is not finite");
