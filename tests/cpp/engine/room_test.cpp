@@ -55,7 +55,7 @@ TEST_CASE("mailboxes that would take hundreds of megabytes are refused with what
   CHECK_THROWS_WITH_AS(
       read_part(file),
       doctest::Contains("an agent of 67108864 whose mailboxes, for 9 neighbours and 10 rounds, "
-                        "take 1510 MB, expected at most 537 MB"),
+                        "would take 1510 MB, expected at most 537 MB"),
       InvalidInput);
   CHECK(without_exceptions(file) == Refusal::size);
 }
