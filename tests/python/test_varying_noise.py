@@ -203,7 +203,7 @@ def test_covariances_that_do_not_fit_are_refused(given: Any, words: str) -> None
     ("R", "words"),
     [
         (np.full((T, 4), -1.0), r"measurement_covariance\[0\] of agent 0: got least eigenvalue -1"),
-        (np.ones((T, 4, 2)), r"measurement_covariance\[0\] of agent 0: got numbers right of its 1 columns"),
+        (np.ones((T, 4, 2)), r"measurement_covariance\[0\] of agent 0: got numbers right of its 1 column"),
     ],
 )
 def test_what_is_no_covariance_is_refused(R: Any, words: str) -> None:
