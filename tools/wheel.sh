@@ -33,6 +33,7 @@ for python in "${pythons[@]}"; do
   tools/stage.sh "build wheel of ${builder##*/}" env -C "$work/sdist" "$root/$builder/bin/python" -m pip wheel --quiet \
     --no-build-isolation --no-deps --wheel-dir "$root/$work/raw" --config-settings=build-dir="build/${builder##*/}" .
 done
+tests/package/shared.sh "$work/sdist/build/${first##*/}"
 for wheel in "$work"/raw/*.whl; do
   tools/stage.sh "repair ${wheel##*/}" env PATH="$root/$first/bin:$PATH" "$first/bin/auditwheel" repair --plat "$platform" \
     --wheel-dir dist "$wheel"

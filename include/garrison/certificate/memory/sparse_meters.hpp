@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "garrison/core/error.hpp"
 #include "garrison/core/types.hpp"
 
 namespace garrison::certificate {
@@ -29,7 +30,8 @@ struct SparseMeters {
 /// smallest_undetectable(), with `tries` sets; a larger one gives bounds from leverages. Ends with what is
 /// certain when current_budget() is over. Memory: rows^2 of the largest part that is searched.
 /// @throws InvalidInput
-SparseMeters sparse_meters(const Eigen::SparseMatrix<double, Eigen::RowMajor>& H,
-                           std::span<const int> source = {}, int dense = 4000, double tries = 1e12);
+GARRISON_EXPORT SparseMeters sparse_meters(const Eigen::SparseMatrix<double, Eigen::RowMajor>& H,
+                                           std::span<const int> source = {}, int dense = 4000,
+                                           double tries = 1e12);
 
 }  // namespace garrison::certificate

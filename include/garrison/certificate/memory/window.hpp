@@ -95,6 +95,6 @@ class GARRISON_EXPORT Window {
 /// Gam of Window::advance, n x noise, for process noise of a covariance: Gam Gam' = Q, without directions in
 /// which there is none (up to rounding where all variances are scaled to 1, since states have units).
 /// @throws InvalidInput for what is no covariance
-Matrix noise_root(const MatrixRef& Q);
+GARRISON_EXPORT Matrix noise_root(const MatrixRef& Q);
 
 }  // namespace garrison::certificate

@@ -42,6 +42,17 @@ void whitened_row(Group<n>& group, int lane, int r, double* row) noexcept {
   }
 }
 
+/// The recursion takes in P and the rows of one agent; `row`: m values.
+template <int n>
+void take_in(Recursion<n, 1>& recursion, Group<n>& group, int lane, double* row) noexcept {
+  using One = Block<1>;
+  recursion.factor(One::of(group.P + lane), Group<n>::kLanes);
+  for (int r = 0; r < group.q; ++r) {
+    whitened_row(group, lane, r, row);
+    recursion.use_row(r, One::of(row));
+  }
+}
+
 /// K and G from P for one agent, which stands still from now on.
 template <int n>
 void freeze(double gamma, Group<n>& group, int lane) noexcept {
@@ -56,11 +67,7 @@ void freeze(double gamma, Group<n>& group, int lane) noexcept {
   double* const room = row + m;
   double* const own = room + 2 * m + q;
   Kernel recursion(One::of(own), One::of(own + Kernel::scratch(m)), m, q);
-  recursion.factor(One::of(group.P + lane), kStride);
-  for (int r = 0; r < q; ++r) {
-    whitened_row(group, lane, r, row);
-    recursion.use_row(r, One::of(row));
-  }
+  take_in<n>(recursion, group, lane, row);
   explicit_gains<n>(recursion, gamma, m, q, room, group.K + lane, group.G + lane, kStride);
   // K W, the gain of the innovations as they are; forwards: W is lower triangular, in place
   for (int c = 0; c < q; ++c)

@@ -28,11 +28,7 @@ void move_covariance(const double* A, const double* Q, Group<n>& group, int lane
   Kernel recursion(One::of(own), One::of(own + Kernel::scratch(m)), m, q);
   One::type* const P = One::of(group.P + lane);
   for (int k = 0; k < packed(m); ++k) group.at(group.P, k, lane) = group.at(group.G, k, lane);
-  recursion.factor(P, kStride);
-  for (int r = 0; r < q; ++r) {
-    whitened_row(group, lane, r, row);
-    recursion.use_row(r, One::of(row));
-  }
+  take_in<n>(recursion, group, lane, row);
   One::type unused{};
   recursion.predict(A, Q, P, kStride, One::type{} + kLargestVariance, unused);
 }
