@@ -16,7 +16,7 @@ from garrison.drivers import replay
 from garrison.numeric import numbers
 from garrison.record import Run
 from garrison.result import Result
-from garrison.words import hinted, hinted_methods, refusal
+from garrison.words import count, hinted, hinted_methods, refusal
 
 Array = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def _sensors(measured: Any, n: int, N: int) -> list[int | None]:
     expected = f"{N} entries, one per agent: the state it measures, in 0..{n - 1}, or None"
     found = entries("measured", measured, expected)
     if len(found) != N:
-        raise refusal("measured", f"{len(found)} entries", expected)
+        raise refusal("measured", f"{count(len(found), 'entry', 'entries')}", expected)
     return [None if s is None else whole(f"measured[{i}]", s, 0, n - 1) for i, s in enumerate(found)]
 
 

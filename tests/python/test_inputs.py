@@ -279,9 +279,9 @@ def test_scenarios_with_inputs_run_from_lists_files_and_columns(tmp_path: Path) 
 
     for wrong, words in (
         ("[run]\nsteps = 8\n", "a model with B and no inputs"),
-        ("[run]\nsteps = 8\ninputs = [[1, 2]]\n", "1 numbers per step"),
+        ("[run]\nsteps = 8\ninputs = [[1, 2]]\n", "1 number per step"),
         ('[data]\nfile = "y.csv"\ninputs = ["thrusts"]\n', "no column thrusts"),
-        ('[data]\nfile = "y.csv"\ninputs = ["thrust", "s0"]\n', "1 names of columns"),
+        ('[data]\nfile = "y.csv"\ninputs = ["thrust", "s0"]\n', "1 name of columns"),
     ):
         path.write_text(SCENARIO + wrong)
         with pytest.raises(gr.Error, match=words):

@@ -13,7 +13,7 @@ from garrison.importers.adsb_forms import EXPECTED, rows_of
 from garrison.importers.texts import bytes_of
 from garrison.numeric import real
 from garrison.tables.text import decoded
-from garrison.words import refusal, shown
+from garrison.words import count, refusal, shown
 
 Array = NDArray[np.float64]
 _KNOT, _FOOT = 1852.0 / 3600.0, 0.3048
@@ -109,7 +109,7 @@ def _track(
         raise refusal(str(path), f"the time {late:g} s", "seconds since 1970, or milli-, micro- or nanoseconds")
     order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
     if len(order) < 2:
-        raise refusal(str(path), f"{len(order)} reports with a time", "at least two")
+        raise refusal(str(path), f"{count(len(order), 'report')} with a time", "at least two")
     order = order[choice.part(path, who, t[order])]
     parts = ("latitude", "longitude", "speed", "track")
     arrays = [t, *(column[p] for p in parts), column.get("altitude", nothing), position_time]

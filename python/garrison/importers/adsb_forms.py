@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from garrison.numeric import real
-from garrison.words import refusal, shown
+from garrison.words import count, refusal, shown
 
 EXPECTED = "a track: state vectors (JSON or CSV), or a trace of readsb or ADS-B Exchange (JSON), also as .gz"
 #: of an OpenSky state vector, in their order
@@ -56,7 +56,7 @@ def _rows_of_csv(path: Path, text: str) -> list[list[Any]]:
         raise refusal(str(path), f"no table ({error})", EXPECTED) from None
     for k, row in enumerate(rows[1:], start=2):
         if len(row) != len(rows[0]):
-            raise refusal(f"{path}, row {k}", f"{len(row)} cells", f"{len(rows[0])}, as the header has")
+            raise refusal(f"{path}, row {k}", f"{count(len(row), 'cell')}", f"{len(rows[0])}, as the header has")
     names = [name.strip().lower() for name in rows[0]]
     return _of_flightradar24(path, names, rows[1:]) if set(names) >= _PLAYED_BACK else rows
 

@@ -158,7 +158,9 @@ def _gridded(where: str, sensors: list[tuple[Signal, str]], period: float) -> tu
     first = min(s.t[0] for s, _ in sensors)
     rows = int(np.floor((max(s.t[-1] for s, _ in sensors) - first) / period + 1e-6)) + 1
     if rows > _MOST_SAMPLES or rows < 2:
-        raise refusal(where, f"{rows} samples of {period:g} s", f"2..{_MOST_SAMPLES}", "choose another --period")
+        raise refusal(
+            where, f"{count(rows, 'sample')} of {period:g} s", f"2..{_MOST_SAMPLES}", "choose another --period"
+        )
     values = np.full((rows, len(sensors)), np.nan)
     for k, (signal, quantity) in enumerate(sensors):
         known = np.isfinite(signal.series[quantity])

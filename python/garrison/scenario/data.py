@@ -13,7 +13,7 @@ from garrison.scenario.section import Section
 from garrison.tables import Records, read_matrix, read_records, read_table
 from garrison.tables.cells import number
 from garrison.tables.text import read_rows
-from garrison.words import refusal, shown
+from garrison.words import count, refusal, shown
 
 Array = NDArray[np.float64]
 
@@ -110,7 +110,8 @@ def _input_columns(section: Section, model: _core.Model) -> list[str]:
         return []
     given = section.table["inputs"]
     if not isinstance(given, list) or not all(isinstance(name, str) for name in given) or len(given) != model.inputs:
-        raise refusal(section.place("inputs"), shown(given), f"{model.inputs} names of columns, one per column of B")
+        expected = f"{count(model.inputs, 'name')} of columns, one per column of B"
+        raise refusal(section.place("inputs"), shown(given), expected)
     return list(given)
 
 

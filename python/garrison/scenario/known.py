@@ -13,7 +13,7 @@ from garrison.tables.cells import number
 from garrison.tables.text import read_rows
 from garrison.varying import VaryingModel, parted
 from garrison.varying_network import VaryingNetwork
-from garrison.words import refusal
+from garrison.words import count, refusal
 
 Array = NDArray[np.float64]
 _R = "measurement_covariance_over_time"
@@ -68,7 +68,7 @@ def _noises(section: Section, outputs: int, most: int) -> Array:
         return given
     if given.ndim == 2 and given.shape[1] == most and len(given) % outputs == 0:
         return given.reshape(-1, outputs, most)
-    expected = f"{outputs} variances per sample, or {outputs} x {most} numbers (in a file: below each other)"
+    expected = f"{count(outputs, 'variance')} per sample, or {outputs} x {most} numbers (in a file: below each other)"
     raise refusal(section.place(_R), f"shape {given.shape}", expected)
 
 
@@ -104,14 +104,16 @@ def read_inputs(section: Section, model: _core.Model, recorded: Array | None) ->
     if "inputs" not in section:
         if model.inputs:
             advice = "give [run].inputs, or name columns of [data]"
-            raise refusal("scenario", "a model with B and no inputs", f"{model.inputs} known inputs per step", advice)
+            raise refusal(
+                "scenario", "a model with B and no inputs", f"{count(model.inputs, 'known input')} per step", advice
+            )
         return None
     if not model.inputs:
         raise refusal(where, "inputs", "none, because [model] has no B")
     found = _file_or_numbers(section, list(model.input_names))
     found = found[:, None] if found.ndim == 1 and model.inputs == 1 else np.atleast_2d(found)
     if found.ndim != 2 or found.shape[1] != model.inputs:
-        raise refusal(where, f"shape {found.shape}", f"{model.inputs} numbers per step, one per column of B")
+        raise refusal(where, f"shape {found.shape}", f"{count(model.inputs, 'number')} per step, one per column of B")
     return found
 
 

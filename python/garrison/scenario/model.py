@@ -14,7 +14,7 @@ from garrison.scenario.section import Section, moment, number, renamed
 from garrison.sizes import require_memory
 from garrison.tables import Records, read_records
 from garrison.varying import VaryingModel, parted
-from garrison.words import refusal, shown
+from garrison.words import count, refusal, shown
 
 _FIT_KEYS = [
     "fit",
@@ -176,7 +176,9 @@ def _rows(section: Section, n: int) -> list[Any]:
     for k, one in enumerate(given):
         rows = np.zeros((0, n)) if _is_empty(one) else numbers(f"{section.place('C')}[{k}]", one)
         if rows.ndim > 2 or rows.ndim == 0:
-            raise refusal(f"{section.place('C')}[{k}]", shown(one), f"a row of {n} numbers, or a matrix with such rows")
+            raise refusal(
+                f"{section.place('C')}[{k}]", shown(one), f"a row of {count(n, 'number')}, or a matrix with such rows"
+            )
         out.append(np.atleast_2d(rows))
     return out
 
@@ -222,7 +224,9 @@ def _measurement_covariance(section: Section, outputs: list[int]) -> list[Any]:
         advice = "noises of different agents are independent: give the block of each agent, or numbers of the diagonal"
         raise refusal(where, f"{total} x {total} numbers", f"{len(outputs)} matrices, one per agent", advice)
     if len(given) != len(outputs):
-        raise refusal(where, f"{len(given)} entries", f"{len(outputs)}, one per agent (or one number for all)")
+        raise refusal(
+            where, f"{count(len(given), 'entry', 'entries')}", f"{len(outputs)}, one per agent (or one number for all)"
+        )
     out = []
     for k, (one, m) in enumerate(zip(given, outputs, strict=True)):
         R = np.zeros((0, 0)) if _is_empty(one) and m == 0 else numbers(f"{where}[{k}]", one)

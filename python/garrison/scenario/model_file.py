@@ -14,7 +14,7 @@ from garrison.numeric import numbers, real
 from garrison.scenario.section import whole
 from garrison.sizes import require_memory
 from garrison.static_plant import StaticPlant
-from garrison.words import only, refusal, shown
+from garrison.words import count, only, refusal, shown
 
 Array = NDArray[np.float64]
 _FITTED = ("A", "C", "process_bound", "measurement_bound", "process_covariance", "measurement_variance")
@@ -51,7 +51,7 @@ def read_static_plant(path: Path, least: int) -> tuple[StaticPlant, list[str] | 
     for k, one in enumerate(C):
         (rows, columns), own = _sparse(f"{path}: C[{k}]", one) if isinstance(one, dict) else _listed(path, k, one)
         if columns != n:
-            raise refusal(f"{path}: C[{k}]", f"{rows} x {columns}", f"rows of {n} numbers, one per state")
+            raise refusal(f"{path}: C[{k}]", f"{rows} x {columns}", f"rows of {count(n, 'number')}, one per state")
         blocks.append(own + np.array([len(agent), 0, 0]))
         agent += [k] * rows
     plant = StaticPlant(

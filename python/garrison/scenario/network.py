@@ -13,7 +13,7 @@ from garrison.sizes import require_memory
 from garrison.tables import read_rows
 from garrison.tables.cells import has_decimal_comma, number
 from garrison.tables.text import require_widths
-from garrison.words import near, refusal, shown
+from garrison.words import count, near, refusal, shown
 
 Array = NDArray[np.float64]
 _EARTH_KM = 111.2 * 180 / math.pi  # per radian
@@ -143,7 +143,9 @@ def _near_stations(section: Section, names: list[str] | None, agents: int) -> Gr
     codes, places, degrees = _stations(section, names)
     if len(codes) != agents:
         raise refusal(
-            section.place("stations"), f"{len(codes)} stations", f"{agents}, because C has one matrix per agent"
+            section.place("stations"),
+            f"{count(len(codes), 'station')}",
+            f"{agents}, because C has one matrix per agent",
         )
     km = _kilometres(degrees)
     distance = np.linalg.norm(km[:, None] - km[None], axis=2)
