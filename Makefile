@@ -16,11 +16,11 @@ run: ## the main job: Irish wind with hijacked stations, report in out/wind
 dev: ## build quickly for a developer, few dimensions; then PYTHONPATH=python .venv/bin/pytest
 	@tools/dev.sh
 
-test: setup ## all tests: C++, Python, and C++ again under the sanitizers
+test: setup ## all tests: C++, Python, and some C++ again under the sanitizers
 	@tools/test.sh
 
-sanitizers: setup ## C++ tests with address and undefined-behaviour sanitizers
-	@tools/sanitizers.sh
+sanitizers: setup ## C++ tests of what reads bytes or shares memory, with sanitizers; FILES='^filters/rdkf': others
+	@tools/sanitizers.sh $(if $(FILES),'$(FILES)')
 
 test-fast: setup ## C++ and Python tests without the sanitizers
 	@tools/stage.sh "configure release" cmake --preset release

@@ -6,7 +6,7 @@
 
 namespace garrison::node::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef GARRISON_SANITIZED
 inline constexpr bool kAllocationsCounted = false;
 #else
 inline constexpr bool kAllocationsCounted = true;

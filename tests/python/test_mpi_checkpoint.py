@@ -22,7 +22,7 @@ def test_a_full_disk_ends_the_run_and_what_was_written_is_whole(tmp_path: Path) 
     mount = f"mount -t tmpfs -o size=256k tmpfs '{disk}'"
     if subprocess.run([*namespace, mount], capture_output=True).returncode != 0:
         pytest.skip("no disks of our own here")
-    path = scenario(tmp_path, "scalar_gain", "", steps=2000)  # 300 bytes per sample
+    path = scenario(tmp_path, "scalar_gain", "", steps=1200)  # 300 bytes per sample
     whole, part = tmp_path / "whole.nc", tmp_path / "part.nc"
     assert mpi(2, "run", path, "-o", whole).returncode == 0
     run = f"'{MPIRUN}' -n 2 '{PROGRAM}' run '{path}' -o '{disk}/out.nc'"
@@ -68,11 +68,11 @@ def test_a_run_is_not_gone_on_with_after_its_inputs_changed(tmp_path: Path) -> N
 def test_a_killed_rank_ends_the_job_and_three_ranks_go_on(tmp_path: Path) -> None:
     folder = tmp_path / "it's here"  # the command to go on can be pasted whatever the paths
     folder.mkdir()
-    path = scenario(folder, "saturation", TROUBLE, steps=3000)
+    path = scenario(folder, "saturation", TROUBLE, steps=1000)
     whole, out = folder / "whole.nc", folder / "out.nc"
     assert mpi(2, "run", path, "-o", whole).returncode == 0
     latest = Path(f"{out}.checkpoint/latest")
-    command = [str(MPIRUN), "-n", "2", str(PROGRAM), "run", str(path), "-o", str(out), "--checkpoint", "50"]
+    command = [str(MPIRUN), "-n", "2", str(PROGRAM), "run", str(path), "-o", str(out), "--checkpoint", "20"]
     with subprocess.Popen(command, env=ENVIRONMENT, stderr=subprocess.PIPE, text=True) as job:
         while not latest.exists() and job.poll() is None:
             time.sleep(0.01)

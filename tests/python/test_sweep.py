@@ -186,7 +186,7 @@ def test_a_client_gets_the_tasks(scenario: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(("how", "code"), [(signal.SIGKILL, -9), (signal.SIGINT, 130)])
 def test_a_sweep_that_is_ended_goes_on_later(scenario: Path, tmp_path: Path, how: int, code: int) -> None:
     out = tmp_path / "out"
-    options = ["--set", "attack.value=1:9:9", "--trials", "400", "--block", "40", "-o"]
+    options = ["--set", "attack.value=1:9:9", "--trials", "120", "--block", "12", "-o"]
     command = [sys.executable, "-m", "garrison", "sweep", str(scenario), *options]
     environment = os.environ | {"PYTHONPATH": str(Path(gr.__file__).parents[1])}
     # A shell starts what it runs in the background deaf to Ctrl-C, tests too.

@@ -129,5 +129,7 @@ def animate(run: Run, path: str | Path, trial: int = 0, frames: int = 80) -> Non
         text.set_text(f"{t * world.period:.2f} s")
         return cars, ghosts, text
 
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # the layout of one frame is that of all, and takes most of the time
     times = np.unique(np.linspace(0, len(x) - 1, min(frames, len(x))).astype(int))
     FuncAnimation(figure, draw, frames=times, blit=False).save(str(path), writer=PillowWriter(fps=12), dpi=80)

@@ -20,7 +20,7 @@ namespace {
 constexpr int kAgents = 7;
 constexpr int kSamples = 30;
 /// States of the plant; the sanitizers take twenty times as long for the same.
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef GARRISON_SANITIZED
 constexpr std::array kStates{3};
 #else
 constexpr std::array kStates{1, 3, 9};

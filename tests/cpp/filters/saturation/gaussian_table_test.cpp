@@ -49,7 +49,7 @@ Counts one(test::Rng& rng, Kind kind, double failure) {
 }
 
 /// Random systems.
-constexpr int kSystems = test::tried(600);
+constexpr int kSystems = test::tried(200);
 
 Counts runs(Kind kind, double failure, std::uint64_t seed) {
   Counts all;

@@ -39,7 +39,7 @@ Counts one(test::Rng& rng, Kind kind, bool chebyshev) {
 }
 
 /// Random systems per kind.
-constexpr int kSystems = test::tried(600);
+constexpr int kSystems = test::tried(200);
 
 Counts runs(Kind kind, std::uint64_t seed) {
   Counts all;

@@ -105,7 +105,7 @@ Counts runs(int systems, std::uint64_t seed, int kind) {
 }
 
 /// Random systems per kind.
-constexpr int kSystems = test::tried(2000);
+constexpr int kSystems = test::tried(600);
 
 }  // namespace
 
