@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev test test-fast sanitizers fuzz fuzz-node lint format bench deb deb-check deb-board wheel abi board docs clean
+.PHONY: help setup run dev library test test-fast sanitizers fuzz fuzz-node lint format bench deb deb-check deb-board wheel abi board docs clean
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 export CTEST_PARALLEL_LEVEL ?= $(shell nproc)
 cpp = $(shell find include src bindings tests bench examples -name '*.hpp' -o -name '*.cpp')
@@ -19,8 +19,12 @@ dev: ## build quickly for a developer, few dimensions; then PYTHONPATH=python .v
 test: setup ## all tests: C++, Python, and some C++ again under the sanitizers
 	@tools/test.sh
 
-sanitizers: setup ## C++ tests of what reads bytes or shares memory, with sanitizers; FILES='^filters/rdkf': others
+sanitizers: library ## C++ tests of what reads bytes or shares memory, with sanitizers; FILES=cpp/filters/rdkf: others
 	@tools/sanitizers.sh $(if $(FILES),'$(FILES)')
+
+library: setup
+	@tools/stage.sh "configure release" cmake --preset release
+	@tools/stage.sh "build library" cmake --build --preset release --target garrison
 
 test-fast: setup ## C++ and Python tests without the sanitizers
 	@tools/stage.sh "configure release" cmake --preset release
@@ -45,10 +49,8 @@ format: setup ## format C++ and Python, write the type stubs anew
 fuzz: setup ## every public callable with bad values, mutated scenarios and CSV files; SEED=1 tries others
 	@.venv/bin/pytest -q tests/fuzz --fuzz-seed=$(or $(SEED),0)
 
-fuzz-node: ## the node's parsers under libFuzzer, 10 s each; FUZZ_SECONDS=60: longer
+fuzz-node: library ## the node's parsers under libFuzzer, 10 s each; FUZZ_SECONDS=60: longer
 	@tools/system.sh fuzz
-	@tools/stage.sh "configure release" cmake --preset release
-	@tools/stage.sh "build library" cmake --build --preset release --target garrison
 	@BUILD=build/release tools/fuzz.sh $(or $(FUZZ_SECONDS),10)
 
 bench: ## measure against the peers; results in bench/results

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 venv=$(realpath "${VENV:-.venv}")
 export CXX=${CXX:-g++} LC_ALL=C.UTF-8
-[[ -f build/dev/build.ninja ]] || cmake -S . -B build/dev -G Ninja -DCMAKE_BUILD_TYPE=Release -DGARRISON_FEW_DIMENSIONS=ON -DGARRISON_PRECOMPILE=OFF \
+[[ -f build/dev/build.ninja ]] || cmake -S . -B build/dev -G Ninja -DCMAKE_BUILD_TYPE=Release -DGARRISON_FEW_DIMENSIONS=ON \
   -DGARRISON_BUILD_PYTHON=ON -DGARRISON_BUILD_NODE=ON -DGARRISON_BUILD_MPI=AUTO -DCMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache)" -DPython_EXECUTABLE="$venv/bin/python" \
   -Dpybind11_DIR="$("$venv/bin/python" -m pybind11 --cmakedir)" >/dev/null
 cmake --build build/dev ${*:+--target "$@"}

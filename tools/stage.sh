@@ -12,8 +12,6 @@ export CXX=${CXX:-g++} LC_ALL=C.UTF-8
 export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-$(command -v ccache)}
 # Folders below this one are named relative to it, so that builds in different places share what they compile.
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD} CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
-# Headers that are precompiled are taken for what they were compiled from.
-export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 log=build/log/${name//[^[:alnum:]]/-}.log
 printf '== %s ... ' "$name"
 start=$SECONDS

@@ -4,7 +4,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 trap 'tools/behind.sh stop sanitizers' EXIT
-[[ -n ${SANITIZERS_BEGUN:-} ]] || tools/behind.sh begin sanitizers tools/sanitizers.sh
+if [[ -z ${SANITIZERS_BEGUN:-} ]]; then
+  make --no-print-directory library
+  tools/behind.sh begin sanitizers tools/sanitizers.sh
+fi
 make --no-print-directory test-fast
 [[ -z ${FUZZ_BEGUN:-} ]] || tools/behind.sh end fuzz-node
 tools/behind.sh end sanitizers
