@@ -22,7 +22,8 @@ test: setup ## all tests: C++, Python, and some C++ again under the sanitizers
 sanitizers: library ## C++ tests of what reads bytes or shares memory, with sanitizers; FILES=cpp/filters/rdkf: others
 	@tools/sanitizers.sh $(if $(FILES),'$(FILES)')
 
-library: setup
+library:
+	@tools/system.sh
 	@tools/stage.sh "configure release" cmake --preset release
 	@tools/stage.sh "build library" cmake --build --preset release --target garrison
 
