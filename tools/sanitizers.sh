@@ -10,7 +10,7 @@ build=${BUILD:-build/release}
 out=build/sanitizers
 jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 # Without the checks that make Eigen compile for minutes. As the library: objects of other builds do not link with it.
-flags=(-std=c++20 -O1 -g1 -fno-omit-frame-pointer -D_GLIBCXX_ASSERTIONS -DGARRISON_SANITIZED -ffp-contract=off -fno-math-errno
+flags=(-std=c++20 -O1 -g1 -fno-omit-frame-pointer -D_GLIBCXX_ASSERTIONS -ffp-contract=off -fno-math-errno
   -fno-trapping-math -Wno-psabi -fsanitize=address,undefined -fno-sanitize=alignment,null,object-size,vptr
   -fno-sanitize-recover=all -DGARRISON_CASES="\"$PWD/tests/cases\"" -DGARRISON_SOURCE="\"$PWD\""
   -DEIGEN_MALLOC_ALREADY_ALIGNED=1 -Iinclude -Isrc -Itests/cpp -Itests/node -isystem /usr/include/eigen3)

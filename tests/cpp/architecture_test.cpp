@@ -122,9 +122,9 @@ TEST_CASE("compiled parts include only what is below them") {
     }
   }
   CHECK(seen > 50);
-  for (const auto& family : bridged) {
-    CAPTURE(family.first);
-    CHECK(family.second <= 2);  // one to be instantiated, one for trials side by side
+  for (const auto& [family, bridges_of_it] : bridged) {
+    CAPTURE(family);
+    CHECK(bridges_of_it <= 2);  // one to be instantiated, one for trials side by side
   }
 }
 

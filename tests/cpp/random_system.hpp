@@ -16,7 +16,7 @@ using Rng = std::mt19937_64;
 /// Of so many random cases those that are tried: a tenth under the sanitizers, which look for other mistakes
 /// and take twenty times as long for the same.
 constexpr int tried(int cases) {
-#ifdef GARRISON_SANITIZED
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return cases / 10;
 #else
   return cases;

@@ -11,7 +11,7 @@ namespace garrison::node::test {
 std::int64_t allocations() noexcept { return count; }
 }  // namespace garrison::node::test
 
-#ifndef GARRISON_SANITIZED
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 extern "C" {
 // glibc's own, beneath the names that everybody calls.
 void* __libc_malloc(std::size_t size);                           // NOLINT

@@ -6,7 +6,7 @@
 
 namespace garrison::node::test {
 
-#ifdef GARRISON_SANITIZED
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kAllocationsCounted = false;
 #else
 inline constexpr bool kAllocationsCounted = true;

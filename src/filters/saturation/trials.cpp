@@ -39,7 +39,7 @@ struct Sense {
   template <int B>
   GARRISON_INLINE static void part(const SenseJob& job, int lane) {
     using Lanes = Block<B>;
-    using V = typename Lanes::type;
+    using V = Lanes::type;
     const V beta = V{} + job.beta;
     const V huge = V{} + kHuge;
     const double* c = job.C;

@@ -51,9 +51,7 @@ TEST_CASE("families that average move in proportion to the lie, and say that no 
                                                                 {"dkf", {}},
                                                                 {"structural", {}},
                                                                 {"partial_sharing", {{"gain", 0.1}}}};
-  for (const auto& family : averaging) {
-    const auto& name = family.first;
-    const auto& params = family.second;
+  for (const auto& [name, params] : averaging) {
     CAPTURE(name);
     const auto small = run(name, params, {forge(Schedule(5, {2}), 10.0, false)});
     const auto large = run(name, params, {forge(Schedule(5, {2}), 1000.0, false)});
@@ -88,9 +86,10 @@ TEST_CASE("lfre trims up to f liars away, and no more") {
 
 TEST_CASE("a structural agent that lies about itself has nobody accused") {
   const auto honest = run("structural", {}, {});
-  for (const auto& lie : std::vector<std::pair<const char*, double>>{{"rest", 9.0}, {"covariance", 1e6}}) {
-    CAPTURE(lie.first);
-    const auto r = run("structural", {}, {falsify(Schedule(1, {2}), lie.first, lie.second, {})});
+  for (const auto& [field, value] :
+       std::vector<std::pair<const char*, double>>{{"rest", 9.0}, {"covariance", 1e6}}) {
+    CAPTURE(field);
+    const auto r = run("structural", {}, {falsify(Schedule(1, {2}), field, value, {})});
     CHECK(count(r, Verdict::attacked) <=
           count(honest, Verdict::attacked) + 3);  // every agent judges itself alone
   }

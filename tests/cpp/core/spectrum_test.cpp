@@ -27,9 +27,7 @@ void check_equal(const LaplacianSpectrum& got, const LaplacianSpectrum& expected
 }  // namespace
 
 TEST_CASE("grids have the sums of path eigenvalues") {
-  for (const auto& size : {std::pair{4, 5}, {20, 20}, {20, 30}, {1, 600}, {2, 601}}) {
-    const int rows = size.first;
-    const int columns = size.second;
+  for (const auto& [rows, columns] : {std::pair{4, 5}, {20, 20}, {20, 30}, {1, 600}, {2, 601}}) {
     CAPTURE(rows);
     CAPTURE(columns);
     const int most = std::max(rows, columns);
@@ -52,9 +50,7 @@ TEST_CASE("multiple eigenvalues and irregular graphs, above the dense limit") {
 }
 
 TEST_CASE("well-connected networks, whose factors fill, take products alone") {
-  for (const auto& random : {std::pair{900, 0.02}, {900, 0.2}, {1200, 0.01}}) {
-    const int N = random.first;
-    const double p = random.second;
+  for (const auto& [N, p] : {std::pair{900, 0.02}, {900, 0.2}, {1200, 0.01}}) {
     CAPTURE(N);
     CAPTURE(p);
     const Network net = Network::erdos_renyi(N, p, 3);

@@ -20,7 +20,7 @@ namespace {
 constexpr int kAgents = 7;
 constexpr int kSamples = 30;
 /// States of the plant; the sanitizers take twenty times as long for the same.
-#ifdef GARRISON_SANITIZED
+#if defined(__SANITIZE_ADDRESS__)
 constexpr std::array kStates{3};
 #else
 constexpr std::array kStates{1, 3, 9};

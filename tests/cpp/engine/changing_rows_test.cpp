@@ -18,7 +18,7 @@ using certificate::Wanted;
 namespace {
 
 constexpr std::uint64_t kSeed = 20261203;
-#ifdef GARRISON_SANITIZED
+#if defined(__SANITIZE_ADDRESS__)
 constexpr int kSystems = 20;
 #else
 constexpr int kSystems = 120;

@@ -84,15 +84,15 @@ TEST_CASE("faults at their extremes equal what they amount to") {
     ParamMap params;
     bool listens;  // an agent of "lfre" that can observe the state alone does not
   };
-  for (const Family& family :
+  for (const auto& [name, params, listens] :
        {Family{"saturation", {{"threshold", 0.5}}, true}, {"scalar_gain", {}, true}, {"lfre", {}, false}}) {
-    CAPTURE(family.name);
+    CAPTURE(name);
     const auto run = [&](const LinkFaults& faults,
                          std::vector<std::shared_ptr<const MessageAttack>> attacks = {}) {
       RunOptions o;
       o.link = faults;
       o.message_attacks = std::move(attacks);
-      return replay(model, net, *make_filter(family.name, family.params), y, Matrix(), o);
+      return replay(model, net, *make_filter(name, params), y, Matrix(), o);
     };
     const auto perfect = run({});
     const auto harmless = run({}, {forge(Schedule(1, {2, 5}), 0.0, false)});  // a lie that says the truth
@@ -106,6 +106,6 @@ TEST_CASE("faults at their extremes equal what they amount to") {
     CHECK(lost.link.lost > 0);
     const auto bad = run({0.3, 0.3, 2, {}, {}});
     CHECK(same(bad.estimate, run({0.3, 0.3, 2, {}, {}}).estimate));
-    if (family.listens) CHECK(!same(bad.estimate, perfect.estimate));
+    if (listens) CHECK(!same(bad.estimate, perfect.estimate));
   }
 }

@@ -114,7 +114,7 @@ void attack(Speech speech, int mutations, std::uint64_t seed) {
 /// GARRISON_MUTATIONS asks for another number.
 int mutations() {
   if (const char* given = std::getenv("GARRISON_MUTATIONS")) return std::atoi(given);
-#ifdef GARRISON_SANITIZED
+#if defined(__SANITIZE_ADDRESS__)
   return 5000;
 #else
   return 35000;

@@ -173,9 +173,7 @@ TEST_CASE("groups of like agents read one copy of sensors and gains") {
       for (std::size_t k = 0; k < states.size(); ++k)
         PartialSharing::init<4>(local(k), g, Vec<4>::Zero(), states[k], unused);
       all.start(g, local);
-      const auto& first = *states[0].group;
-      const auto& second = *states[8].group;
-      const auto& last = *states[16].group;
+      const auto& [first, second, last] = std::tie(*states[0].group, *states[8].group, *states[16].group);
       const auto sharing = [&] { return second.C == first.C && second.G == first.G; };
       CHECK(sharing() == (alike && g.steady.size() == 20));
       CHECK(last.C != first.C);  // four agents and four idle lanes

@@ -85,10 +85,10 @@ TEST_CASE("after a glitch, a burst, a common burst, a long attack or a false ala
         {"long common attack", {bias(Schedule(30, both, plant.steps - 110), 20.0)}},
         {"long drift", {ramp(Schedule(30, {0}, plant.steps - 110), 0.1)}}};
     const double clean = rms(run(plant, false, {}, 0.001), 40);
-    for (const auto& attack : attacks) {
+    for (const auto& [what, attack] : attacks) {
       CAPTURE(plant.name);
-      CAPTURE(attack.first);
-      const Record r = run(plant, true, attack.second, 0.001);
+      CAPTURE(what);
+      const Record r = run(plant, true, attack, 0.001);
       CHECK(rms(r, 40) < 1.2 * clean);
       CHECK(accused(r, 40) < 0.1);
     }
